@@ -1,0 +1,1 @@
+"""Physics of the rock shed, a folder per subsystem. Knows numpy and numba, nothing of FMI."""

@@ -1,0 +1,90 @@
+"""Compilation of kernels: one decorator, and a cache that is found again wherever the source lies.
+
+Numba keys its cache by the folder of the source file and by that one file's content. A kernel inside an FMU would then be
+compiled again on every run (the FMU is unpacked to a new folder each time), and an edit of a called function in another file
+would go unnoticed. Here the key is the content of the whole package.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numba import njit
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+
+CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
+"""Environment variable that moves the cache of compiled kernels, by default ``~/.cache/rockshed``."""
+
+_PACKAGE = Path(__file__).parent
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@cache
+def source_stamp() -> str:
+    """Hash of all Python sources of this package; compiled kernels are valid for exactly one value of it."""
+    digest = hashlib.sha256(__name__.encode())
+    for path in sorted(_PACKAGE.rglob("*.py")):
+        digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+@cache
+def cache_directory() -> Path | None:
+    """Folder of the compiled kernels, made if need be; None where no such folder can be written (then nothing is kept)."""
+    root = os.environ.get(CACHE_VARIABLE) or os.path.join(os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed")
+    folder = Path(root).expanduser() / source_stamp()[:16]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except (OSError, RuntimeError):
+        return None
+    return folder
+
+
+class _PackageLocator:
+    """Numba's protocol of a cache locator: where a function's cache lies and when it is stale."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        self._function, self._folder = function, folder
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], _source: str) -> "_PackageLocator | None":
+        folder = cache_directory()
+        return None if folder is None else cls(function, folder)
+
+    def ensure_cache_path(self) -> None:
+        self._folder.mkdir(parents=True, exist_ok=True)
+
+    def get_cache_path(self) -> str:
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        return source_stamp()
+
+    def get_disambiguator(self) -> str:
+        return hashlib.sha256(f"{self._function.__module__}:{self._function.__code__.co_firstlineno}".encode()).hexdigest()[:12]
+
+
+class _PackageCacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = [_PackageLocator]
+
+
+class _PackageCache(FunctionCache):  # type: ignore[misc]
+    _impl_class = _PackageCacheImpl
+
+
+def kernel(function: F) -> F:
+    """Compile ``function`` with numba: no fastmath (results are compared bit for bit), division by zero gives inf or NaN.
+
+    Kernels keep to what also compiles without Python: explicit loops, scalar arithmetic, slices, other kernels. No
+    allocation, no whole-array expressions, no exceptions; a kernel reports a fault by its return value.
+    """
+    dispatcher = njit(error_model="numpy")(function)
+    if cache_directory() is not None:
+        dispatcher._cache = _PackageCache(function)
+    return dispatcher  # type: ignore[no-any-return]

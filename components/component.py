@@ -1,0 +1,234 @@
+"""A component: its declarations and kernels, and an instance of it that holds the buffers.
+
+The life of an instance is that of an FMI slave: set parameters and inputs, :meth:`Instance.initialise`, then
+:meth:`Instance.step` as often as wanted. Between two steps inputs may change; outputs change only in a step.
+"""
+
+import hashlib
+import re
+import struct
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .ports import Causality, Kind, Layout, Variable
+
+OK = 0
+"""Status of a kernel that did what it was asked for. Every other value is a key of :attr:`Component.faults`."""
+
+Buffer = NDArray[np.float64]
+_HEADER = struct.Struct("<8s16sqqq")
+_MAGIC = b"rockshed"
+
+
+class ComponentError(Exception):
+    """A component refuses what it was given, or cannot go on. ``problems`` lists every reason found."""
+
+    def __init__(self, component: str, problems: list[str]) -> None:
+        self.component, self.problems = component, problems
+        super().__init__(f"{component}: " + "; ".join(problems))
+
+
+@dataclass(frozen=True)
+class Size:
+    """A number fixed when the component is built: its default, its allowed range and what it counts."""
+
+    default: int
+    minimum: int
+    maximum: int
+    description: str
+
+
+@dataclass(frozen=True)
+class Component:
+    """A subsystem of the rock shed.
+
+    initialise(w, x, k) -> status: state at the start, from the parameters.
+    evaluate(w, x, k) -> status: outputs at the start, from state and inputs; checks that they fit together.
+    step(t, h, w, x, k) -> status: advance by ``h`` from time ``t`` (s) with the inputs in ``w``.
+    faults: message of each status other than OK; ``{name}`` stands for the value of the scalar variable ``name``.
+    """
+
+    name: str
+    title: str
+    layout: Layout
+    initialise: Callable[..., int]
+    evaluate: Callable[..., int]
+    step: Callable[..., int]
+    folder: Path
+    sizes: Mapping[str, Size] = field(default_factory=dict)
+    faults: Mapping[int, str] = field(default_factory=dict)
+    default_step: float = 1e-4
+    default_stop_time: float = 0.02
+
+    def with_sizes(self, sizes: Mapping[str, int] | None = None) -> dict[str, int]:
+        """The sizes to build with: the defaults, overridden by ``sizes``.
+
+        Raises:
+            ComponentError: a size that the component has not, or that is out of its range.
+        """
+        given = dict(sizes or {})
+        problems = [f"has no size {name!r}; its sizes are: {', '.join(self.sizes) or 'none'}"
+                    for name in given if name not in self.sizes]
+        chosen = {name: given.get(name, size.default) for name, size in self.sizes.items()}
+        problems += [f"{name} = {value}: allowed is {self.sizes[name].minimum} to {self.sizes[name].maximum} "
+                     f"({self.sizes[name].description})" for name, value in chosen.items()
+                     if not self.sizes[name].minimum <= value <= self.sizes[name].maximum]
+        if problems:
+            raise ComponentError(self.name, problems)
+        return chosen
+
+    def instance(self, **sizes: int) -> "Instance":
+        """A new instance with start values everywhere, not yet initialised."""
+        return Instance(self, self.with_sizes(sizes))
+
+    def documentation(self) -> str:
+        """The component's README: equations, frames, signs, sources (Markdown)."""
+        return (self.folder / "README.md").read_text(encoding="utf-8")
+
+
+class Instance:
+    """The buffers of one component, reached by name. Value reference = index in ``w``."""
+
+    def __init__(self, component: Component, sizes: Mapping[str, int]) -> None:
+        self.component, self.sizes = component, dict(sizes)
+        entries, n_w, n_x, n_k = component.layout.table(sizes)
+        self.w: Buffer = np.zeros(n_w)
+        self.x: Buffer = np.zeros(n_x)
+        self.k: NDArray[np.int64] = np.zeros(n_k, np.int64)
+        self.k[:len(entries)] = entries
+        for index, (variable, number) in enumerate(self._elements()):
+            if variable.causality is not Causality.OUTPUT:
+                self.w[index] = variable.start_at(number, sizes)
+
+    def _elements(self) -> Iterator[tuple[Variable, int]]:
+        for variable in self.component.layout.ordered:
+            for number in range(1 if variable.size is None else self.sizes[variable.size]):
+                yield variable, number
+
+    @cached_property
+    def references(self) -> dict[str, int]:
+        """Value reference of every variable, arrays element by element."""
+        names = (n for v in self.component.layout.ordered for n in v.element_names(self.sizes))
+        return {name: index for index, name in enumerate(names)}
+
+    @cached_property
+    def _slices(self) -> dict[str, slice]:
+        slices, start = {}, 0
+        for variable in self.component.layout.ordered:
+            length = 1 if variable.size is None else self.sizes[variable.size]
+            slices[variable.name] = slice(start, start + length)
+            start += length
+        return slices
+
+    def __getitem__(self, name: str) -> Any:
+        """Value of a scalar or array element (float), or a view of a whole array."""
+        if name in self.references:
+            return float(self.w[self.references[name]])
+        return self.w[self._slices[name]]
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        """Set a scalar, an array element or a whole array; a choice may be given by its word."""
+        if isinstance(value, str):
+            value = self._choice(name, value)
+        self.w[self.references[name] if name in self.references else self._slices[name]] = value
+
+    def _choice(self, name: str, word: str) -> float:
+        variable = next(v for v in self.component.layout.variables if v.name == name)
+        if word not in variable.choices:
+            raise ComponentError(self.component.name, [f"{name} = {word}: choose one of {', '.join(variable.choices)}"])
+        return float(variable.choices.index(word) + 1)
+
+    def state(self, name: str) -> NDArray[Any]:
+        """View of a hidden array."""
+        entry = getattr(self.component.layout.array, name.replace(".", "_"))
+        integer = next(s.integer for s in self.component.layout.states if s.name == name)
+        return (self.k if integer else self.x)[self.k[entry]:self.k[entry] + self.k[entry + 1]]
+
+    def problems(self) -> list[str]:
+        """Everything that is wrong with the present parameters and inputs: not a number, or out of range."""
+        found = []
+        names = list(self.references)
+        for index, (variable, _) in enumerate(self._elements()):
+            if variable.causality is not Causality.OUTPUT:
+                found += _value_problems(variable, names[index], float(self.w[index]))
+        return found
+
+    def initialise(self) -> None:
+        """Check the parameters, compute the state and the outputs at the start.
+
+        Raises:
+            ComponentError: parameters or inputs that are refused, all reasons at once.
+        """
+        if found := self.problems():
+            raise ComponentError(self.component.name, found)
+        self._check(self.component.initialise(self.w, self.x, self.k))
+        self.evaluate()
+
+    def evaluate(self) -> None:
+        """Compute the outputs at the start anew, after an input was set.
+
+        Raises:
+            ComponentError: the inputs do not fit the state.
+        """
+        self._check(self.component.evaluate(self.w, self.x, self.k))
+
+    def step(self, time: float, step: float) -> None:
+        """Advance by ``step`` (s) from ``time`` (s).
+
+        Raises:
+            ComponentError: the component cannot go on.
+        """
+        self._check(self.component.step(time, step, self.w, self.x, self.k), time)
+
+    def _check(self, status: int, time: float | None = None) -> None:
+        if status != OK:
+            at = "" if time is None else f"at t = {time:.9g} s "
+            raise ComponentError(self.component.name, [at + self.message(status)])
+
+    def message(self, status: int) -> str:
+        """What a status of a kernel means, with the present values in it."""
+        template = self.component.faults.get(status, f"stopped with the unknown status {status}")
+        return re.sub(r"\{([^}]+)\}", lambda match: f"{self[match.group(1)]:.6g}", template)
+
+    @property
+    def kind(self) -> bytes:
+        """16 bytes that only instances with the same variables and sizes share."""
+        content = repr((self.component.name, sorted(self.sizes.items()), list(self.references), self.x.size, self.k.size))
+        return hashlib.sha256(content.encode()).digest()[:16]
+
+    def to_bytes(self) -> bytes:
+        """The complete state, exact to the bit."""
+        header = _HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
+        return header + self.w.tobytes() + self.x.tobytes() + self.k.tobytes()
+
+    def from_bytes(self, content: bytes) -> None:
+        """Take over a state that :meth:`to_bytes` wrote, in this process or another.
+
+        Raises:
+            ComponentError: not such a state, of another component or size, or cut short.
+        """
+        expected = _HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
+        if content[:_HEADER.size] != expected or len(content) != len(expected) + 8 * (self.w.size + self.x.size + self.k.size):
+            raise ComponentError(self.component.name, ["this is no serialized state of this component with these sizes"])
+        values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
+        self.w[:], self.x[:] = values[:self.w.size], values[self.w.size:]
+        self.k[:] = np.frombuffer(content, np.int64, self.k.size, len(expected) + values.nbytes)
+
+
+def _value_problems(variable: Variable, name: str, value: float) -> list[str]:
+    low = -np.inf if variable.minimum is None else variable.minimum
+    high = np.inf if variable.maximum is None else variable.maximum
+    unit = "" if variable.unit == "1" else f" {variable.unit}"
+    if not np.isfinite(value):
+        return [f"{name} = {value}: must be a finite number ({variable.description})"]
+    if not low <= value <= high:
+        return [f"{name} = {value:.6g}{unit}: allowed is {low:g} to {high:g}{unit} ({variable.description})"]
+    if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
+        return [f"{name} = {value}: must be a whole number ({variable.description})"]
+    return []

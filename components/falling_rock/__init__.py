@@ -1,0 +1,20 @@
+"""The falling rock: a rigid body in the plane."""
+
+from pathlib import Path
+
+from ..component import Component
+from . import kernel
+from .declarations import LAYOUT
+
+COMPONENT = Component(
+    name="FallingRock",
+    title="Falling rock: rigid body in the plane",
+    layout=LAYOUT,
+    initialise=kernel.initialise,
+    evaluate=kernel.evaluate,
+    step=kernel.step,
+    folder=Path(__file__).parent,
+    faults={kernel.DIVERGED: "the position is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
+                             "reduce the exchange step or the step of the component that computes it"},
+    default_step=1e-5,
+)

@@ -1,0 +1,84 @@
+"""Motion of a rigid body in the plane under gravity and outside forces, semi-implicit Euler."""
+
+import math
+
+from ..compilation import kernel
+from ..component import OK
+from ..stepping import substep_count
+from .declarations import DISC, LAYOUT, SPHERE
+
+V = LAYOUT.scalar
+
+DIVERGED = 1
+UNBOUNDED_STEP = 1e6
+"""Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
+
+
+@kernel
+def inertia(w):
+    """Moment of inertia in use (kg m2)."""
+    if w[V.shape] == SPHERE:
+        return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]
+    if w[V.shape] == DISC:
+        return 0.5 * w[V.mass] * w[V.radius] * w[V.radius]
+    return w[V.moment_of_inertia]
+
+
+@kernel
+def move(mass, moment_of_inertia, gravity, force_x, force_y, torque, dt, w):
+    """One step dt (s): velocity first, then position with the new velocity. Returns the work of force and torque (J).
+
+    A constant force does exactly the work force * mean velocity * dt on the kinetic energy.
+    """
+    vx, vy, omega = w[V.velocity_x], w[V.velocity_y], w[V.angular_velocity]
+    w[V.velocity_x] = vx + force_x / mass * dt
+    w[V.velocity_y] = vy + (force_y / mass - gravity) * dt
+    w[V.angular_velocity] = omega + torque / moment_of_inertia * dt
+    w[V.position_x] += w[V.velocity_x] * dt
+    w[V.position_y] += w[V.velocity_y] * dt
+    w[V.angle] += w[V.angular_velocity] * dt
+    return 0.5 * dt * (force_x * (vx + w[V.velocity_x]) + force_y * (vy + w[V.velocity_y])
+                       + torque * (omega + w[V.angular_velocity]))
+
+
+@kernel
+def energies(w):
+    """Refresh kinetic and potential energy and the residual."""
+    speed2 = w[V.velocity_x] * w[V.velocity_x] + w[V.velocity_y] * w[V.velocity_y]
+    spin2 = w[V.angular_velocity] * w[V.angular_velocity]
+    w[V.energy_kinetic] = 0.5 * w[V.mass] * speed2 + 0.5 * inertia(w) * spin2
+    w[V.energy_gravity] = w[V.mass] * w[V.gravity] * w[V.position_y]
+    w[V.energy_residual] = w[V.energy_kinetic] + w[V.energy_gravity] - w[V.energy_work_contact] - w[V.energy_start]
+
+
+@kernel
+def initialise(w, x, k):
+    """State at the start from the parameters."""
+    w[V.position_x], w[V.position_y], w[V.angle] = w[V.position0_x], w[V.position0_y], w[V.angle0]
+    w[V.velocity_x], w[V.velocity_y] = w[V.velocity0_x], w[V.velocity0_y]
+    w[V.angular_velocity] = w[V.angular_velocity0]
+    w[V.stable_step] = UNBOUNDED_STEP
+    w[V.energy_work_contact] = 0.0
+    w[V.energy_start] = 0.0
+    energies(w)
+    w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_gravity]
+    w[V.energy_residual] = 0.0
+    return OK
+
+
+@kernel
+def evaluate(w, x, k):
+    """Outputs at the start: :func:`initialise` has set them, and they do not depend on the inputs."""
+    return OK
+
+
+@kernel
+def step(t, h, w, x, k):
+    """Advance by h (s) with constant force and torque."""
+    n = substep_count(h, w[V.internal_step])
+    dt = h / n
+    moment_of_inertia = inertia(w)
+    for _ in range(n):
+        w[V.energy_work_contact] += move(w[V.mass], moment_of_inertia, w[V.gravity], w[V.force_x], w[V.force_y], w[V.torque], dt, w)
+    energies(w)
+    return OK if math.isfinite(w[V.position_x] + w[V.position_y] + w[V.angle]) else DIVERGED

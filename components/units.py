@@ -1,0 +1,57 @@
+"""Units: conversion factors to SI for the edges of the program, and the units that ports may carry.
+
+Inside, every quantity is a plain float in SI. ``120 * kgf / cm`` reads as it is written in the papers.
+"""
+
+from dataclasses import dataclass
+
+import math
+
+mm = 1e-3
+cm = 1e-2
+cm2 = 1e-4
+cm3 = 1e-6
+cm4 = 1e-8
+ms = 1e-3
+us = 1e-6
+kgf = 9.80665
+"""Newton per kilogram-force. Sonoda et al. (1993) round it to 9.8."""
+tf = 1e3 * kgf
+tonne = 1e3
+kN = 1e3
+kJ = 1e3
+deg = math.pi / 180.0
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit as FMI describes it: exponents of the SI base units, and the quantity that carries it.
+
+    ``factor`` converts a value in this unit to the base units.
+    """
+
+    quantity: str
+    base: dict[str, int]
+    factor: float = 1.0
+
+
+UNITS: dict[str, Unit] = {
+    "1": Unit("Dimensionless", {}),
+    "s": Unit("Time", {"s": 1}),
+    "m": Unit("Length", {"m": 1}),
+    "m2": Unit("Area", {"m": 2}),
+    "m4": Unit("SecondMomentOfArea", {"m": 4}),
+    "m/s": Unit("Velocity", {"m": 1, "s": -1}),
+    "m/s2": Unit("Acceleration", {"m": 1, "s": -2}),
+    "rad": Unit("Angle", {"rad": 1}),
+    "rad/s": Unit("AngularVelocity", {"rad": 1, "s": -1}),
+    "kg": Unit("Mass", {"kg": 1}),
+    "kg.m2": Unit("MomentOfInertia", {"kg": 1, "m": 2}),
+    "kg/m3": Unit("Density", {"kg": 1, "m": -3}),
+    "N": Unit("Force", {"kg": 1, "m": 1, "s": -2}),
+    "N/m": Unit("Stiffness", {"kg": 1, "s": -2}),
+    "N.m": Unit("Torque", {"kg": 1, "m": 2, "s": -2}),
+    "J": Unit("Energy", {"kg": 1, "m": 2, "s": -2}),
+    "Pa": Unit("Pressure", {"kg": 1, "m": -1, "s": -2}),
+}
+"""The units that a port may name. A port with another unit is refused when it is declared."""

@@ -1,0 +1,1 @@
+"""FMUs from components: model description, export, files in fmus/dist/."""
