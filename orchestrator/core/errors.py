@@ -1,0 +1,36 @@
+"""Errors of a co-simulation, made for the person who has to act on them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong: where, what, and what to do about it.
+
+    where: ``component.port``, or the path of a key in the system file.
+    """
+
+    where: str
+    what: str
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.what}" + (f"; {self.remedy}" if self.remedy else "")
+
+
+class InputRefused(Exception):  # noqa: N818 (it says what happened, not that it is an error)
+    """What was asked for cannot be run. ``problems`` holds every reason found; nothing has been computed."""
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        self.problems = list(problems)
+        count = f"{len(self.problems)} problems:\n" if len(self.problems) > 1 else ""
+        super().__init__(count + "\n".join(map(str, self.problems)))
+
+
+class RunFailed(Exception):  # noqa: N818
+    """A run began and could not go on. What was computed until then is kept."""
+
+    def __init__(self, component: str, time: float, what: str) -> None:
+        self.component, self.time = component, time
+        super().__init__(f"{component} at t = {time:.9g} s: {what}")
