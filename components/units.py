@@ -38,6 +38,7 @@ class Unit:
 UNITS: dict[str, Unit] = {
     "1": Unit("Dimensionless", {}),
     "s": Unit("Time", {"s": 1}),
+    "1/s": Unit("Rate", {"s": -1}),
     "m": Unit("Length", {"m": 1}),
     "m2": Unit("Area", {"m": 2}),
     "m4": Unit("SecondMomentOfArea", {"m": 4}),
@@ -46,6 +47,7 @@ UNITS: dict[str, Unit] = {
     "rad": Unit("Angle", {"rad": 1}),
     "rad/s": Unit("AngularVelocity", {"rad": 1, "s": -1}),
     "kg": Unit("Mass", {"kg": 1}),
+    "kg/m": Unit("MassPerLength", {"kg": 1, "m": -1}),
     "kg.m2": Unit("MomentOfInertia", {"kg": 1, "m": 2}),
     "kg/m3": Unit("Density", {"kg": 1, "m": -3}),
     "N": Unit("Force", {"kg": 1, "m": 1, "s": -2}),

@@ -1,0 +1,23 @@
+"""The beam: a chain of rigid discs with axial and bending springs (rigid bodies spring model, RBSM)."""
+
+from pathlib import Path
+
+from ..component import Component
+from . import kernel
+from .declarations import LAYOUT, SIZES
+
+COMPONENT = Component(
+    name="RBSMBeam",
+    title="Beam: chain of rigid discs with axial and bending springs (RBSM)",
+    layout=LAYOUT,
+    initialise=kernel.initialise,
+    evaluate=kernel.evaluate,
+    step=kernel.step,
+    folder=Path(__file__).parent,
+    sizes=SIZES,
+    faults={kernel.DIVERGED: "the beam diverged: a displacement exceeds half the span ({span} m) or is no longer a number (midspan"
+                             " deflection {midspan.deflection} m, transmitted force {transmitted_force} N); internal_step is "
+                             "{internal_step} s and the largest stable one {stable_step} s: reduce internal_step below that, or,"
+                             " if it is, the exchange step of the component that computes the forces"},
+    default_step=1e-5,
+)

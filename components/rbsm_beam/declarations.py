@@ -1,0 +1,94 @@
+"""Variables of the beam. Equations, frame and signs: README.md beside this file."""
+
+from ..component import Size
+from ..ports import Layout, Sizes, State, choice, inp, out, param
+from ..stepping import internal_step, stable_step
+from ..units import cm, cm2, cm4, kgf
+
+SIMPLE, FIXED = 1, 2
+
+SIZES = {
+    "elements": Size(24, 2, 2000, "rigid discs of the chain"),
+    "support_count": Size(2, 2, 2, "supports: 1 is the left, 2 the right one"),
+}
+
+_SONODA = "Sonoda et al. 1993, sec. 4: H-100x50x7, span 120 cm, discs of 5 cm"
+_GEOMETRY = ("span", "axis.x")
+_AT_REST = ("span", "axis.y", "supports", "elastic_modulus", "section.area", "section.second_moment", "density", "added_mass",
+            "gravity", "support.position.y")
+
+
+def _per_element(name: str, description: str, unit: str, *depends: str):
+    return out(name, description, unit, size="elements", initial_dependencies=depends)
+
+
+def _padded(sizes: Sizes) -> int:
+    """Length of an array over the discs that has one more place at each end, for what the support does there."""
+    return sizes["elements"] + 2
+
+
+LAYOUT = Layout((
+    param("span", "distance of the supports", 120 * cm, "m", minimum=1e-3, source=_SONODA),
+    param("axis.x", "x of the left support", 0.0, "m"),
+    param("axis.y", "y of the unloaded axis of the beam; the default puts the top of 24 discs at y = 0", -2.5 * cm, "m"),
+    choice("supports", "simple: both ends turn freely, the right one slides along the axis; fixed: neither turns nor slides",
+           ("simple", "fixed"), "simple", source=_SONODA),
+    param("elastic_modulus", "Young's modulus; the default is structural steel", 2.1e6 * kgf / cm2, "Pa", minimum=1.0),
+    param("section.area", "area of the section", 11.85 * cm2, "m2", minimum=1e-12, source=_SONODA),
+    param("section.second_moment", "second moment of area of the section", 187 * cm4, "m4", minimum=1e-18, source=_SONODA),
+    param("section.height", "height of the section, axis at half of it; for the strain only", 10 * cm, "m", minimum=1e-6,
+          source=_SONODA),
+    param("density", "density of the material; the default is structural steel", 7850.0, "kg/m3", minimum=1e-3),
+    param("added_mass", "mass per length that moves with the beam besides its own", 0.0, "kg/m", minimum=0.0),
+    param("gravity", "acceleration of gravity, downwards; 0 leaves the beam's weight out, deflections then count from the "
+          "position under it", 0.0, "m/s2", minimum=0.0),
+    param("damping.mass", "Rayleigh damping, factor of the mass matrix", 0.0, "1/s", minimum=0.0),
+    param("damping.stiffness", "Rayleigh damping, factor of the stiffness matrix", 0.0, "s", minimum=0.0),
+    internal_step(1e-6),
+    inp("force.x", "force on the disc without its weight, to the right", "N", size="elements"),
+    inp("force.y", "force on the disc without its weight, upwards", "N", size="elements"),
+    inp("torque", "torque on the disc about its centre, counter-clockwise", "N.m", size="elements"),
+    inp("support.position.y", "height of the support above its place in the drawing", "m", size="support_count"),
+    inp("support.velocity.y", "velocity of the support, upwards", "m/s", size="support_count"),
+    _per_element("position.x", "position of the disc's centre, to the right", "m", *_GEOMETRY),
+    _per_element("position.y", "position of the disc's centre, upwards", "m", *_AT_REST),
+    _per_element("angle", "angle of the disc, counter-clockwise: mean of the two bars beside it", "rad", *_AT_REST),
+    _per_element("velocity.x", "velocity of the disc's centre, to the right", "m/s"),
+    _per_element("velocity.y", "velocity of the disc's centre, upwards", "m/s"),
+    _per_element("angular_velocity", "angular velocity of the disc, counter-clockwise", "rad/s", "support.velocity.y", "span"),
+    _per_element("moment", "bending moment at the disc's centre, positive with tension below", "N.m", *_AT_REST),
+    out("support.force.y", "force of the beam on the support at the end of the step, upwards (negative under a load)", "N",
+        size="support_count"),
+    out("support.mean_force.y", "mean of support.force.y over the step: its impulse divided by the step", "N",
+        size="support_count"),
+    out("radius", "radius of the discs, half their distance", "m", initial_dependencies=("span",)),
+    stable_step(),
+    out("transmitted_force", "sum of the vertical forces on the discs, positive downwards", "N", initial_dependencies=("force.y",),
+        source="Sonoda et al. 1993, eq. (4)"),
+    out("midspan.deflection", "deflection of the midspan from the unloaded axis, positive downwards", "m"),
+    out("midspan.moment", "bending moment at midspan, positive with tension below", "N.m"),
+    out("midspan.strain", "strain at the lower flange at midspan, positive in tension", "1"),
+    out("energy.kinetic", "kinetic energy", "J"),
+    out("energy.elastic", "elastic energy, axial + bending", "J", source="Sonoda et al. 1993, eq. (5)"),
+    out("energy.axial", "elastic energy of the axial springs", "J", source="Sonoda et al. 1993, eq. (6)"),
+    out("energy.bending", "elastic energy of the bending springs", "J", source="Sonoda et al. 1993, eq. (6)"),
+    out("energy.strain_estimate", "elastic energy as estimated from the strain at midspan", "J",
+        source="Sonoda et al. 1993, eq. (7)"),
+    out("energy.gravity", "potential energy in gravity, zero for the unloaded axis", "J"),
+    out("energy.damping", "energy that the damping has dissipated", "J"),
+    out("energy.work.contact", "work that the inputs force and torque have done on the beam", "J"),
+    out("energy.work.support", "work that the moving supports have done on the beam", "J"),
+    out("energy.residual", "energies + damping - works, minus their sum at the start: error of the integration", "J"),
+    out("energy.start", "kinetic + elastic + gravity at the start", "J"),
+), (
+    State("u", _padded),
+    State("v", _padded),
+    State("u_rate", _padded),
+    State("v_rate", _padded),
+    State("u_felt", _padded),
+    State("v_felt", _padded),
+    State("hinge_moment", _padded),
+    State("load.x", lambda sizes: sizes["elements"]),
+    State("load.y", lambda sizes: sizes["elements"]),
+    State("support.height", lambda sizes: sizes["support_count"]),
+))

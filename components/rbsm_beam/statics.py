@@ -1,0 +1,104 @@
+"""The beam at rest under its weight, and the largest step its integration can bear."""
+
+import math
+
+from ..compilation import kernel
+from .chain import END_HINGE, WALL_HINGE, feel
+
+POWER_ITERATIONS = 80
+"""Each halves the error of the highest mode's shape, and quarters that of its frequency."""
+
+
+@kernel
+def rest(c):
+    """Put the chain at rest in equilibrium with its weight and with the supports where they stand."""
+    n, stiffness = c.n, c.bending * c.spacing
+    wall, tilt = _redundant_moments(c)
+    turn = 0.0
+    for i in range(n):
+        c.moment[i + 1] = _weight_moment(c, i) + wall + tilt * (0.5 * (n - 1) - i)
+        turn += (_weight_moment(c, i) + wall) * _flexibility(c, i)
+        c.u[i + 1] = c.u_rate[i + 1] = c.v_rate[i + 1] = 0.0
+    slope = -0.5 * turn
+    slope += 0.5 * n * tilt / (WALL_HINGE * stiffness) if c.fixed else (c.height[1] - c.height[0]) / (n * c.spacing)
+    deflection = c.height[0] - 0.5 * c.spacing * slope
+    for i in range(n):
+        deflection += c.spacing * slope
+        c.v[i + 1] = deflection
+        slope += c.moment[i + 1] * _flexibility(c, i)
+
+
+@kernel
+def _weight_moment(c, i):
+    """Moment at disc i (from 0) of a simply supported chain under its weight."""
+    return 0.5 * c.mass * c.gravity * c.spacing * (c.n * (i + 0.5) - i * (i + 1.0))
+
+
+@kernel
+def _flexibility(c, i):
+    """Rotation of the hinge at disc i (from 0) under a unit moment."""
+    end = i in (0, c.n - 1)
+    return 1.0 / (c.bending * c.spacing * (END_HINGE if c.fixed and end else 1.0))
+
+
+@kernel
+def _redundant_moments(c):
+    """What fixed supports add to the moments: a constant, so that both ends stay level under the weight, and the factor of
+    n/2 - x/R that holds them level when one support stands higher."""
+    if not c.fixed:
+        return 0.0, 0.0
+    n, stiffness = c.n, c.bending * c.spacing
+    turn, lever = 0.0, 0.5 * n * n / WALL_HINGE / stiffness
+    for i in range(n):
+        arm = 0.5 * (n - 1) - i
+        turn += _weight_moment(c, i) * _flexibility(c, i)
+        lever += arm * arm * _flexibility(c, i)
+    return -turn * stiffness / n, (c.height[1] - c.height[0]) / (c.spacing * lever)
+
+
+@kernel
+def stable_step(c):
+    """Largest step (s) for which no mode grows, damping included.
+
+    Semi-implicit Euler with the damping force of the old velocity turns a mode of frequency omega and decay rate
+    a = drag + viscosity omega2 by lambda2 - (2 - a dt - omega2 dt2) lambda + 1 - a dt = 0; both roots stay in the unit circle for
+    dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest frequency decides.
+    """
+    omega2 = max(_axial_frequency2(c), _fixed_frequency2(c) if c.fixed else 16.0 * c.bending / (c.mass * c.spacing))
+    decay = c.drag + c.viscosity * omega2
+    return 4.0 / (decay + math.sqrt(decay * decay + 4.0 * omega2))
+
+
+@kernel
+def _axial_frequency2(c):
+    """Square of the highest axial frequency: a chain held at both ends, or at the left one only."""
+    shape = 1.0 if c.fixed else math.cos(0.25 * math.pi / c.n)
+    return 4.0 * c.axial / c.mass * shape * shape
+
+
+@kernel
+def _fixed_frequency2(c):
+    """Square of the highest bending frequency with fixed supports: symmetric and antisymmetric modes apart, as they lie close."""
+    return max(_highest_frequency2(c, 1.0), _highest_frequency2(c, -1.0))
+
+
+@kernel
+def _highest_frequency2(c, parity):
+    """Power iteration on the chain's own deflections, from the end discs deflected. Overwrites the state."""
+    n, quotient = c.n, 0.0
+    c.height[0] = c.height[1] = 0.0
+    for i in range(n + 2):
+        c.v[i] = 0.0
+    c.v[1], c.v[n] = 1.0, parity
+    for _ in range(POWER_ITERATIONS):
+        feel(c, 1.0, 0.0)
+        product, norm = 0.0, 0.0
+        for i in range(1, n + 1):
+            restoring = ((c.moment[i + 1] + c.moment[i - 1]) - 2.0 * c.moment[i]) / (c.spacing * c.mass)
+            product += restoring * c.v[i]
+            norm += c.v[i] * c.v[i]
+            c.v[i] = restoring
+        quotient = product / norm
+        for i in range(1, n + 1):
+            c.v[i] /= quotient
+    return quotient
