@@ -1,0 +1,285 @@
+"""FMU files behind the interface of :mod:`orchestrator.core.slave`. The only module that imports fmpy."""
+
+import ctypes
+import hashlib
+import io
+import itertools
+import tempfile
+import weakref
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (FMU2Slave, calloc, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions,
+                       fmi2CallbackLoggerTYPE, free)
+from fmpy.logging import addLoggerProxy
+from fmpy.model_description import ModelDescription, ModelVariable, ValidationError, read_model_description
+
+from .description import Description, Port, Unit
+from .errors import InputRefused, Problem
+from .slave import BOOLEAN, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
+
+_DESCRIPTION_FILE = "modelDescription.xml"
+_BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+_MESSAGES_KEPT = 1000
+
+
+class FmuFile:
+    """An FMU file."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.origin = {"fmu": str(path)}
+
+    def model_description(self) -> bytes:
+        """The modelDescription.xml of the file, after a look at whether this machine can run the FMU.
+
+        Raises:
+            InputRefused: no such file, not an FMU, or no binary for this platform.
+        """
+        if not self.path.is_file():
+            raise self._refusal("there is no such file", "build the FMU or correct the path")
+        content = self.path.read_bytes()
+        self.origin["sha256"] = hashlib.sha256(content).hexdigest()
+        try:
+            with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                names = archive.namelist()
+                xml = archive.read(_DESCRIPTION_FILE) if _DESCRIPTION_FILE in names else None
+        except zipfile.BadZipFile as error:
+            raise self._refusal("is not an FMU: not a zip archive", "export it again") from error
+        if xml is None:
+            raise self._refusal(f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again")
+        self._check_binary(names)
+        return xml
+
+    def _check_binary(self, names: list[str]) -> None:
+        platforms = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and not name.endswith("/")})
+        if fmpy.platform not in platforms:
+            raise self._refusal(f"has no binary for this machine ({fmpy.platform}); it has {', '.join(platforms) or 'none'}",
+                                f"export it for {fmpy.platform}")
+
+    def _refusal(self, what: str, remedy: str) -> InputRefused:
+        return InputRefused([Problem(str(self.path), what, remedy)])
+
+    def instantiate(self, name: str) -> "FmuSlave":
+        """Unpack the file into a temporary folder, load its library and make an instance.
+
+        Raises:
+            InputRefused: the library cannot be loaded, or it makes no instance.
+        """
+        return FmuSlave(self, name)
+
+
+def read_description(xml: bytes) -> Description:
+    """What ``modelDescription.xml`` says.
+
+    Raises:
+        ValueError: it is no FMI 2.0 co-simulation, or cannot be understood.
+    """
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr(_DESCRIPTION_FILE, xml)
+    warnings: tuple[str, ...] = ()
+    try:
+        model = read_model_description(archive)
+    except ValidationError as error:
+        warnings = tuple(error.problems)
+        model = _read_leniently(archive, error)
+    except Exception as error:  # whatever a broken file does to the reader
+        raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
+    if model.fmiVersion != "2.0":
+        raise ValueError(f"is FMI {model.fmiVersion}; this program drives FMI 2.0")
+    if model.coSimulation is None:
+        raise ValueError("is for model exchange only; co-simulation is needed")
+    units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
+    interface = model.coSimulation
+    return Description(model.modelName, model.guid, interface.modelIdentifier, model.generationTool or "",
+                       interface.canBeInstantiatedOnlyOncePerProcess,
+                       interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
+                       {v.name: _port(v, units) for v in model.modelVariables}, warnings)
+
+
+def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:
+    try:
+        return read_model_description(archive, validate=False)
+    except Exception as error:  # whatever a broken file does to the reader
+        raise ValueError(f"its {_DESCRIPTION_FILE} is not valid: {cause}") from error
+
+
+def _unit(unit: Any) -> Unit:
+    if unit.baseUnit is None:
+        return Unit(unit.name)
+    exponents = {symbol: int(getattr(unit.baseUnit, symbol)) for symbol in _BASE_UNITS}
+    return Unit(unit.name, {symbol: n for symbol, n in exponents.items() if n}, unit.baseUnit.factor, unit.baseUnit.offset)
+
+
+def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
+    def attribute(name: str) -> Any:
+        own = getattr(variable, name, None)
+        return own if own is not None or variable.declaredType is None else getattr(variable.declaredType, name)
+
+    def bound(name: str) -> float | None:
+        return None if attribute(name) is None else float(attribute(name))
+
+    unit = attribute("unit")
+    items = variable.declaredType.items if variable.declaredType is not None else []
+    return Port(variable.name, variable.valueReference, INTEGER if variable.type == "Enumeration" else variable.type,
+                variable.causality, None if unit is None else units.get(unit, Unit(unit)), bound("min"), bound("max"),
+                {item.name: int(item.value) for item in items}, variable.start, variable.description or "")
+
+
+_slaves: "weakref.WeakValueDictionary[int, FmuSlave]" = weakref.WeakValueDictionary()
+_keys = itertools.count(1)
+
+
+def _log(environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
+    """Give a message of an FMU to the slave it belongs to. One function for all: fmpy's proxy remembers only the last one."""
+    slave = _slaves.get(environment)
+    if slave is not None and len(slave.messages) < _MESSAGES_KEPT:
+        slave.messages.append((status, message.decode("utf-8", "replace") if message else ""))
+
+
+_LOGGER = fmi2CallbackLoggerTYPE(_log)
+
+
+def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
+    """Callbacks for one instance. pythonfmu logs plain text where FMI asks for a format: a percent sign in it must not be read."""
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = _LOGGER
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    callbacks.componentEnvironment = environment
+    if "PythonFMU" not in generation_tool:
+        addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
+
+
+_MOVE = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+_STEP = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
+
+
+class FmuSlave:
+    """An instance of an FMU. See :class:`orchestrator.core.slave.Slave`."""
+
+    def __init__(self, file: FmuFile, name: str) -> None:
+        self.name = name
+        self.messages: list[tuple[int, str]] = []
+        self._folder = tempfile.TemporaryDirectory(prefix="rockshed_", ignore_cleanup_errors=True)
+        description = read_description(file.model_description())
+        key = next(_keys)
+        _slaves[key] = self
+        try:
+            fmpy.extract(file.path, self._folder.name)
+            self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
+                                  unzipDirectory=self._folder.name)
+            self._fmu.instantiate(callbacks=_callbacks(key, description.generation_tool), loggingOn=True)
+        except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
+            self._folder.cleanup()
+            said = "; ".join(text for _, text in self.messages)
+            raise InputRefused([Problem(name, f"no instance of {file.path} can be made: {error} {said}".rstrip(),
+                                        "see whether the FMU runs in another tool")]) from error
+        self.addresses: Addresses | None = self._find_addresses()
+        self._step = _STEP(self.addresses.do_step)
+        self._setters = {kind: _MOVE(address) for kind, address in (
+            (REAL, self.addresses.set_real), (INTEGER, self.addresses.set_integer), (BOOLEAN, self.addresses.set_boolean))}
+        self._getters = {kind: _MOVE(address) for kind, address in (
+            (REAL, self.addresses.get_real), (INTEGER, self.addresses.get_integer), (BOOLEAN, self.addresses.get_boolean))}
+
+    def _find_addresses(self) -> Addresses:
+        def address(function: str) -> int:
+            return int(ctypes.cast(getattr(self._fmu.dll, function), ctypes.c_void_p).value or 0)
+
+        return Addresses(int(self._fmu.component), *(address(f"fmi2{call}{kind}") for kind in (REAL, INTEGER, BOOLEAN)
+                                                     for call in ("Set", "Get")), address("fmi2DoStep"))
+
+    def set(self, references: References, values: Values, kind: str = REAL) -> int:
+        """Set variables of one kind."""
+        if kind != REAL:
+            values = values.astype(np.int32)  # type: ignore[assignment]
+        return int(self._setters[kind](self._fmu.component, references.ctypes.data, references.size, values.ctypes.data))
+
+    def get(self, references: References, out: Values, kind: str = REAL) -> int:
+        """Read variables of one kind into ``out``."""
+        if kind == REAL:
+            return int(self._getters[kind](self._fmu.component, references.ctypes.data, references.size, out.ctypes.data))
+        whole = np.zeros(references.size, np.int32)
+        status = int(self._getters[kind](self._fmu.component, references.ctypes.data, references.size, whole.ctypes.data))
+        out[:] = whole
+        return status
+
+    def set_text(self, reference: int, text: str) -> int:
+        """Set a variable of the kind String."""
+        return self._status(self._fmu.setString, [reference], [text])
+
+    def setup_experiment(self, start: float, stop: float) -> int:
+        """Tell start and end of the run (s)."""
+        return self._status(self._fmu.setupExperiment, None, start, stop)
+
+    def enter_initialisation(self) -> int:
+        """Enter the initialisation mode."""
+        return self._status(self._fmu.enterInitializationMode)
+
+    def exit_initialisation(self) -> int:
+        """Leave the initialisation mode."""
+        return self._status(self._fmu.exitInitializationMode)
+
+    def step(self, time: float, step: float) -> int:
+        """Advance from ``time`` by ``step`` (s)."""
+        return int(self._step(self._fmu.component, time, step, 1))
+
+    def state(self) -> bytes:
+        """The complete state, serialized.
+
+        Raises:
+            RuntimeError: a call failed.
+        """
+        try:
+            state = self._fmu.getFMUState()
+            try:
+                return bytes(self._fmu.serializeFMUState(state))
+            finally:
+                self._fmu.freeFMUState(state)
+        except FMICallException as error:
+            raise RuntimeError(f"{self.name}: the state cannot be read: {error}") from error
+
+    def restore(self, content: bytes) -> None:
+        """Take over a state of :meth:`state`.
+
+        Raises:
+            RuntimeError: a call failed.
+        """
+        try:
+            state = self._fmu.deserializeFMUState(content)
+            try:
+                self._fmu.setFMUState(state)
+            finally:
+                self._fmu.freeFMUState(state)
+        except FMICallException as error:
+            raise RuntimeError(f"{self.name}: the state cannot be restored: {error}") from error
+
+    def reset(self) -> int:
+        """Back to the state after instantiation."""
+        return self._status(self._fmu.reset)
+
+    def terminate(self) -> int:
+        """End the run."""
+        return self._status(self._fmu.terminate)
+
+    def free(self) -> None:
+        """Free the instance, unload the library and remove the unpacked files."""
+        self._fmu.freeInstance()
+        self._folder.cleanup()
+
+    def _status(self, call: Callable[..., Any], *arguments: Any) -> int:
+        """Status of a call of fmpy, which raises an exception for a bad one; the exception is noted where the FMU is silent."""
+        count = len(self.messages)
+        try:
+            return int(call(*arguments) or OK)
+        except FMICallException as error:
+            if len(self.messages) == count:
+                self.messages.append((error.status, f"{error.function} returned {STATUS_NAMES[error.status]}"))
+            return int(error.status)
