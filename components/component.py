@@ -156,7 +156,7 @@ class Instance:
         names = list(self.references)
         for index, (variable, _) in enumerate(self._elements()):
             if variable.causality is not Causality.OUTPUT:
-                found += _value_problems(variable, names[index], float(self.w[index]))
+                found += value_problems(variable, names[index], float(self.w[index]))
         return found
 
     def initialise(self) -> None:
@@ -221,7 +221,8 @@ class Instance:
         self.k[:] = np.frombuffer(content, np.int64, self.k.size, len(expected) + values.nbytes)
 
 
-def _value_problems(variable: Variable, name: str, value: float) -> list[str]:
+def value_problems(variable: Variable, name: str, value: float) -> list[str]:
+    """What is wrong with a value of the variable: not finite, out of range, not whole. Empty if nothing is."""
     low = -np.inf if variable.minimum is None else variable.minimum
     high = np.inf if variable.maximum is None else variable.maximum
     unit = "" if variable.unit == "1" else f" {variable.unit}"

@@ -1,0 +1,141 @@
+"""The model description of an FMU, derived from a component's declarations: the ``modelDescription.xml`` of FMI 2.0."""
+
+from collections.abc import Mapping
+from importlib.metadata import version
+
+from lxml import etree
+
+from components.component import Component
+from components.ports import Causality, Kind, Sizes, Variable
+from components.units import UNITS
+
+from .python_fmu import LOG_CATEGORIES
+
+_CAPABILITIES = {
+    # The FMU needs a Python with numpy and numba on the computer; the name of the tool stands in generationTool.
+    "needsExecutionTool": "true",
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "false",
+    "maxOutputDerivativeOrder": "0",
+    "canRunAsynchronuously": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    # pythonfmu's binary and Python allocate for themselves
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+    "providesDirectionalDerivative": "false",
+}
+
+_VARIABILITY = {Causality.PARAMETER: "fixed", Causality.INPUT: "continuous", Causality.OUTPUT: "continuous"}
+
+
+def model_description(component: Component, sizes: Mapping[str, int], guid: str) -> bytes:
+    """The complete ``modelDescription.xml``. The index of a variable is its value reference + 1; the sizes stand last."""
+    root = etree.Element("fmiModelDescription", {
+        "fmiVersion": "2.0", "modelName": component.name, "guid": guid, "description": component.title,
+        "author": "the rockshed authors", "version": version("rockshed"), "copyright": "the rockshed authors", "license": "MIT",
+        "generationTool": f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; "
+                          "runs in Python >= 3.11 with numpy and numba",
+        "variableNamingConvention": "structured"})
+    etree.SubElement(root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES})
+    _unit_definitions(root, component)
+    _type_definitions(root, component)
+    categories = etree.SubElement(root, "LogCategories")
+    for name, description in LOG_CATEGORIES.items():
+        etree.SubElement(categories, "Category", name=name, description=description)
+    etree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(component.default_stop_time),
+                     stepSize=repr(component.default_step))
+    _model_variables(root, component, sizes)
+    _model_structure(root, component, sizes)
+    return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
+
+
+def _used_units(component: Component) -> list[str]:
+    used = {v.unit for v in component.layout.variables if v.kind is Kind.REAL}
+    return [unit for unit in UNITS if unit in used]
+
+
+def _unit_definitions(root: etree._Element, component: Component) -> None:
+    definitions = etree.SubElement(root, "UnitDefinitions")
+    for name in _used_units(component):
+        exponents = {base: str(exponent) for base, exponent in UNITS[name].base.items()}
+        factor = {} if UNITS[name].factor == 1.0 else {"factor": repr(UNITS[name].factor)}
+        etree.SubElement(etree.SubElement(definitions, "Unit", name=name), "BaseUnit", {**exponents, **factor})
+
+
+def _type_definitions(root: etree._Element, component: Component) -> None:
+    definitions = etree.SubElement(root, "TypeDefinitions")
+    for unit in _used_units(component):
+        simple_type = etree.SubElement(definitions, "SimpleType", name=UNITS[unit].quantity)
+        etree.SubElement(simple_type, "Real", quantity=UNITS[unit].quantity, unit=unit)
+    for variable in component.layout.ordered:
+        if variable.kind is Kind.ENUMERATION:
+            simple_type = etree.SubElement(definitions, "SimpleType", name=_enumeration_name(component, variable),
+                                           description=variable.description)
+            enumeration = etree.SubElement(simple_type, "Enumeration")
+            for value, word in enumerate(variable.choices, start=1):
+                etree.SubElement(enumeration, "Item", name=word, value=str(value))
+
+
+def _enumeration_name(component: Component, variable: Variable) -> str:
+    return f"{component.name}.{variable.name}"
+
+
+def _model_variables(root: etree._Element, component: Component, sizes: Sizes) -> None:
+    variables = etree.SubElement(root, "ModelVariables")
+    reference = 0
+    for variable in component.layout.ordered:
+        for number, name in enumerate(variable.element_names(sizes)):
+            _variable(variables, component, variable, name, reference, variable.start_at(number, sizes))
+            reference += 1
+    for name, value in sizes.items():
+        constant = etree.SubElement(variables, "ScalarVariable", {
+            "name": name, "valueReference": str(reference), "description": component.sizes[name].description,
+            "causality": "local", "variability": "constant", "initial": "exact"})
+        etree.SubElement(constant, "Integer", start=str(value))
+        reference += 1
+
+
+def _variable(parent: etree._Element, component: Component, variable: Variable, name: str, reference: int, start: float) -> None:
+    scalar = etree.SubElement(parent, "ScalarVariable", {
+        "name": name, "valueReference": str(reference), "description": variable.description,
+        "causality": variable.causality.value, "variability": _VARIABILITY[variable.causality]})
+    if variable.causality is not Causality.INPUT:
+        scalar.set("initial", "exact" if variable.causality is Causality.PARAMETER else "calculated")
+    attributes = {}
+    if variable.kind is Kind.REAL:
+        attributes = {"declaredType": UNITS[variable.unit].quantity, "unit": variable.unit}
+    elif variable.kind is Kind.ENUMERATION:
+        attributes = {"declaredType": _enumeration_name(component, variable)}
+    if variable.kind is not Kind.BOOLEAN:
+        bounds = {"min": variable.minimum, "max": variable.maximum}
+        attributes |= {key: literal(variable.kind, bound) for key, bound in bounds.items() if bound is not None}
+    if variable.causality is not Causality.OUTPUT:
+        attributes["start"] = literal(variable.kind, start)
+    etree.SubElement(scalar, variable.kind.value, attributes)
+
+
+def literal(kind: Kind, value: float) -> str:
+    """A value as XML writes it for a variable of this kind."""
+    if kind is Kind.REAL:
+        return repr(float(value))
+    return str(bool(value)).lower() if kind is Kind.BOOLEAN else str(int(value))
+
+
+def _model_structure(root: etree._Element, component: Component, sizes: Sizes) -> None:
+    """No output depends on an input between two steps; what it depends on at the start is declared with it."""
+    indices: dict[str, list[int]] = {}
+    for variable in component.layout.ordered:
+        first = 1 + sum(map(len, indices.values()))
+        indices[variable.name] = list(range(first, first + len(variable.element_names(sizes))))
+    structure = etree.SubElement(root, "ModelStructure")
+    outputs = etree.SubElement(structure, "Outputs")
+    unknowns = etree.SubElement(structure, "InitialUnknowns")
+    for variable in component.layout.ordered:
+        if variable.causality is Causality.OUTPUT:
+            known = variable.initial_dependencies
+            # without the attribute an unknown depends on everything known: all parameters and inputs
+            depends = {} if known is None else {"dependencies": " ".join(str(i) for name in known for i in indices[name])}
+            for index in indices[variable.name]:
+                etree.SubElement(outputs, "Unknown", index=str(index), dependencies="")
+                etree.SubElement(unknowns, "Unknown", {"index": str(index), **depends})
