@@ -1,0 +1,30 @@
+"""Random numbers from a counter: number i of stream ``seed`` is a function of the two, so any of them can be had in any order.
+
+SplitMix64 (Steele, Lea and Flood 2014) as a hash of seed and counter.
+"""
+
+import numpy as np
+
+from .compilation import kernel
+
+_STREAM = np.uint64(0x9E3779B97F4A7C15)
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_2 = np.uint64(0x94D049BB133111EB)
+_30, _27, _31, _11 = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
+_ONE = np.uint64(1)
+_UNIT = 1.0 / (1 << 53)
+
+
+@kernel
+def mix(z):
+    """The finaliser of SplitMix64: a bijection of 64-bit numbers that scatters them."""
+    z = (z ^ (z >> _30)) * _MIX_1
+    z = (z ^ (z >> _27)) * _MIX_2
+    return z ^ (z >> _31)
+
+
+@kernel
+def uniform(seed, counter):
+    """Number ``counter`` of stream ``seed``, uniform in [0, 1)."""
+    start = mix((np.uint64(seed) + _ONE) * _STREAM)
+    return float(mix(start + (np.uint64(counter) + _ONE) * _STREAM) >> _11) * _UNIT

@@ -1,0 +1,30 @@
+"""The sand cushion: discs that touch, after the distinct element method of Sonoda et al. (1993)."""
+
+from pathlib import Path
+
+from ..component import Component
+from . import kernel
+from .declarations import LAYOUT, SIZES
+
+COMPONENT = Component(
+    name="SandCushion",
+    title="Sand cushion: 2-D distinct elements",
+    layout=LAYOUT,
+    initialise=kernel.initialise,
+    evaluate=kernel.evaluate,
+    step=kernel.step,
+    folder=Path(__file__).parent,
+    sizes=SIZES,
+    faults={
+        kernel.LIST_FULL: "there is no more room for contact candidates: the discs are packed closer than 12 candidates a disc; "
+                          "reduce disc.spread ({disc.spread}) or the overlap of the discs",
+        kernel.DIVERGED: "the energy of the discs is no longer a finite number: the internal step {internal_step} s stands against a "
+                         "stable step of {stable_step} s; reduce internal_step or the exchange step",
+        kernel.ROCK_INSIDE: "the rock starts inside the sand: its lowest point lies {penetration} m under the surface at "
+                            "{surface_height} m; raise the rock's position0.y by at least that much",
+        kernel.BEAM_TOO_NARROW: "the beam is narrower than the cushion, whose box begins at box.left = {box.left} m and is "
+                                "box.width = {box.width} m wide: make the beam longer, move the box or set base = floor",
+        kernel.BEAM_UNORDERED: "the beam discs must follow each other from left to right (beam.position.x[i] ascending)",
+    },
+    default_step=1e-5,
+)

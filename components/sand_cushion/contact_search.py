@@ -1,0 +1,200 @@
+"""Candidates for contact: a Verlet list made on a grid of cells, whose contact springs survive a rebuild.
+
+Bodies are numbered: discs 0 .. N-1, the rock N, beam discs N+1 .. N+M, then the planes: left wall, right wall, base. The list
+has a row for each disc and one for the rock. Row i names its partners: first discs with a higher number, from ``row[2 i]``,
+then rock, beam discs and planes, from ``row[2 i + 1]``. A pair is listed while its gap is below the skin; the list is made
+anew before two bodies can have closed a gap of one skin.
+"""
+
+import math
+
+from ..compilation import kernel
+from ..ports import view
+from .declarations import BEAM_DISCS, BEAM_SURFACE, LAYOUT, PLANES, ROW, SUM
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+SKIN = 0.6
+"""Largest gap of a listed pair, in radii of a sand disc."""
+
+
+@kernel
+def disc_count(k):
+    """Number of sand discs N."""
+    return k[A.angle + 1]
+
+
+@kernel
+def beam_count(k):
+    """Number of beam discs M."""
+    return k[A.beam_position_x + 1]
+
+
+@kernel
+def boundary_travel(body, reference, n, m):
+    """Longest way (m) that the rock or a beam disc has gone since the list was made."""
+    longest = 0.0
+    for b in range(m + 1):
+        dx = body[ROW * (n + b)] - reference[2 * b]
+        dy = body[ROW * (n + b) + 1] - reference[2 * b + 1]
+        longest = max(longest, dx * dx + dy * dy)
+    return math.sqrt(longest)
+
+
+@kernel
+def is_stale(w, x, k):
+    """Whether two bodies may have closed a gap of one skin since the list was made."""
+    n, m = disc_count(k), beam_count(k)
+    travel = view(x, k, A.sums)[SUM.travelled]
+    others = boundary_travel(view(x, k, A.body), view(x, k, A.boundary_reference), n, m)
+    return 2.0 * max(travel, others) > SKIN * w[V.disc_radius]
+
+
+@kernel
+def sort_into_cells(body, n, cell_start, cell_disc, disc_cell, left, bottom, size, columns, rows):
+    """Counting sort of the discs into cells; discs outside the grid count to its rim."""
+    for c in range(columns * rows + 1):
+        cell_start[c] = 0
+    for i in range(n):
+        column = min(columns - 1, max(0, int((body[ROW * i] - left) / size)))
+        line = min(rows - 1, max(0, int((body[ROW * i + 1] - bottom) / size)))
+        disc_cell[i] = line * columns + column
+        cell_start[disc_cell[i] + 1] += 1
+    for c in range(columns * rows):
+        cell_start[c + 1] += cell_start[c]
+    for i in range(n - 1, -1, -1):  # backwards, so that a cell lists its discs in ascending order
+        cell_start[disc_cell[i] + 1] -= 1
+        cell_disc[cell_start[disc_cell[i] + 1]] = i
+
+
+@kernel
+def disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, partner, at):
+    """List the discs near disc i that have a higher number. Returns the end of the list, or -1 where there is no room."""
+    xi, yi, ri = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5]
+    line, column = disc_cell[i] // columns, disc_cell[i] % columns
+    for l in range(max(0, line - 1), min(rows, line + 2)):
+        for c in range(l * columns + max(0, column - 1), l * columns + min(columns, column + 2)):
+            # after the backwards sort, entry c + 1 of cell_start is the begin of cell c
+            end = n if c + 2 > columns * rows else cell_start[c + 2]
+            for q in range(cell_start[c + 1], end):
+                j = cell_disc[q]
+                if j > i:
+                    dx, dy = body[ROW * j] - xi, body[ROW * j + 1] - yi
+                    reach = ri + body[ROW * j + 5] + skin
+                    if dx * dx + dy * dy < reach * reach:
+                        if at >= partner.size:
+                            return -1
+                        partner[at] = j
+                        at += 1
+    return at
+
+
+@kernel
+def boundary_partners(i, w, body, n, m, skin, partner, at):
+    """List rock, beam discs and planes near disc i, or, for i = N, beam discs and planes near the rock."""
+    if at + m + 1 + PLANES > partner.size:
+        return -1
+    xi, yi, reach = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5] + skin
+    for b in range(n if i < n else n + 1, n + m + 1):
+        if b > n and w[V.base] != BEAM_DISCS:
+            break
+        dx, dy, distance = body[ROW * b] - xi, body[ROW * b + 1] - yi, reach + body[ROW * b + 5]
+        if dx * dx + dy * dy < distance * distance:
+            partner[at] = b
+            at += 1
+    if xi - w[V.box_left] < reach:
+        partner[at] = n + m + 1
+        at += 1
+    if w[V.box_left] + w[V.box_width] - xi < reach:
+        partner[at] = n + m + 2
+        at += 1
+    if w[V.base] != BEAM_DISCS and yi - base_top(w, body, n, m) < reach:
+        partner[at] = n + m + 3
+        at += 1
+    return at
+
+
+@kernel
+def base_top(w, body, n, m):
+    """Highest point (m) of the base when it is a surface."""
+    if w[V.base] != BEAM_SURFACE:
+        return w[V.base_y]
+    top = -math.inf
+    for b in range(n + 1, n + m + 1):
+        top = max(top, body[ROW * b + 1] + body[ROW * b + 5])
+    return top
+
+
+@kernel
+def inherit(i, row, partner, spring, roll, row_before, partner_before, spring_before, roll_before):
+    """Give the pairs of row i the springs they had in the list before."""
+    for p in range(row[2 * i], row[2 * i + 2]):
+        spring[p] = 0.0
+        roll[p] = 0.0
+        for q in range(row_before[2 * i], row_before[2 * i + 2]):
+            if partner_before[q] == partner[p]:
+                spring[p] = spring_before[q]
+                roll[p] = roll_before[q]
+                break
+
+
+@kernel
+def forget(x, k):
+    """Empty the list, and with it all contact springs."""
+    row = view(k, k, A.row)
+    for i in range(row.size):
+        row[i] = 0
+
+
+@kernel
+def keep_for_inheritance(x, k):
+    """Set the present list aside."""
+    n = disc_count(k)
+    row, row_before = view(k, k, A.row), view(k, k, A.row_before)
+    partner, partner_before = view(k, k, A.partner), view(k, k, A.partner_before)
+    spring, spring_before = view(x, k, A.spring), view(x, k, A.spring_before)
+    roll, roll_before = view(x, k, A.roll), view(x, k, A.roll_before)
+    for i in range(2 * (n + 2)):
+        row_before[i] = row[i]
+    for p in range(row[2 * (n + 1)]):
+        partner_before[p] = partner[p]
+        spring_before[p] = spring[p]
+        roll_before[p] = roll[p]
+
+
+@kernel
+def rebuild(w, x, k):
+    """Make the list anew. Returns False where the room for it does not suffice."""
+    n, m = disc_count(k), beam_count(k)
+    body = view(x, k, A.body)
+    row, partner = view(k, k, A.row), view(k, k, A.partner)
+    cell_start, cell_disc, disc_cell = view(k, k, A.cell_start), view(k, k, A.cell_disc), view(k, k, A.disc_cell)
+    skin = SKIN * w[V.disc_radius]
+    keep_for_inheritance(x, k)
+    size = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) + skin
+    bottom = base_top(w, body, n, m) if w[V.base] != BEAM_DISCS else body[ROW * (n + 1) + 1]
+    cells = cell_start.size - 1
+    columns = min(cells, max(1, int(w[V.box_width] / size)))
+    rows = max(1, cells // columns)
+    sort_into_cells(body, n, cell_start, cell_disc, disc_cell, w[V.box_left], bottom, max(size, w[V.box_width] / columns),
+                    columns, rows)
+    at = 0
+    for i in range(n + 1):
+        row[2 * i] = at
+        if i < n:
+            at = disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, partner, at)
+            if at < 0:
+                return False
+        row[2 * i + 1] = at
+        at = boundary_partners(i, w, body, n, m, skin, partner, at)
+        if at < 0:
+            return False
+    row[2 * n + 2] = at
+    for i in range(n + 1):
+        inherit(i, row, partner, view(x, k, A.spring), view(x, k, A.roll), view(k, k, A.row_before),
+                view(k, k, A.partner_before), view(x, k, A.spring_before), view(x, k, A.roll_before))
+    reference = view(x, k, A.boundary_reference)
+    for b in range(m + 1):
+        reference[2 * b], reference[2 * b + 1] = body[ROW * (n + b)], body[ROW * (n + b) + 1]
+    view(x, k, A.sums)[SUM.travelled] = 0.0
+    return True

@@ -1,0 +1,173 @@
+"""Variables of the sand cushion. Equations, frame, signs and sources: README.md beside this file."""
+
+from collections import namedtuple
+
+from ..component import Size
+from ..ports import Layout, Sizes, State, choice, count, inp, out, param
+from ..stepping import internal_step, stable_step
+from ..units import cm, deg, kgf
+
+SQUARE, HEXAGONAL, RANDOM = 1, 2, 3
+FREE, LOCKED = 1, 2
+FLOOR, BEAM_SURFACE, BEAM_DISCS = 1, 2, 3
+FIXED, ON_BEAM = 1, 2
+HELD, LINEAR = 1, 2
+LAST, MEAN = 1, 2
+
+SIZES = {
+    "discs": Size(370, 1, 1_000_000, "number of sand discs"),
+    "elements": Size(24, 1, 2_000, "number of beam discs that the sand may touch"),
+}
+
+CALIBRATED_STIFFNESS_FACTOR = 0.42
+"""With locked rotation: fitted to table 5 of the paper, not derived. The static test (fig. 13) alone would ask for 0.37."""
+
+_BALL_RADIUS = 4.95 * cm
+_BEAM_RADIUS = 2.5 * cm
+_TABLE_3 = "Sonoda et al. 1993, table 3"
+_EQ_1 = "Sonoda et al. 1993, eq. (1)"
+
+ROW = 8
+"""Numbers per body in ``body``: x, y, vx, vy, omega, radius, 1/mass, mass^(1/4)."""
+FORCE_ROW = 3
+"""Numbers per body in ``load``: force to the right, force upwards, torque."""
+PARTNERS = 12
+"""Room for contact candidates, per disc on average."""
+PLANES = 3
+"""Left wall, right wall, base."""
+
+Kind = namedtuple("Kind", "sand rock base wall rock_base rock_wall")
+KIND = Kind(*range(6))
+"""Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
+Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling")
+LAW = Law(*range(6))
+"""Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance."""
+
+Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling rock beam walls "
+                        "force_x force_y torque transmitted travelled beam_key")
+SUM = Sum(*range(14))
+"""Running sums that a kernel keeps between two steps in ``sums``."""
+
+
+def _bodies(sizes: Sizes) -> int:
+    return sizes["discs"] + 1 + sizes["elements"]
+
+
+def _capacity(sizes: Sizes) -> int:
+    return PARTNERS * sizes["discs"] + 4 * (sizes["elements"] + PLANES) + 64
+
+
+def _cells(sizes: Sizes) -> int:
+    return 4 * sizes["discs"] + 64
+
+
+def _beam_x(number: int, sizes: Sizes) -> float:
+    return (2 * number + 1) * _BEAM_RADIUS
+
+
+LAYOUT = Layout(
+    variables=(
+        # the cushion
+        param("box.left", "x of the left side wall's inner face", 41.5 * cm, "m"),
+        param("box.width", "distance of the side walls", 37 * cm, "m", minimum=1e-6, source="Sonoda et al. 1993, fig. 2"),
+        param("base.y", "y of the floor, used when base = floor", 0.0, "m"),
+        param("disc.radius", "radius of a sand disc (mean radius of a random packing)", 0.5 * cm, "m", minimum=1e-9,
+              source="Sonoda et al. 1993, sec. 3 (2): diameter 1.0 cm"),
+        param("disc.spread", "random packing: radii are uniform within radius * (1 - spread, 1 + spread)", 0.0,
+              minimum=0.0, maximum=0.5),
+        param("depth", "effective depth dL of the cushion, into the picture", 10 * cm, "m", minimum=1e-6,
+              source="Sonoda et al. 1993, sec. 3 (2)"),
+        param("unit_weight", "mass density of a disc", 0.0018 * kgf / cm ** 3 / kgf, "kg/m3", minimum=1e-6, source=_TABLE_3),
+        param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
+        choice("packing", "arrangement of the discs at the start", ("square", "hexagonal", "random"), "square"),
+        param("lattice_shift", "square and hexagonal packing: each disc is moved at random by up to this part of its diameter", 0.0,
+              minimum=0.0, maximum=0.5),
+        count("seed", "random packing and lattice shift: number of the sample", 1, minimum=0, maximum=2**31 - 1),
+        param("settling.time", "longest time of settling under gravity before the start (at t < 0, damped)", 0.5, "s", minimum=0.0),
+        # the contact law
+        param("modulus", "fictitious modulus E_bar of the sand", 30.4 * kgf / cm ** 2, "Pa", minimum=1e-6,
+              source="Sonoda et al. 1993, table 4, test 4"),
+        choice("rotation", "locked: a disc's rotation is left out (calibrated model); free: three freedoms a disc (literal model)",
+               ("free", "locked"), "locked"),
+        param("stiffness_factor", "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 is the paper's "
+              "literal equation", CALIBRATED_STIFFNESS_FACTOR, minimum=1e-9),
+        param("damping", "damping constant h of normal and tangential dashpots", 0.2, minimum=0.0, source=_TABLE_3),
+        param("tangential_ratio", "s = k_s / k_n", 0.25, minimum=1e-9, source=_TABLE_3),
+        param("friction_angle", "angle of friction phi; mu = tan(phi)", 30 * deg, "rad", minimum=0.0, maximum=1.5, source=_TABLE_3),
+        param("rolling_resistance", "rolling friction: largest rolling moment / (normal force * radius); with free rotation", 0.0,
+              minimum=0.0),
+        param("rock.stiffness_ratio", "k_n rock-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
+        param("base.stiffness_ratio", "k_n base-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
+        param("wall.stiffness_ratio", "k_n wall-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
+        param("rock_base.stiffness_ratio", "k_n rock-base and rock-wall / k_n sand-sand; the paper gives none", 10.0, minimum=1e-9),
+        param("wall.friction_angle", "angle of friction at the side walls", 30 * deg, "rad", minimum=0.0, maximum=1.5),
+        # what the cushion rests on and between
+        choice("base", "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's discs as discs",
+               ("floor", "beam_surface", "beam_discs"), "beam_discs"),
+        choice("walls", "side walls fixed in space, or standing on the beam", ("fixed", "on_beam"), "fixed"),
+        param("rock.radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6),
+        param("rock.mass", "mass of the rock, for the damping of its contact with base and walls", 4.0, "kg", minimum=1e-6),
+        param("beam.radius", "radius of a beam disc", _BEAM_RADIUS, "m", minimum=1e-6),
+        # integration and exchange
+        internal_step(1e-5),
+        choice("kinematics", "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
+               "given (linear)", ("held", "linear"), "held"),
+        choice("forces", "forces returned: those of the last internal step, or the mean over the communication step, which keeps "
+               "the impulse", ("last", "mean"), "last"),
+        # inputs
+        inp("rock.position.x", "position of the rock's centre, to the right", "m", 0.6),
+        inp("rock.position.y", "position of the rock's centre, upwards", "m", 1.0),
+        inp("rock.angle", "angle of the rock, counter-clockwise", "rad"),
+        inp("rock.velocity.x", "velocity of the rock, to the right", "m/s"),
+        inp("rock.velocity.y", "velocity of the rock, upwards", "m/s"),
+        inp("rock.angular_velocity", "angular velocity of the rock, counter-clockwise", "rad/s"),
+        inp("beam.position.x", "position of a beam disc's centre, to the right", "m", _beam_x, size="elements"),
+        inp("beam.position.y", "position of a beam disc's centre, upwards", "m", -_BEAM_RADIUS, size="elements"),
+        inp("beam.angle", "angle of a beam disc, counter-clockwise", "rad", size="elements"),
+        inp("beam.velocity.x", "velocity of a beam disc, to the right", "m/s", size="elements"),
+        inp("beam.velocity.y", "velocity of a beam disc, upwards", "m/s", size="elements"),
+        inp("beam.angular_velocity", "angular velocity of a beam disc, counter-clockwise", "rad/s", size="elements"),
+        # outputs
+        out("rock.force.x", "contact force on the rock, to the right", "N"),
+        out("rock.force.y", "contact force on the rock, upwards", "N"),
+        out("rock.torque", "torque of the contact forces on the rock about its centre, counter-clockwise", "N.m"),
+        out("beam.force.x", "contact force on a beam disc, to the right", "N", size="elements"),
+        out("beam.force.y", "contact force on a beam disc, upwards", "N", size="elements"),
+        out("beam.torque", "torque of the contact forces on a beam disc about its centre, counter-clockwise", "N.m", size="elements"),
+        out("transmitted_force", "force of sand and rock on base (and on walls that stand on the beam), positive downwards", "N",
+            source="Sonoda et al. 1993, eq. (4)"),
+        out("penetration", "depth of the rock's lowest point under the sand's surface at the start; negative above it", "m"),
+        out("surface_height", "height of the sand's surface at the start, under the rock", "m"),
+        stable_step(),
+        out("energy.kinetic", "kinetic energy of the discs", "J"),
+        out("energy.elastic", "elastic energy of all contacts, normal, tangential and rolling", "J"),
+        out("energy.gravity", "potential energy of the discs in gravity, zero at y = 0", "J"),
+        out("energy.normal_dashpot", "energy dissipated in normal dashpots", "J"),
+        out("energy.tangential_dashpot", "energy dissipated in tangential dashpots", "J"),
+        out("energy.sliding", "energy dissipated in sliding contacts", "J"),
+        out("energy.rolling", "energy dissipated by rolling resistance", "J"),
+        out("energy.work.rock", "work that the rock has done on the sand", "J"),
+        out("energy.work.beam", "work that the beam has done on the sand (and on the walls standing on it)", "J"),
+        out("energy.residual", "kinetic + elastic + gravity + dissipated - work, minus the sum at the start", "J"),
+        out("energy.start", "kinetic + elastic + gravity at the start", "J"),
+    ),
+    states=(
+        State("body", lambda n: ROW * _bodies(n)),
+        State("angle", lambda n: n["discs"]),
+        State("load", lambda n: FORCE_ROW * _bodies(n)),
+        State("spring", _capacity),
+        State("spring_before", _capacity),
+        State("roll", _capacity),
+        State("roll_before", _capacity),
+        State("law", lambda n: len(KIND) * len(LAW)),
+        State("sums", lambda n: len(SUM)),
+        State("boundary_reference", lambda n: 2 * (n["elements"] + 1)),
+        State("row", lambda n: 2 * (n["discs"] + 2), integer=True),
+        State("row_before", lambda n: 2 * (n["discs"] + 2), integer=True),
+        State("partner", _capacity, integer=True),
+        State("partner_before", _capacity, integer=True),
+        State("cell_start", lambda n: _cells(n) + 1, integer=True),
+        State("cell_disc", lambda n: n["discs"], integer=True),
+        State("disc_cell", lambda n: n["discs"], integer=True),
+    ),
+)

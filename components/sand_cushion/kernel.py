@@ -1,0 +1,403 @@
+"""The sand cushion in time: start, settling, steps, and what it tells the outside."""
+
+import math
+
+from ..compilation import kernel
+from ..component import OK
+from ..ports import view
+from ..stepping import substep_count
+from .contact_search import beam_count, disc_count, forget, is_stale, rebuild
+from .declarations import BEAM_DISCS, FLOOR, FORCE_ROW, FREE, KIND, LAW, LAYOUT, LINEAR, MEAN, RANDOM, ROW, SUM
+from .forces import contact_forces
+from .packing import pack
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED = 1, 2, 3, 4, 5
+
+_FAR = 1e6
+"""Height (m) at which the rock waits while the sand settles."""
+_TOUCHING = 1e-9
+"""Overlap (m) of rock and sand at the start that passes as touching."""
+_SETTLING_STEP = 0.4
+"""Step of the settling, in stable steps."""
+_SETTLING_RATE = 30.0
+"""Damping of all motion while settling (1/s)."""
+_AT_REST = 1e-6
+"""Sand is at rest when no disc is accelerated by more than this part of gravity, nor moves faster than this times sqrt(g r)."""
+_CHECK_EVERY = 50
+
+
+# --- parameters to laws -------------------------------------------------------------------------------------------------------
+
+@kernel
+def set_law(kind, stiffness, friction, w, law):
+    """Constants of one kind of contact from its k_n (N/m), eq. (1): c = 2 h sqrt(m k), k_s = s k_n."""
+    at = kind * len(LAW)
+    tangential = w[V.tangential_ratio] * stiffness
+    law[at + LAW.normal] = stiffness
+    law[at + LAW.damping] = 2.0 * w[V.damping] * math.sqrt(stiffness)
+    law[at + LAW.tangential] = tangential
+    law[at + LAW.tangential_damping] = 2.0 * w[V.damping] * math.sqrt(tangential)
+    law[at + LAW.friction] = math.tan(friction)
+    law[at + LAW.rolling] = w[V.rolling_resistance]
+
+
+@kernel
+def sand_stiffness(w):
+    """k_n = E_bar dD dL / R_ij0 between two discs (eq. 1) with dD = R_ij0, the distance of centres: k_n = E_bar dL."""
+    return w[V.stiffness_factor] * w[V.modulus] * w[V.depth]
+
+
+@kernel
+def stiffness_against(radius, w):
+    """k_n (eq. 1) between a sand disc and a body of another radius: dD is the sand disc's diameter, R_ij0 the sum of radii."""
+    return sand_stiffness(w) * 2.0 * w[V.disc_radius] / (w[V.disc_radius] + radius)
+
+
+@kernel
+def boundary_stiffness(kind, w):
+    """k_n (N/m) of a kind of contact with rock, base or wall. A plane counts as the disc's mirror image."""
+    if kind == KIND.rock:
+        return w[V.rock_stiffness_ratio] * stiffness_against(w[V.rock_radius], w)
+    if kind == KIND.base:
+        radius = w[V.beam_radius] if w[V.base] == BEAM_DISCS else w[V.disc_radius]
+        return w[V.base_stiffness_ratio] * stiffness_against(radius, w)
+    if kind == KIND.wall:
+        return w[V.wall_stiffness_ratio] * sand_stiffness(w)
+    return w[V.rock_base_stiffness_ratio] * sand_stiffness(w)
+
+
+@kernel
+def set_laws(w, x, k):
+    """Constants of all kinds of contact."""
+    law = view(x, k, A.law)
+    friction, wall_friction = w[V.friction_angle], w[V.wall_friction_angle]
+    set_law(KIND.sand, sand_stiffness(w), friction, w, law)
+    for kind in (KIND.rock, KIND.base, KIND.rock_base):
+        set_law(kind, boundary_stiffness(kind, w), friction, w, law)
+    for kind in (KIND.wall, KIND.rock_wall):
+        set_law(kind, boundary_stiffness(kind, w), wall_friction, w, law)
+
+
+@kernel
+def stable_step_of(w):
+    """Step below which the integration of the lightest disc between six of its neighbours is stable.
+
+    For a contact, (n.(u_j - u_i))^2 <= 2 (n.u_i)^2 + 2 (n.u_j)^2; with six neighbours sum n n^T = 3 I. So
+    omega^2 <= 2 * 3 (k_n + k_s) / m, and 1 + 2 times the tangential part where discs turn (I = m r^2 / 2). Velocity lags
+    half a step behind in the dashpots: dt <= 2 / omega (sqrt(1 + z^2) - z), z the damping of that mode.
+    """
+    least = w[V.disc_radius] * (1.0 - (w[V.disc_spread] if w[V.packing] == RANDOM else 0.0))
+    mass = w[V.unit_weight] * math.pi * least * least * w[V.depth]
+    stiffness = sand_stiffness(w)
+    for kind in (KIND.rock, KIND.base, KIND.wall):
+        stiffness = max(stiffness, boundary_stiffness(kind, w))
+    turning = 3.0 if w[V.rotation] == FREE else 1.0
+    omega = math.sqrt(6.0 * stiffness * (1.0 + turning * w[V.tangential_ratio]) / mass)
+    z = w[V.damping] * omega / math.sqrt(stiffness / mass)
+    return 2.0 / omega * (math.sqrt(1.0 + z * z) - z)
+
+
+# --- rock and beam as given ----------------------------------------------------------------------------------------------------
+
+@kernel
+def set_boundaries(ahead, w, x, k):
+    """Put rock and beam discs where the inputs say, ``ahead`` seconds later; count the work their contact forces do on the sand.
+
+    Body rows of rock and beam discs hold their angle where a sand disc has its inverse mass.
+    """
+    n, m = disc_count(k), beam_count(k)
+    body, load, sums = view(x, k, A.body), view(x, k, A.load), view(x, k, A.sums)
+    sums[SUM.rock] -= place(n, w[V.rock_position_x], w[V.rock_position_y], w[V.rock_angle], w[V.rock_velocity_x],
+                            w[V.rock_velocity_y], w[V.rock_angular_velocity], ahead, body, load)
+    px, py, angle = view(w, k, A.beam_position_x), view(w, k, A.beam_position_y), view(w, k, A.beam_angle)
+    vx, vy, omega = view(w, k, A.beam_velocity_x), view(w, k, A.beam_velocity_y), view(w, k, A.beam_angular_velocity)
+    for b in range(m):
+        sums[SUM.beam] -= place(n + 1 + b, px[b], py[b], angle[b], vx[b], vy[b], omega[b], ahead, body, load)
+
+
+@kernel
+def place(b, px, py, angle, vx, vy, omega, ahead, body, load):
+    """Move boundary b; returns the work (J) that the present contact force on it does along this way."""
+    at, force = ROW * b, FORCE_ROW * b
+    new_x, new_y, new_angle = px + vx * ahead, py + vy * ahead, angle + omega * ahead
+    work = (load[force] * (new_x - body[at]) + load[force + 1] * (new_y - body[at + 1])
+            + load[force + 2] * (new_angle - body[at + 6]))
+    body[at], body[at + 1], body[at + 6] = new_x, new_y, new_angle
+    body[at + 2], body[at + 3], body[at + 4] = vx, vy, omega
+    return work
+
+
+@kernel
+def size_boundaries(w, x, k):
+    """Radii of rock and beam discs, and the root of the rock's mass for its dashpots."""
+    n, m = disc_count(k), beam_count(k)
+    body = view(x, k, A.body)
+    body[ROW * n + 5] = w[V.rock_radius]
+    body[ROW * n + 7] = math.sqrt(math.sqrt(w[V.rock_mass]))
+    for b in range(n + 1, n + m + 1):
+        body[ROW * b + 5] = w[V.beam_radius]
+
+
+# --- motion of the discs ---------------------------------------------------------------------------------------------------------
+
+@kernel
+def move_discs(n, dt, gravity, rotating, body, angle, load, sums):
+    """Semi-implicit Euler: velocity first, then position with the new velocity.
+
+    Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
+    velocities half a step before and after it, m v_before v_after / 2.
+    """
+    kinetic, potential, fastest = 0.0, 0.0, 0.0
+    for i in range(n):
+        at, force = ROW * i, FORCE_ROW * i
+        inverse = body[at + 6]
+        vx, vy = body[at + 2], body[at + 3]
+        new_x = vx + load[force] * inverse * dt
+        new_y = vy + (load[force + 1] * inverse - gravity) * dt
+        kinetic += 0.5 * (vx * new_x + vy * new_y) / inverse
+        potential += body[at + 1] / inverse
+        body[at + 2], body[at + 3] = new_x, new_y
+        body[at] += new_x * dt
+        body[at + 1] += new_y * dt
+        fastest = max(fastest, new_x * new_x + new_y * new_y)
+        if rotating:
+            omega, radius = body[at + 4], body[at + 5]
+            new = omega + load[force + 2] * 2.0 * inverse / (radius * radius) * dt  # I = m r^2 / 2
+            kinetic += 0.25 * radius * radius * omega * new / inverse
+            body[at + 4] = new
+            angle[i] += new * dt
+    sums[SUM.travelled] += math.sqrt(fastest) * dt
+    return kinetic, potential * gravity
+
+
+@kernel
+def advance(dt, w, x, k):
+    """One internal step with rock and beam where they are. Returns status, kinetic and potential energy at its beginning."""
+    if is_stale(w, x, k) and not rebuild(w, x, k):
+        return LIST_FULL, 0.0, 0.0
+    contact_forces(dt, w, x, k)
+    kinetic, potential = move_discs(disc_count(k), dt, w[V.gravity], w[V.rotation] == FREE, view(x, k, A.body),
+                                    view(x, k, A.angle), view(x, k, A.load), view(x, k, A.sums))
+    return OK, kinetic, potential
+
+
+# --- start ------------------------------------------------------------------------------------------------------------------------
+
+@kernel
+def unrest(w, x, k):
+    """Largest acceleration (in g) and speed (in sqrt(g r)) of any disc, whichever is larger."""
+    body, load = view(x, k, A.body), view(x, k, A.load)
+    g = max(w[V.gravity], 1e-12)
+    largest = 0.0
+    for i in range(disc_count(k)):
+        at, force = ROW * i, FORCE_ROW * i
+        ax, ay = load[force] * body[at + 6], load[force + 1] * body[at + 6] - w[V.gravity]
+        v2 = body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3]
+        largest = max(largest, math.sqrt(ax * ax + ay * ay) / g, math.sqrt(v2 / (g * w[V.disc_radius])))
+    return largest
+
+
+@kernel
+def slow_down(factor, w, x, k):
+    """Multiply all velocities of the discs."""
+    body = view(x, k, A.body)
+    for i in range(disc_count(k)):
+        for q in range(2, 5):
+            body[ROW * i + q] *= factor
+
+
+@kernel
+def settle(w, x, k):
+    """Let the discs come to rest under gravity, with base and walls at rest and the rock away; at most settling.time."""
+    dt = _SETTLING_STEP * w[V.stable_step]
+    for s in range(int(w[V.settling_time] / dt)):
+        status, _, _ = advance(dt, w, x, k)
+        if status != OK:
+            return status
+        if s % _CHECK_EVERY == 0 and unrest(w, x, k) < _AT_REST:
+            break
+        slow_down(1.0 - _SETTLING_RATE * dt, w, x, k)
+    slow_down(0.0, w, x, k)
+    return OK
+
+
+@kernel
+def initialise(w, x, k):
+    """Pack the discs and let them settle."""
+    n = disc_count(k)
+    w[V.stable_step] = stable_step_of(w)
+    for q in range(x.size):
+        x[q] = 0.0
+    set_laws(w, x, k)
+    size_boundaries(w, x, k)
+    set_boundaries(0.0, w, x, k)
+    body = view(x, k, A.body)
+    body[ROW * n + 1] = _FAR
+    for b in range(n, n + 1 + beam_count(k)):
+        for q in range(2, 5):
+            body[ROW * b + q] = 0.0
+    pack(w, x, k, sand_stiffness(w), boundary_stiffness(KIND.base, w))
+    forget(x, k)
+    if not rebuild(w, x, k):
+        return LIST_FULL
+    status = settle(w, x, k)
+    sums = view(x, k, A.sums)
+    for q in range(sums.size):
+        sums[q] = 0.0
+    sums[SUM.beam_key] = beam_key(w, k)
+    return status
+
+
+@kernel
+def beam_key(w, k):
+    """A number that changes with the beam's place, on which the sand has settled."""
+    px, py = view(w, k, A.beam_position_x), view(w, k, A.beam_position_y)
+    key = 0.0
+    for b in range(px.size):
+        key += (b + 1) * (px[b] + math.pi * py[b])
+    return key
+
+
+@kernel
+def surface_under_rock(w, x, k):
+    """Highest point (m) of the sand within a rock's radius of the rock; of all sand where there is none."""
+    body = view(x, k, A.body)
+    near, anywhere = -math.inf, -math.inf
+    for i in range(disc_count(k)):
+        top = body[ROW * i + 1] + body[ROW * i + 5]
+        anywhere = max(anywhere, top)
+        if abs(body[ROW * i] - w[V.rock_position_x]) < w[V.rock_radius]:
+            near = max(near, top)
+    return near if near > -math.inf else anywhere
+
+
+@kernel
+def misplaced(w, x, k):
+    """Fault of the start: a beam that does not carry the whole cushion, or a rock inside the sand."""
+    n, m = disc_count(k), beam_count(k)
+    body = view(x, k, A.body)
+    if w[V.base] != FLOOR:
+        for b in range(n + 1, n + m):
+            if body[ROW * (b + 1)] <= body[ROW * b]:
+                return BEAM_UNORDERED
+        reach = w[V.beam_radius] * (1.0 + 1e-6)
+        if (body[ROW * (n + 1)] - reach > w[V.box_left]
+                or body[ROW * (n + m)] + reach < w[V.box_left] + w[V.box_width]):
+            return BEAM_TOO_NARROW
+    for i in range(n):
+        dx, dy = body[ROW * n] - body[ROW * i], body[ROW * n + 1] - body[ROW * i + 1]
+        if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + body[ROW * i + 5] - _TOUCHING:
+            return ROCK_INSIDE
+    return OK
+
+
+@kernel
+def evaluate(w, x, k):
+    """Outputs at the start; packs anew when the beam was moved since."""
+    sums = view(x, k, A.sums)
+    if w[V.base] != FLOOR and sums[SUM.beam_key] != beam_key(w, k):
+        status = initialise(w, x, k)
+        if status != OK:
+            return status
+    set_boundaries(0.0, w, x, k)
+    w[V.surface_height] = surface_under_rock(w, x, k)
+    w[V.penetration] = penetration(0.0, w)
+    status = misplaced(w, x, k)
+    if status != OK:
+        return status
+    if not rebuild(w, x, k):
+        return LIST_FULL
+    contact_forces(0.0, w, x, k)
+    for q in (SUM.normal_dashpot, SUM.tangential_dashpot, SUM.sliding, SUM.rolling, SUM.rock, SUM.beam):
+        sums[q] = 0.0
+    w[V.energy_start] = 0.0
+    publish_energies(kinetic_energy(x, k), potential_energy(w, x, k), w, sums)
+    w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_gravity]
+    w[V.energy_residual] = 0.0
+    collect_forces(1.0, True, w, x, k)
+    return OK
+
+
+@kernel
+def kinetic_energy(x, k):
+    """Kinetic energy of all discs (J)."""
+    body = view(x, k, A.body)
+    total = 0.0
+    for i in range(disc_count(k)):
+        at = ROW * i
+        total += 0.5 * (body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3]) / body[at + 6]
+        total += 0.25 * body[at + 5] * body[at + 5] * body[at + 4] * body[at + 4] / body[at + 6]
+    return total
+
+
+@kernel
+def potential_energy(w, x, k):
+    """Energy of all discs in gravity (J)."""
+    body = view(x, k, A.body)
+    total = 0.0
+    for i in range(disc_count(k)):
+        total += body[ROW * i + 1] / body[ROW * i + 6]
+    return total * w[V.gravity]
+
+
+# --- what the outside sees ---------------------------------------------------------------------------------------------------------
+
+@kernel
+def collect_forces(share, first, w, x, k):
+    """Add ``share`` of the present contact forces to the outputs, which begin anew with the ``first``."""
+    n, m = disc_count(k), beam_count(k)
+    load, sums = view(x, k, A.load), view(x, k, A.sums)
+    fx, fy, torque = view(w, k, A.beam_force_x), view(w, k, A.beam_force_y), view(w, k, A.beam_torque)
+    keep = 0.0 if first else 1.0
+    at = FORCE_ROW * n
+    w[V.rock_force_x] = keep * w[V.rock_force_x] + share * load[at]
+    w[V.rock_force_y] = keep * w[V.rock_force_y] + share * load[at + 1]
+    w[V.rock_torque] = keep * w[V.rock_torque] + share * load[at + 2]
+    for b in range(m):
+        at = FORCE_ROW * (n + 1 + b)
+        fx[b] = keep * fx[b] + share * load[at]
+        fy[b] = keep * fy[b] + share * load[at + 1]
+        torque[b] = keep * torque[b] + share * load[at + 2]
+    w[V.transmitted_force] = keep * w[V.transmitted_force] + share * sums[SUM.transmitted]
+
+
+@kernel
+def publish_energies(kinetic, potential, w, sums):
+    """Energies at the beginning of the last internal step, and the error of their balance."""
+    w[V.energy_kinetic], w[V.energy_gravity], w[V.energy_elastic] = kinetic, potential, sums[SUM.elastic]
+    w[V.energy_normal_dashpot], w[V.energy_tangential_dashpot] = sums[SUM.normal_dashpot], sums[SUM.tangential_dashpot]
+    w[V.energy_sliding], w[V.energy_rolling] = sums[SUM.sliding], sums[SUM.rolling]
+    w[V.energy_work_rock], w[V.energy_work_beam] = sums[SUM.rock], sums[SUM.beam]
+    stored = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_gravity]
+    lost = w[V.energy_normal_dashpot] + w[V.energy_tangential_dashpot] + w[V.energy_sliding] + w[V.energy_rolling]
+    w[V.energy_residual] = stored + lost - w[V.energy_work_rock] - w[V.energy_work_beam] - w[V.energy_start]
+
+
+@kernel
+def penetration(ahead, w):
+    """Depth (m) of the rock's lowest point under the surface at the start."""
+    return w[V.surface_height] - (w[V.rock_position_y] + w[V.rock_velocity_y] * ahead - w[V.rock_radius])
+
+
+@kernel
+def step(t, h, w, x, k):
+    """Advance by h (s)."""
+    n = substep_count(h, w[V.internal_step])
+    dt = h / n
+    linear, mean = w[V.kinematics] == LINEAR, w[V.forces] == MEAN
+    kinetic, potential = 0.0, 0.0
+    for s in range(n):
+        if s == 0 or linear:
+            set_boundaries(s * dt if linear else 0.0, w, x, k)
+        status, kinetic, potential = advance(dt, w, x, k)
+        if status != OK:
+            return status
+        if mean:
+            collect_forces(1.0 / n, s == 0, w, x, k)
+    if not mean:
+        collect_forces(1.0, True, w, x, k)
+    publish_energies(kinetic, potential, w, view(x, k, A.sums))
+    w[V.penetration] = penetration(h if linear else 0.0, w)
+    return OK if math.isfinite(kinetic + w[V.energy_elastic]) else DIVERGED
