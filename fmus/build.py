@@ -17,6 +17,7 @@ from pathlib import Path
 import pythonfmu
 from filelock import FileLock
 
+import components
 from components.catalogue import component as catalogued
 from components.component import Component
 
@@ -28,6 +29,7 @@ FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
 """Environment variable that moves the folder of built FMUs, by default ``fmus/dist``."""
 
 _HERE = Path(__file__).parent
+_COMPONENTS = Path(components.__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
 _PYTHONFMU_PARTS = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
 _SLAVE_PARTS = ("foundations.py", "isolation.py", "python_fmu.py")
@@ -115,10 +117,9 @@ def _stamped_files(component: Component, sizes: Mapping[str, int], library: str,
 
 def _library_files(component: Component) -> Files:
     """The package that runs inside the FMU: slave, component with what the components share, and parts of pythonfmu."""
-    shared = component.folder.parent
-    paths = {f"components/{path.name}": path for path in shared.glob("*.py") if path.name != "catalogue.py"}
-    paths |= {f"components/{path.relative_to(shared).as_posix()}": path for path in component.folder.rglob("*")
-              if path.is_file() and path.suffix not in _NOT_FROZEN}
+    paths = {f"components/{path.name}": path for path in _COMPONENTS.glob("*.py") if path.name != "catalogue.py"}
+    paths |= {f"components/{path.relative_to(component.folder.parent).as_posix()}": path
+              for path in component.folder.rglob("*") if path.is_file() and path.suffix not in _NOT_FROZEN}
     paths |= {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS}
     paths |= {name: _HERE / name for name in _SLAVE_PARTS}
     files = {name: path.read_bytes() for name, path in paths.items()}

@@ -26,8 +26,6 @@ _CAPABILITIES = {
     "providesDirectionalDerivative": "false",
 }
 
-_VARIABILITY = {Causality.PARAMETER: "fixed", Causality.INPUT: "continuous", Causality.OUTPUT: "continuous"}
-
 
 def model_description(component: Component, sizes: Mapping[str, int], guid: str) -> bytes:
     """The complete ``modelDescription.xml``. The index of a variable is its value reference + 1; the sizes stand last."""
@@ -99,7 +97,7 @@ def _model_variables(root: etree._Element, component: Component, sizes: Sizes) -
 def _variable(parent: etree._Element, component: Component, variable: Variable, name: str, reference: int, start: float) -> None:
     scalar = etree.SubElement(parent, "ScalarVariable", {
         "name": name, "valueReference": str(reference), "description": variable.description,
-        "causality": variable.causality.value, "variability": _VARIABILITY[variable.causality]})
+        "causality": variable.causality.value, "variability": _variability(variable)})
     if variable.causality is not Causality.INPUT:
         scalar.set("initial", "exact" if variable.causality is Causality.PARAMETER else "calculated")
     attributes = {}
@@ -113,6 +111,12 @@ def _variable(parent: etree._Element, component: Component, variable: Variable, 
     if variable.causality is not Causality.OUTPUT:
         attributes["start"] = literal(variable.kind, start)
     etree.SubElement(scalar, variable.kind.value, attributes)
+
+
+def _variability(variable: Variable) -> str:
+    if variable.causality is Causality.PARAMETER:
+        return "fixed"
+    return "continuous" if variable.kind is Kind.REAL else "discrete"
 
 
 def literal(kind: Kind, value: float) -> str:

@@ -94,7 +94,7 @@ class ComponentSlave(Fmi2Slave):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._instance = instance = Instance(self.component, self.sizes)
-        self._phase, self._stale, self._warning = _Phase.INSTANTIATED, _Stale.STATE, ""
+        self._phase, self._stale, self._previewed = _Phase.INSTANTIATED, _Stale.STATE, False
         self._time, self._stop_time = math.nan, math.inf
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
         self._table = [(name, variable) for variable in self.component.layout.ordered
@@ -258,9 +258,8 @@ class ComponentSlave(Fmi2Slave):
         return name, variable
 
     def _get(self, kind: Kind, vrs: list[int]) -> list[float]:
-        for reference in vrs:
-            self._variable(reference, kind)
-        if self._phase is _Phase.INITIALISING and self._stale is not _Stale.NOTHING:
+        variables = [self._variable(reference, kind)[1] for reference in vrs]
+        if self._phase is _Phase.INITIALISING and any(variable.causality is Causality.OUTPUT for variable in variables):
             self._preview()
         reader = _reader(vrs)
         if kind is Kind.REAL and vrs:
@@ -268,13 +267,13 @@ class ComponentSlave(Fmi2Slave):
         return reader(self._values)
 
     def _preview(self) -> None:
-        """Compute the outputs before the initialization mode ends; what is wrong then may still be put right."""
+        """Compute the outputs before the initialization mode ends; what is wrong with the inputs may still be put right."""
         try:
-            self._compute()
+            if not self._previewed:
+                self._compute()
         except ComponentError as error:
-            if str(error) != self._warning:
-                self._warning = str(error)
-                self._log(f"outputs read in initialization mode are not valid yet: {'; '.join(error.problems)}", Fmi2Status.warning)
+            self._log(f"the outputs are not valid yet: {'; '.join(error.problems)}", Fmi2Status.warning)
+        self._previewed = True
 
     def _set(self, kind: Kind, vrs: list[int], values: list[Any]) -> None:
         if self._phase in (_Phase.TERMINATED, _Phase.FAILED):
@@ -287,7 +286,7 @@ class ComponentSlave(Fmi2Slave):
         self._write(vrs, values, _is_block(vrs))
         if self._phase is not _Phase.RUNNING:
             stale = _Stale.STATE if Causality.PARAMETER in changed else _Stale.OUTPUTS if changed else _Stale.NOTHING
-            self._stale = max(self._stale, stale)
+            self._stale, self._previewed = max(self._stale, stale), self._previewed and not changed
         elif vrs and all(variable.minimum is None and variable.maximum is None for _, variable in variables):
             self._writers[vrs[0], len(vrs)] = list(vrs), _is_block(vrs)
 
@@ -298,7 +297,8 @@ class ComponentSlave(Fmi2Slave):
             return []  # checked all together when the initialization mode ends
         if variable.causality is Causality.PARAMETER:
             return [f"{name} = {value:.6g} is refused: a parameter is fixed after the initialisation; reset the slave to change it"]
-        return value_problems(variable, name, value)
+        return [f"at t = {self._time:.9g} s: {problem}; correct what sends this value"
+                for problem in value_problems(variable, name, value)]
 
     def _write(self, vrs: list[int], values: list[Any], block: bool) -> None:
         if block:
@@ -323,7 +323,7 @@ class ComponentSlave(Fmi2Slave):
         """Go back to a state, also one of another process. Refused if it is damaged or of another component or size."""
         self._instance.from_bytes(component_state(state))
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
-        self._phase, self._time = _Phase(phase), time
+        self._phase, self._time, self._previewed = _Phase(phase), time, False
         self._stale = _Stale.STATE if phase in (_Phase.INSTANTIATED, _Phase.INITIALISING) else _Stale.NOTHING
 
     @staticmethod
@@ -342,13 +342,15 @@ class ComponentSlave(Fmi2Slave):
             text = "; ".join(error.problems)
         elif isinstance(error, _RefusedError):
             text = str(error)
+        elif isinstance(error, KeyboardInterrupt):
+            text = "interrupted"
         else:
             text = f"unexpected {type(error).__name__}: {error}"
         self._log(text, Fmi2Status.error)
 
     def _log(self, text: str, status: Fmi2Status) -> None:
-        """Log with the instance's name. FMI takes the message for a printf format."""
-        self.log(f"{self.instance_name} ({self.component.name}): {text}".replace("%", "%%"), status)
+        """Log with the instance's name. FMI takes a message for a printf format, some tools do not: no percent sign is safe."""
+        self.log(f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent"), status)
 
 
 def component_state(state: bytes) -> bytes:

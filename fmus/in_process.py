@@ -1,0 +1,125 @@
+"""Components without FMI: the slave of an FMU, called directly in this process, for tests and debugging.
+
+Behaves like the FMU file of the same component behind the orchestrator's slave interface (same description, same states, same
+messages), and breakpoints and coverage reach its code.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.component import Component
+
+from .build import fmu_files
+from .foundations import Fmi2Status
+from .python_fmu import ComponentSlave
+
+OK, DISCARD, ERROR = int(Fmi2Status.ok), int(Fmi2Status.discard), int(Fmi2Status.error)
+
+
+class InProcess:
+    """A component in this process, where an FMU file is expected.
+
+    Raises:
+        ComponentError: a size that the component has not, or that is out of range.
+    """
+
+    def __init__(self, component: Component, sizes: Mapping[str, int] | None = None) -> None:
+        self._component, self._sizes = component, component.with_sizes(sizes)
+        self.origin = {"component": component.name, **{name: str(value) for name, value in self._sizes.items()}}
+
+    def model_description(self) -> bytes:
+        """The ``modelDescription.xml`` of the component's FMU."""
+        return fmu_files(self._component, self._sizes)["modelDescription.xml"]
+
+    def instantiate(self, name: str) -> "InProcessSlave":
+        """A new instance."""
+        return InProcessSlave(slave_class(self._component, self._sizes), name)
+
+
+def slave_class(component: Component, sizes: Mapping[str, int]) -> type[ComponentSlave]:
+    """The class that the FMU of this component holds, over the component of this process."""
+    return type(component.name, (ComponentSlave,), {"component": component, "sizes": dict(sizes)})
+
+
+class InProcessSlave:
+    """An instance of a component with the calls of FMI 2.0. Unlike pythonfmu's binary, every call returns its true status.
+
+    messages: (status, text) of everything logged, oldest first.
+    """
+
+    addresses: Any = None
+    """There are no C functions to call."""
+
+    def __init__(self, kind: type[ComponentSlave], name: str) -> None:
+        self.name, self._kind = name, kind
+        self.messages: list[tuple[int, str]] = []
+        self.reset()
+
+    def set(self, references: NDArray[np.uint32], values: NDArray[np.float64], kind: str = "Real") -> int:
+        """Set variables of one kind: Real, Integer (also enumerations) or Boolean."""
+        convert = {"Real": float, "Integer": int, "Boolean": bool}[kind]
+        setter = {"Real": self._slave.set_real, "Integer": self._slave.set_integer, "Boolean": self._slave.set_boolean}[kind]
+        return self._call(setter, references.tolist(), [convert(value) for value in values.tolist()])[1]
+
+    def get(self, references: NDArray[np.uint32], out: NDArray[np.float64], kind: str = "Real") -> int:
+        """Read variables of one kind into ``out``."""
+        getter = {"Real": self._slave.get_real, "Integer": self._slave.get_integer, "Boolean": self._slave.get_boolean}[kind]
+        out[:], status = self._call(getter, references.tolist())
+        return status
+
+    def set_text(self, reference: int, text: str) -> int:
+        """Refused: no component has a string."""
+        return self._call(self._slave.set_string, [reference], [text])[1]
+
+    def setup_experiment(self, start: float, stop: float) -> int:
+        """Tell start and end of the run (s)."""
+        return self._call(self._slave.setup_experiment, start, stop, None)[1]
+
+    def enter_initialisation(self) -> int:
+        """Enter the initialization mode."""
+        return self._call(self._slave.enter_initialization_mode)[1]
+
+    def exit_initialisation(self) -> int:
+        """Leave the initialization mode."""
+        return self._call(self._slave.exit_initialization_mode)[1]
+
+    def step(self, time: float, step: float) -> int:
+        """Advance from ``time`` by ``step`` (s)."""
+        done, _ = self._call(self._slave.do_step, time, step)
+        return OK if done else DISCARD
+
+    def state(self) -> bytes:
+        """The complete state, serialized; equal to that of the FMU."""
+        return bytes(self._call(self._slave._get_fmu_state)[0])
+
+    def restore(self, content: bytes) -> None:
+        """Take over a state of :meth:`state`.
+
+        Raises:
+            RuntimeError: it is damaged, or of another component or size.
+        """
+        if self._call(self._slave._set_fmu_state, content)[1] == ERROR:
+            raise RuntimeError(self.messages[-1][1])
+
+    def reset(self) -> int:
+        """Back to where the slave was when it was made, with start values everywhere."""
+        self._slave = self._kind(instance_name=self.name)
+        return OK
+
+    def terminate(self) -> int:
+        """End the run."""
+        return self._call(self._slave.terminate)[1]
+
+    def free(self) -> None:
+        """Nothing is held that Python does not give back by itself."""
+
+    def _call(self, function: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
+        """Result of a call, and the worst status it has logged."""
+        result = function(*arguments)
+        logged = [(int(entry.status), entry.msg) for entry in self._slave.log_queue]
+        self._slave.log_queue.clear()
+        self.messages += logged
+        return result, max((status for status, _ in logged), default=OK)
