@@ -14,8 +14,15 @@ from typing import Any
 import fmpy
 import numpy as np
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (FMU2Slave, calloc, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions,
-                       fmi2CallbackLoggerTYPE, free)
+from fmpy.fmi2 import (
+    FMU2Slave,
+    calloc,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    free,
+)
 from fmpy.logging import addLoggerProxy
 from fmpy.model_description import ModelDescription, ModelVariable, ValidationError, read_model_description
 
@@ -184,22 +191,21 @@ class FmuSlave:
                                         "see whether the FMU runs in another tool")]) from error
         self.addresses: Addresses | None = self._find_addresses()
         self._step = _STEP(self.addresses.do_step)
-        self._setters = {kind: _MOVE(address) for kind, address in (
-            (REAL, self.addresses.set_real), (INTEGER, self.addresses.set_integer), (BOOLEAN, self.addresses.set_boolean))}
-        self._getters = {kind: _MOVE(address) for kind, address in (
-            (REAL, self.addresses.get_real), (INTEGER, self.addresses.get_integer), (BOOLEAN, self.addresses.get_boolean))}
+        self._setters = {kind: _MOVE(address) for kind, address in self.addresses.set.items()}
+        self._getters = {kind: _MOVE(address) for kind, address in self.addresses.get.items()}
 
     def _find_addresses(self) -> Addresses:
         def address(function: str) -> int:
             return int(ctypes.cast(getattr(self._fmu.dll, function), ctypes.c_void_p).value or 0)
 
-        return Addresses(int(self._fmu.component), *(address(f"fmi2{call}{kind}") for kind in (REAL, INTEGER, BOOLEAN)
-                                                     for call in ("Set", "Get")), address("fmi2DoStep"))
+        return Addresses(int(self._fmu.component),
+                         {kind: address(f"fmi2Set{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
+                         {kind: address(f"fmi2Get{kind}") for kind in (REAL, INTEGER, BOOLEAN)}, address("fmi2DoStep"))
 
     def set(self, references: References, values: Values, kind: str = REAL) -> int:
         """Set variables of one kind."""
         if kind != REAL:
-            values = values.astype(np.int32)  # type: ignore[assignment]
+            values = values.astype(np.int32)
         return int(self._setters[kind](self._fmu.component, references.ctypes.data, references.size, values.ctypes.data))
 
     def get(self, references: References, out: Values, kind: str = REAL) -> int:

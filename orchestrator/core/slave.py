@@ -8,6 +8,7 @@ The life of a slave: ``set`` parameters and inputs, ``setup_experiment``, ``ente
 as wanted, ``exit_initialisation``, then ``set``, ``step``, ``get`` over and over, ``terminate``, ``free``.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -28,15 +29,11 @@ Values = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Addresses:
-    """Addresses of a slave's C functions, for a loop that calls them without Python, and of its instance."""
+    """Addresses of a slave's C functions, ``set`` and ``get`` by kind, for a loop that calls them without Python."""
 
     instance: int
-    set_real: int
-    get_real: int
-    set_integer: int
-    get_integer: int
-    set_boolean: int
-    get_boolean: int
+    set: Mapping[str, int]
+    get: Mapping[str, int]
     do_step: int
 
 

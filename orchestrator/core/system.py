@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from .errors import InputRefused, Problem
 from .names import matches, nearest
@@ -23,6 +23,15 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 
 RESERVED = ("time", "coupling")
 """Names that a component cannot have: columns of the results begin with them."""
+
+
+def _not_reserved(name: str) -> str:
+    if name in RESERVED:
+        raise ValueError(f"a component cannot be called {name}: columns of the results are; choose another name")
+    return name
+
+
+ComponentName = Annotated[Name, AfterValidator(_not_reserved)]
 
 
 class _Data(BaseModel):
@@ -113,7 +122,7 @@ class System(_Data):
 
     name: str
     description: str = ""
-    components: dict[Name, ComponentSpec] = Field(min_length=1)
+    components: dict[ComponentName, ComponentSpec] = Field(min_length=1)
     connections: list[Connection] = []
     shared: dict[Name, SharedValue] = {}
     bonds: dict[Name, PowerBond] = {}
@@ -127,13 +136,6 @@ class System(_Data):
     state_interval: Seconds | None = None
     record: list[str] = ["*"]
     watch: list[str] = []
-
-    @field_validator("components")
-    @classmethod
-    def _not_reserved(cls, components: dict[str, ComponentSpec]) -> dict[str, ComponentSpec]:
-        if taken := sorted(set(components) & set(RESERVED)):
-            raise ValueError(f"{', '.join(taken)}: columns of the results have this name; choose another")
-        return components
 
     def step(self, component: str) -> float:
         """Communication step of a component (s)."""
