@@ -71,7 +71,7 @@ class _PackageLocator:
 
 
 class _PackageCacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes = [_PackageLocator]
+    _locator_classes = (_PackageLocator,)
 
 
 class _PackageCache(FunctionCache):  # type: ignore[misc]
@@ -84,7 +84,16 @@ def kernel(function: F) -> F:
     Kernels keep to what also compiles without Python: explicit loops, scalar arithmetic, slices, other kernels. No
     allocation, no whole-array expressions, no exceptions; a kernel reports a fault by its return value.
     """
-    dispatcher = njit(error_model="numpy")(function)
+    return _compiled(function, inline="never")
+
+
+def inlined(function: F) -> F:
+    """A :func:`kernel` that the compiler sets into its callers: for small functions inside hot loops."""
+    return _compiled(function, inline="always")
+
+
+def _compiled(function: F, inline: str) -> F:
+    dispatcher = njit(error_model="numpy", inline=inline, _nrt=False)(function)
     if cache_directory() is not None:
         dispatcher._cache = _PackageCache(function)
     return dispatcher  # type: ignore[no-any-return]

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from .compilation import kernel
+from .compilation import inlined
 from .units import UNITS
 
 Sizes = Mapping[str, int]
@@ -179,7 +179,7 @@ def _constants(title: str, names: list[str], stride: int) -> Any:
     return namedtuple(title, fields)(*range(0, stride * len(fields), stride))  # type: ignore[misc]
 
 
-@kernel
+@inlined
 def view(buffer, k, entry):
     """The array that the table entry ``entry`` of ``k`` describes, as a slice of ``buffer`` (no copy)."""
     return buffer[k[entry]:k[entry] + k[entry + 1]]

@@ -24,4 +24,4 @@ def stable_step() -> Variable:
 @kernel
 def substep_count(step, longest):
     """Number of equal parts of ``step`` (s) that are not longer than ``longest`` (s); at least 1."""
-    return max(1, int(math.ceil(step / longest - _ROUNDING)))
+    return max(1, math.ceil(step / longest - _ROUNDING))

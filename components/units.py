@@ -3,9 +3,8 @@
 Inside, every quantity is a plain float in SI. ``120 * kgf / cm`` reads as it is written in the papers.
 """
 
-from dataclasses import dataclass
-
 import math
+from dataclasses import dataclass
 
 mm = 1e-3
 cm = 1e-2

@@ -16,8 +16,8 @@ COMPONENT = Component(
     folder=Path(__file__).parent,
     sizes=SIZES,
     faults={
-        kernel.LIST_FULL: "there is no more room for contact candidates: the discs are packed closer than 12 candidates a disc; "
-                          "reduce disc.spread ({disc.spread}) or the overlap of the discs",
+        kernel.LIST_FULL: "there is no more room for contact candidates (12 a disc): reduce disc.spread "
+                          "({disc.spread}) or the overlap of the discs",
         kernel.DIVERGED: "the energy of the discs is no longer a finite number: the internal step {internal_step} s stands against a "
                          "stable step of {stable_step} s; reduce internal_step or the exchange step",
         kernel.ROCK_INSIDE: "the rock starts inside the sand: its lowest point lies {penetration} m under the surface at "

@@ -4,16 +4,16 @@ series with a Coulomb slider, rolling resistance.
 All functions work on one contact. The normal points from body 1 to body 2; the tangent is the normal turned counter-clockwise.
 """
 
-from ..compilation import kernel
+from ..compilation import inlined
 
 
-@kernel
+@inlined
 def normal_force(overlap, opening_speed, stiffness, dashpot):
     """Compressive force (N): k_n * overlap - c_n * opening speed, never tension (eq. 1 and fig. 10)."""
     return max(0.0, stiffness * overlap - dashpot * opening_speed)
 
 
-@kernel
+@inlined
 def tangential_force(spring, slip_speed, stiffness, dashpot, limit, dt):
     """Tangential force and what becomes of its spring over a step dt (s).
 
@@ -22,18 +22,12 @@ def tangential_force(spring, slip_speed, stiffness, dashpot, limit, dt):
     that spring and dashpot take (m/s); the rest of it slides.
     """
     rate = stiffness * dt + dashpot
-    force = spring + rate * slip_speed
-    taken = slip_speed
-    if force > limit:
-        force = limit
-        taken = (limit - spring) / rate
-    elif force < -limit:
-        force = -limit
-        taken = (-limit - spring) / rate
+    force = min(limit, max(-limit, spring + rate * slip_speed))
+    taken = (force - spring) / rate
     return force, spring + stiffness * dt * taken, taken
 
 
-@kernel
+@inlined
 def rolling_moment(moment, rolling_speed, stiffness, limit, dt):
     """Rolling resistance after a step dt (s): an elastic moment (N m) that gives way at ``limit`` (N m).
 

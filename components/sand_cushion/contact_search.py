@@ -72,8 +72,8 @@ def disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, s
     """List the discs near disc i that have a higher number. Returns the end of the list, or -1 where there is no room."""
     xi, yi, ri = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5]
     line, column = disc_cell[i] // columns, disc_cell[i] % columns
-    for l in range(max(0, line - 1), min(rows, line + 2)):
-        for c in range(l * columns + max(0, column - 1), l * columns + min(columns, column + 2)):
+    for near in range(max(0, line - 1), min(rows, line + 2)):
+        for c in range(near * columns + max(0, column - 1), near * columns + min(columns, column + 2)):
             # after the backwards sort, entry c + 1 of cell_start is the begin of cell c
             end = n if c + 2 > columns * rows else cell_start[c + 2]
             for q in range(cell_start[c + 1], end):

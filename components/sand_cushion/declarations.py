@@ -33,6 +33,8 @@ FORCE_ROW = 3
 """Numbers per body in ``load``: force to the right, force upwards, torque."""
 PARTNERS = 12
 """Room for contact candidates, per disc on average."""
+INDEX = 0x7FFFFFFF
+"""Larger than any index; see forces.py."""
 PLANES = 3
 """Left wall, right wall, base."""
 
@@ -89,8 +91,8 @@ LAYOUT = Layout(
               source="Sonoda et al. 1993, table 4, test 4"),
         choice("rotation", "locked: a disc's rotation is left out (calibrated model); free: three freedoms a disc (literal model)",
                ("free", "locked"), "locked"),
-        param("stiffness_factor", "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 is the paper's "
-              "literal equation", CALIBRATED_STIFFNESS_FACTOR, minimum=1e-9),
+        param("stiffness_factor", "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 is eq. (1) "
+              "to the letter", CALIBRATED_STIFFNESS_FACTOR, minimum=1e-9),
         param("damping", "damping constant h of normal and tangential dashpots", 0.2, minimum=0.0, source=_TABLE_3),
         param("tangential_ratio", "s = k_s / k_n", 0.25, minimum=1e-9, source=_TABLE_3),
         param("friction_angle", "angle of friction phi; mu = tan(phi)", 30 * deg, "rad", minimum=0.0, maximum=1.5, source=_TABLE_3),
@@ -106,7 +108,7 @@ LAYOUT = Layout(
                ("floor", "beam_surface", "beam_discs"), "beam_discs"),
         choice("walls", "side walls fixed in space, or standing on the beam", ("fixed", "on_beam"), "fixed"),
         param("rock.radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6),
-        param("rock.mass", "mass of the rock, for the damping of its contact with base and walls", 4.0, "kg", minimum=1e-6),
+        param("rock.mass", "mass of the rock, for the dashpots of its contact with base and walls", 4.0, "kg", minimum=1e-6),
         param("beam.radius", "radius of a beam disc", _BEAM_RADIUS, "m", minimum=1e-6),
         # integration and exchange
         internal_step(1e-5),
@@ -133,7 +135,7 @@ LAYOUT = Layout(
         out("rock.torque", "torque of the contact forces on the rock about its centre, counter-clockwise", "N.m"),
         out("beam.force.x", "contact force on a beam disc, to the right", "N", size="elements"),
         out("beam.force.y", "contact force on a beam disc, upwards", "N", size="elements"),
-        out("beam.torque", "torque of the contact forces on a beam disc about its centre, counter-clockwise", "N.m", size="elements"),
+        out("beam.torque", "torque of the contact forces on a beam disc about its centre", "N.m", size="elements"),
         out("transmitted_force", "force of sand and rock on base (and on walls that stand on the beam), positive downwards", "N",
             source="Sonoda et al. 1993, eq. (4)"),
         out("penetration", "depth of the rock's lowest point under the sand's surface at the start; negative above it", "m"),

@@ -7,7 +7,7 @@ from ..component import OK
 from ..ports import view
 from ..stepping import substep_count
 from .contact_search import beam_count, disc_count, forget, is_stale, rebuild
-from .declarations import BEAM_DISCS, FLOOR, FORCE_ROW, FREE, KIND, LAW, LAYOUT, LINEAR, MEAN, RANDOM, ROW, SUM
+from .declarations import BEAM_DISCS, FLOOR, FORCE_ROW, FREE, INDEX, KIND, LAW, LAYOUT, LINEAR, MEAN, RANDOM, ROW, SUM
 from .forces import contact_forces
 from .packing import pack
 
@@ -26,9 +26,11 @@ _SETTLING_RATE = 30.0
 _AT_REST = 1e-6
 """Sand is at rest when no disc is accelerated by more than this part of gravity, nor moves faster than this times sqrt(g r)."""
 _CHECK_EVERY = 50
+_INSTANT = 1e-9
+"""Internal steps that pass while the forces at the start are computed: no time, but not a division by zero either."""
 
 
-# --- parameters to laws -------------------------------------------------------------------------------------------------------
+# --- parameters to laws ---
 
 @kernel
 def set_law(kind, stiffness, friction, w, law):
@@ -99,7 +101,7 @@ def stable_step_of(w):
     return 2.0 / omega * (math.sqrt(1.0 + z * z) - z)
 
 
-# --- rock and beam as given ----------------------------------------------------------------------------------------------------
+# --- rock and beam as given ---
 
 @kernel
 def set_boundaries(ahead, w, x, k):
@@ -140,7 +142,7 @@ def size_boundaries(w, x, k):
         body[ROW * b + 5] = w[V.beam_radius]
 
 
-# --- motion of the discs ---------------------------------------------------------------------------------------------------------
+# --- motion of the discs ---
 
 @kernel
 def move_discs(n, dt, gravity, rotating, body, angle, load, sums):
@@ -149,27 +151,29 @@ def move_discs(n, dt, gravity, rotating, body, angle, load, sums):
     Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
     velocities half a step before and after it, m v_before v_after / 2.
     """
-    kinetic, potential, fastest = 0.0, 0.0, 0.0
+    kinetic, spin, potential, fastest = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
-        at, force = ROW * i, FORCE_ROW * i
-        inverse = body[at + 6]
+        at, force = ROW * i & INDEX, FORCE_ROW * i & INDEX
+        inverse, mass = body[at + 6], body[at + 7] * body[at + 7] * (body[at + 7] * body[at + 7])
         vx, vy = body[at + 2], body[at + 3]
         new_x = vx + load[force] * inverse * dt
         new_y = vy + (load[force + 1] * inverse - gravity) * dt
-        kinetic += 0.5 * (vx * new_x + vy * new_y) / inverse
-        potential += body[at + 1] / inverse
+        kinetic += mass * (vx * new_x + vy * new_y)
+        potential += mass * body[at + 1]
         body[at + 2], body[at + 3] = new_x, new_y
         body[at] += new_x * dt
         body[at + 1] += new_y * dt
-        fastest = max(fastest, new_x * new_x + new_y * new_y)
+        square = new_x * new_x + new_y * new_y
+        if square > fastest:
+            fastest = square
         if rotating:
             omega, radius = body[at + 4], body[at + 5]
             new = omega + load[force + 2] * 2.0 * inverse / (radius * radius) * dt  # I = m r^2 / 2
-            kinetic += 0.25 * radius * radius * omega * new / inverse
+            spin += mass * radius * radius * omega * new
             body[at + 4] = new
             angle[i] += new * dt
     sums[SUM.travelled] += math.sqrt(fastest) * dt
-    return kinetic, potential * gravity
+    return 0.5 * kinetic + 0.25 * spin, potential * gravity
 
 
 @kernel
@@ -183,7 +187,7 @@ def advance(dt, w, x, k):
     return OK, kinetic, potential
 
 
-# --- start ------------------------------------------------------------------------------------------------------------------------
+# --- start ---
 
 @kernel
 def unrest(w, x, k):
@@ -309,7 +313,7 @@ def evaluate(w, x, k):
         return status
     if not rebuild(w, x, k):
         return LIST_FULL
-    contact_forces(0.0, w, x, k)
+    contact_forces(_INSTANT * w[V.internal_step], w, x, k)
     for q in (SUM.normal_dashpot, SUM.tangential_dashpot, SUM.sliding, SUM.rolling, SUM.rock, SUM.beam):
         sums[q] = 0.0
     w[V.energy_start] = 0.0
@@ -342,7 +346,7 @@ def potential_energy(w, x, k):
     return total * w[V.gravity]
 
 
-# --- what the outside sees ---------------------------------------------------------------------------------------------------------
+# --- what the outside sees ---
 
 @kernel
 def collect_forces(share, first, w, x, k):

@@ -54,8 +54,8 @@ def square_lattice(w, body, n, bottom, stiffness, base_stiffness):
         line, column = i // columns, i % columns
         height = (n - column + columns - 1) // columns  # discs in this column
         y = bottom + radius - height * weight / base_stiffness
-        for l in range(1, line + 1):
-            y += 2.0 * radius - (height - l) * weight / stiffness
+        for below in range(1, line + 1):
+            y += 2.0 * radius - (height - below) * weight / stiffness
         set_disc(body, i, w[V.box_left] + margin + (2 * column + 1) * radius, y, radius, w)
 
 
