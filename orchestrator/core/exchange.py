@@ -168,6 +168,7 @@ class CompiledDriver:
                         _moves(plan, slaves, state.setters, state.buses.inputs.size, "set"),
                         _moves(plan, slaves, state.getters, state.buses.outputs.size, "get"),
                         state.buses, state.ledger, state.extremes)
+        advance(0, 0, *self._tables)  # compiles, or loads what was compiled before
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""

@@ -146,7 +146,8 @@ _keys = itertools.count(1)
 def _log(environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
     """Give a message of an FMU to the slave it belongs to. One function for all: fmpy's proxy remembers only the last one."""
     slave = _slaves.get(environment)
-    if slave is not None and len(slave.messages) < _MESSAGES_KEPT:
+    if slave is not None:
+        del slave.messages[:-_MESSAGES_KEPT]
         slave.messages.append((status, message.decode("utf-8", "replace") if message else ""))
 
 

@@ -1,0 +1,116 @@
+"""From FMU files to slaves that are ready for their first step; what they refuse is collected from all of them."""
+
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+
+from .description import Port
+from .errors import InputRefused, Problem
+from .exchange import State
+from .plan import Plan
+from .slave import ERROR, STATUS_NAMES, WARNING, Slave, Source
+
+_ROUNDS = 20
+"""How often outputs are passed on at the start; a chain of components needs one round for each of them."""
+
+
+def instantiate(plan: Plan, sources: Mapping[str, Source]) -> dict[str, Slave]:
+    """One slave for each component.
+
+    Raises:
+        InputRefused: the reasons of all that cannot be made.
+    """
+    slaves: dict[str, Slave] = {}
+    problems: list[Problem] = []
+    for name in plan.order:
+        try:
+            slaves[name] = sources[name].instantiate(name)
+        except InputRefused as refusal:
+            problems += refusal.problems
+    if problems:
+        free(slaves.values())
+        raise InputRefused(problems)
+    return slaves
+
+
+def free(slaves: Iterable[Slave]) -> None:
+    """Give back all slaves."""
+    for slave in slaves:
+        slave.free()
+
+
+def initialise(plan: Plan, slaves: Mapping[str, Slave], state: State, allow_unstable: bool = False) -> list[str]:
+    """Set parameters, pass outputs on to inputs in the initialisation mode and after it, check the steps. Returns warnings.
+
+    Raises:
+        InputRefused: a slave refuses its parameters or inputs, or would be unstable.
+    """
+    timing = plan.timing
+    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)))
+    _settle(state, slaves)
+    _phase(slaves, lambda slave: slave.exit_initialisation())
+    unsettled = _settle(state, slaves)
+    if bad := [end for name in plan.order if (end := state.not_finite(name)) is not None]:
+        raise InputRefused([Problem(e.name, "is no finite number after the initialisation", "check the parameters") for e in bad])
+    warnings = [f"{name}: {text}" for name, slave in slaves.items() for status, text in slave.messages if status == WARNING]
+    if unsettled:
+        warnings.append(f"outputs at the start still change after {_ROUNDS} rounds of exchange, {unsettled} among them")
+    unstable = [p for name in plan.order for p in _stability(plan, slaves[name])]
+    if unstable and not allow_unstable:
+        raise InputRefused(unstable)
+    return warnings + [str(problem) for problem in unstable]
+
+
+def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, stop: float) -> int:
+    worst = 0
+    for port, value in starts:
+        if isinstance(value, str):
+            worst = max(worst, slave.set_text(port.reference, value))
+        else:
+            worst = max(worst, slave.set(np.array([port.reference], np.uint32), np.array([value]), port.kind))
+    return max(worst, slave.setup_experiment(start, stop), slave.enter_initialisation())
+
+
+def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int]) -> None:
+    """Do the same with all slaves, then see whether any of them refused: by its status, or by a message with the status Error."""
+    problems = []
+    for name, slave in slaves.items():
+        status = call(slave)
+        reasons = [text for severity, text in slave.messages if severity >= ERROR]
+        if status > WARNING or reasons:
+            texts = reasons or [text for _, text in slave.messages] or [f"returned {STATUS_NAMES[status]} without a message"]
+            problems += [Problem(name, text) for text in dict.fromkeys(texts)]
+    if problems:
+        raise InputRefused(problems)
+
+
+def _settle(state: State, slaves: Mapping[str, Slave]) -> str:
+    """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing."""
+    outputs = state.buses.outputs
+    before = np.full_like(outputs, np.nan)
+    for _ in range(_ROUNDS):
+        _phase(slaves, state.take)
+        changed = np.flatnonzero((outputs != before) & ~(np.isnan(outputs) & np.isnan(before)))
+        if not changed.size:
+            return ""
+        before[:] = outputs
+        _phase(slaves, state.give)
+    return state.plan.outputs[changed[0]].name
+
+
+def _stability(plan: Plan, slave: Slave) -> list[Problem]:
+    """Whether the component's internal step exceeds the largest stable one that it publishes."""
+    ports = plan.descriptions[slave.name].ports
+    if "stable_step" not in ports or "internal_step" not in ports:
+        return []
+    values = np.zeros(1)
+    slave.get(np.array([ports["stable_step"].reference], np.uint32), values)
+    stable = float(values[0])
+    slave.get(np.array([ports["internal_step"].reference], np.uint32), values)
+    internal, communication = float(values[0]), plan.system.step(slave.name)
+    longest = min(internal, communication)
+    if longest <= stable:
+        return []
+    return [Problem(f"{slave.name}.internal_step", f"steps of {longest:.6g} s (internal_step {internal:.6g} s, communication step "
+                    f"{communication:.6g} s) exceed stable_step = {stable:.6g} s",
+                    f"set {slave.name}.internal_step to less than {stable:.3g} s, or allow instability")]

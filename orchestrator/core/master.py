@@ -1,0 +1,107 @@
+"""The loop of a run, and what ends it early: a slave that fails, or Ctrl-C."""
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Mapping
+from types import FrameType, TracebackType
+from typing import Any
+
+from .clock import to_seconds
+from .errors import RunFailed
+from .exchange import Driver, Fault, State
+from .loop import NOT_FINITE
+from .plan import Plan
+from .recording import Recorder, last_words
+from .schedule import Action
+from .slave import FATAL, STATUS_NAMES, Slave
+
+_MOST_AT_ONCE = 1000
+_SECONDS_AT_ONCE = 0.1
+"""Exchanges between two looks at Ctrl-C, and the time (s) that they should take."""
+
+Progress = Callable[[float, float], None]
+"""Called with the time reached and the stop time (s)."""
+
+
+class Interruption:
+    """Ctrl-C as a flag that the loop asks for. A context manager.
+
+    An exception would be raised wherever Python happens to be, inside an FMU too, which takes it for its own failure. The second
+    Ctrl-C is not caught any more.
+    """
+
+    def __init__(self) -> None:
+        self.requested = False
+
+    def __enter__(self) -> "Interruption":
+        self._in_main = threading.current_thread() is threading.main_thread()
+        if self._in_main:
+            self._before: Any = signal.signal(signal.SIGINT, self._request)
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._in_main:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _request(self, _signal: int, _frame: FrameType | None) -> None:
+        self.requested = True
+        signal.signal(signal.SIGINT, self._before)
+
+
+class Master:
+    """Drives slaves that are initialised through a run.
+
+    exchanges: number of exchanges carried out. wall_time: time (s) that they took, without recording.
+    """
+
+    def __init__(self, plan: Plan, slaves: Mapping[str, Slave], state: State, driver: Driver, recorder: Recorder) -> None:
+        self._plan, self._slaves, self._state, self._driver, self._recorder = plan, slaves, state, driver, recorder
+        self.exchanges, self.wall_time, self._at_once = 0, 0.0, 1
+
+    def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
+        """Carry out all exchanges. False if Ctrl-C has ended the run before; rows up to the end are recorded in any case.
+
+        Raises:
+            RunFailed: a slave failed, or gave a value that is no finite number.
+        """
+        timing, stop = self._plan.timing, self._plan.timing.seconds(self._plan.timing.exchanges)
+        self._state.open_ledger()
+        self._recorder.record(0)
+        while self.exchanges < timing.exchanges and not interruption.requested:
+            due = min(self._recorder.next_after(self.exchanges), timing.exchanges)
+            self._advance(min(due - self.exchanges, self._at_once))
+            if self.exchanges == due:
+                self._recorder.record(due)
+            if progress is not None:
+                progress(timing.seconds(self.exchanges), stop)
+        self._recorder.record(self.exchanges, finally_too=True)
+        return self.exchanges == timing.exchanges
+
+    def _advance(self, count: int) -> None:
+        began = time.perf_counter()
+        fault = self._driver.advance(self.exchanges, count)
+        took = time.perf_counter() - began
+        self.wall_time += took
+        if fault is not None:
+            self.exchanges = fault.exchange
+            raise self._failure(fault)
+        self.exchanges += count
+        self._at_once = max(1, min(_MOST_AT_ONCE, 2 * self._at_once, int(count * _SECONDS_AT_ONCE / max(took, 1e-9))))
+
+    def _failure(self, fault: Fault) -> RunFailed:
+        """What went wrong, with the slave's own words."""
+        schedule, operation, timing = self._plan.schedule, fault.operation, self._plan.timing
+        name, said = operation.component, last_words(self._slaves[operation.component])
+        if fault.status == FATAL:
+            self._slaves[name].messages.append((FATAL, "cannot be used any more"))
+        period = timing.start + fault.exchange // schedule.period * schedule.period * schedule.exchange
+        if fault.status == NOT_FINITE:
+            end = self._state.not_finite(name)
+            assert end is not None
+            return RunFailed(name, timing.seconds(fault.exchange + 1), f"{end.name} is no finite number: the computation diverges; "
+                             "reduce the exchange step or the steps of the components connected with it")
+        what = {Action.SET: "the inputs are refused", Action.GET: "the outputs are refused",
+                Action.STEP: f"the step by {to_seconds(operation.length):.6g} s failed"}[operation.action]
+        at = to_seconds(period + operation.begin) if operation.action is Action.STEP else timing.seconds(fault.exchange)
+        return RunFailed(name, at, f"{what} ({STATUS_NAMES[fault.status]}): {said}")

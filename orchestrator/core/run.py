@@ -1,0 +1,108 @@
+"""Run a system from its data to its results: the one function that an application needs."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from .clock import to_seconds
+from .errors import RunFailed
+from .exchange import State, make_driver
+from .fmu_slave import FmuFile
+from .initialisation import free, initialise, instantiate
+from .ledger import Accounts
+from .master import Interruption, Master, Progress
+from .plan import Plan, make_plan
+from .provenance import describe_run
+from .reading import Run, read_run
+from .recording import Recorder
+from .results import Figure, RunFolder
+from .slave import FATAL, Slave, Source
+from .system import System
+
+
+def sources_of(system: System) -> dict[str, Source]:
+    """The FMU files of a system."""
+    return {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
+
+
+def simulate(system: System, folder: Path, *, sources: Mapping[str, Source] | None = None, allow_unstable: bool = False,
+             plain: bool = False, progress: Progress | None = None, facts: Mapping[str, Any] | None = None) -> Run:
+    """Run a system and write its results into ``folder``. Ctrl-C ends the run and keeps what was computed.
+
+    sources: what to make components from instead of their FMU files.
+    plain: call the slaves one by one from Python instead of in the compiled loop.
+    facts: added to the run's provenance.
+
+    Raises:
+        InputRefused: the system, the FMUs' answer to it, or the folder; nothing is left behind.
+        RunFailed: the run began and could not go on; the results until then are in the folder.
+    """
+    made_from = {**sources_of(system), **(sources or {})}
+    plan = make_plan(system, made_from)
+    with Interruption() as interruption, RunFolder(folder) as results:
+        session = _Session(plan, made_from, results, plain)
+        try:
+            session.prepare(allow_unstable, dict(facts or {}))
+            session.run(interruption, progress)
+        finally:
+            session.close()
+    return read_run(folder)
+
+
+@dataclass
+class _Session:
+    """The slaves of one run and everything around them."""
+
+    plan: Plan
+    sources: Mapping[str, Source]
+    results: RunFolder
+    plain: bool
+    slaves: dict[str, Slave] = field(default_factory=dict)
+    initialised: bool = False
+
+    def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
+        began = time.perf_counter()
+        self.slaves = instantiate(self.plan, self.sources)
+        state = State(self.plan)
+        self.warnings = [*self.plan.warnings, *initialise(self.plan, self.slaves, state, allow_unstable)]
+        self.initialised = True
+        self.accounts = Accounts(self.plan, self.slaves, state)
+        recorder = Recorder(self.plan, self.slaves, state, self.accounts, self.results)
+        self.extremes = state.extremes
+        self.master = Master(self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder)
+        self.preparation = time.perf_counter() - began
+        self.results.begin(recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts})
+
+    def run(self, interruption: Interruption, progress: Progress | None) -> None:
+        failure: RunFailed | None = None
+        try:
+            status = "complete" if self.master.run(interruption, progress) else "interrupted"
+        except RunFailed as error:
+            status, failure = "failed", error
+        self.results.finish(status, self._figures(), error=str(failure) if failure else None, ended=datetime.now(UTC).isoformat(),
+                            warnings=self.warnings + self.accounts.warnings,
+                            wall_time={"preparation": self.preparation, "exchanges": self.master.wall_time})
+        if failure is not None:
+            raise failure
+
+    def _figures(self) -> list[Figure]:
+        timing, extremes, figures = self.plan.timing, self.extremes, []
+        for i, place in enumerate(extremes.place):
+            end = self.plan.outputs[place]
+            for which, values, reached in (("maximum", extremes.high, extremes.high_at),
+                                           ("minimum", extremes.low, extremes.low_at)):
+                figures += [Figure(f"{end.name} {which}", float(values[i]), end.port.unit_name),
+                            Figure(f"{end.name} {which} at", timing.seconds(int(reached[i])), "s")]
+        simulated = to_seconds(self.master.exchanges * timing.exchange)
+        return [*figures, *self.accounts.figures(), Figure("simulated time", simulated, "s"),
+                Figure("exchanges", self.master.exchanges), Figure("wall time of the exchanges", self.master.wall_time, "s")]
+
+    def close(self) -> None:
+        """End and free all slaves; one that has failed beyond repair may not be called any more."""
+        usable = [slave for slave in self.slaves.values() if all(status != FATAL for status, _ in slave.messages)]
+        for slave in usable if self.initialised else []:
+            slave.terminate()
+        free(usable)
