@@ -29,6 +29,7 @@ class Host:
         self.description = read_model_description(str(self.folder))
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.messages = []
+        Host.last = self  # reached also when the instance cannot be made
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(
             lambda env, name, status, category, text: self.messages.append((status, (category or b"").decode(), text.decode())))

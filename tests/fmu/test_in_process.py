@@ -1,0 +1,57 @@
+"""A component in this process behaves like its FMU."""
+
+import numpy as np
+import pytest
+
+from components.catalogue import component
+from fmus.in_process import InProcess
+from orchestrator.core.fmu_slave import FmuFile, read_description
+
+from .conftest import NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_description_values_and_state_are_those_of_the_fmu(fmus, name):
+    sources = InProcess(component(name)), FmuFile(fmus[name])
+    assert sources[0].model_description() == sources[1].model_description()
+    ports = read_description(sources[0].model_description()).ports.values()
+    references = np.array([p.reference for p in ports if p.kind == "Real"], np.uint32)
+    results = []
+    for source in sources:
+        slave, values = source.instantiate("one"), np.zeros(references.size)
+        assert [slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation()] == [0, 0, 0]
+        assert [slave.step(i * 1e-5, 1e-5) for i in range(5)] == [0] * 5
+        assert slave.get(references, values) == 0
+        results.append((values.tolist(), slave.state(), slave.messages))
+        slave.restore(slave.state())
+        assert slave.terminate() == 0
+        slave.free()
+    assert results[0] == results[1]
+
+
+@pytest.fixture
+def tank(probe):
+    source = InProcess(probe, {"tanks": 4})
+    slave = source.instantiate("tank")
+    slave.references = {name: np.array([port.reference], np.uint32)
+                        for name, port in read_description(source.model_description()).ports.items()}
+    return slave
+
+
+def test_types_are_converted(tank):
+    for name, value, kind in (("leak", 1.0, "Integer"), ("counting", 0.0, "Boolean"), ("first_count", 5.0, "Integer")):
+        out = np.zeros(1)
+        assert tank.set(tank.references[name], np.array([value]), kind) == 0
+        assert tank.get(tank.references[name], out, kind) == 0
+        assert out == [value]
+
+
+def test_what_is_wrong_is_the_status_of_the_call_itself(tank):
+    assert [tank.setup_experiment(0.0, 1.0), tank.enter_initialisation(), tank.exit_initialisation()] == [0, 0, 0]
+    assert tank.set(tank.references["inflow"], np.array([np.nan])) == 3
+    assert tank.step(0.0, 0.1) == 2
+    assert "inflow = nan" in tank.messages[0][1]
+    assert tank.reset() == 0
+    with pytest.raises(RuntimeError, match="no serialized state"):
+        tank.restore(b"nothing")
+    assert tank.set_text(0, "x") == 3
