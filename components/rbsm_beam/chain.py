@@ -1,8 +1,8 @@
 """Mechanics of the chain: hinges, axial springs, supports, and one step of its discs.
 
 Arrays over the discs have one more place at each end: the mirror image of the end disc in the support. With it every disc has the
-same formula, and the end half-bar has the angle (v[1] - v[0]) / R like any other. Hidden arrays: ``u``, ``v`` displacements (m) to
-the right and upwards, ``u_rate``, ``v_rate`` (m/s), ``u_felt``, ``v_felt`` what the springs respond to and ``hinge_moment`` (N m)
+same formula, and the end half-bar has the angle (v[1] - v[0]) / R like any other. Hidden arrays: displacements ``u`` to the right
+and ``v`` upwards (m), their rates (m/s), ``u_shape``, ``v_shape`` the shape that the springs are given and ``hinge_moment`` (N m)
 what follows from it, ``load.x``, ``load.y`` held forces with the couples of the torques (N), ``support.height`` (m).
 """
 
@@ -35,14 +35,14 @@ def chain(w, k):
 
 
 @kernel
-def feel(c, displacement_factor, rate_factor, w, x, k):
-    """Moments of the hinges under displacement_factor * displacement + rate_factor * rate, the supports included.
+def deform(c, displacement_factor, rate_factor, w, x, k):
+    """Give the springs the shape displacement_factor * displacement + rate_factor * rate, the supports included; moments follow.
 
-    (1, 0) gives the elastic moments, (0, 1) their rate, (1, viscosity) the elastic and viscous ones together.
+    (1, 0) gives the elastic moments, (0, 1) their rates, (1, viscosity) the elastic and viscous ones together.
     """
-    _feel_discs(c.n, displacement_factor, rate_factor, view(x, k, A.u), view(x, k, A.u_rate), view(x, k, A.u_felt))
-    _feel_discs(c.n, displacement_factor, rate_factor, view(x, k, A.v), view(x, k, A.v_rate), view(x, k, A.v_felt))
-    u, v, n = view(x, k, A.u_felt), view(x, k, A.v_felt), c.n
+    _shape_discs(c.n, displacement_factor, rate_factor, view(x, k, A.u), view(x, k, A.u_rate), view(x, k, A.u_shape))
+    _shape_discs(c.n, displacement_factor, rate_factor, view(x, k, A.v), view(x, k, A.v_rate), view(x, k, A.v_shape))
+    u, v, n = view(x, k, A.u_shape), view(x, k, A.v_shape), c.n
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
     u[0], u[n + 1] = -u[1], -u[n] if c.fixed else u[n]
     v[0] = 2.0 * (displacement_factor * height[0] + rate_factor * speed[0]) - v[1]
@@ -51,14 +51,14 @@ def feel(c, displacement_factor, rate_factor, w, x, k):
 
 
 @kernel
-def _feel_discs(n, displacement_factor, rate_factor, displacement, rate, felt):
+def _shape_discs(n, displacement_factor, rate_factor, displacement, rate, shape):
     for i in range(n + 2):
-        felt[i] = displacement_factor * displacement[i] + rate_factor * rate[i]
+        shape[i] = displacement_factor * displacement[i] + rate_factor * rate[i]
 
 
 @kernel
 def _bend(c, x, k):
-    v, moment, n = view(x, k, A.v_felt), view(x, k, A.hinge_moment), c.n
+    v, moment, n = view(x, k, A.v_shape), view(x, k, A.hinge_moment), c.n
     for i in range(n):
         moment[i + 1] = c.bending * ((v[i + 2] + v[i]) - 2.0 * v[i + 1])
     if c.fixed:
@@ -74,7 +74,7 @@ def wall_moments(c, x, k):
     """Moments at the left and right support (N m): of the wall hinge on the end half-bar's rotation, or none."""
     if not c.fixed:
         return 0.0, 0.0
-    v, n, stiffness = view(x, k, A.v_felt), c.n, WALL_HINGE * c.bending
+    v, n, stiffness = view(x, k, A.v_shape), c.n, WALL_HINGE * c.bending
     return stiffness * (v[1] - v[0]), stiffness * (v[n] - v[n + 1])
 
 
@@ -112,9 +112,10 @@ def potential(c, w, x, k):
 
 @kernel
 def move(c, dt, w, x, k):
-    """One step dt (s), semi-implicit Euler: rates from what the springs feel, then displacements with the new rates."""
+    """One step dt (s), semi-implicit Euler: rates from the shape and its moments, then displacements with the new rates."""
     kick, keep = dt / c.mass, 1.0 - c.drag * dt
-    _move_discs(c.n, dt, kick, keep, 0.0, c.axial, view(x, k, A.u_felt), view(x, k, A.load_x), view(x, k, A.u_rate), view(x, k, A.u))
+    _move_discs(c.n, dt, kick, keep, 0.0, c.axial, view(x, k, A.u_shape), view(x, k, A.load_x),
+                view(x, k, A.u_rate), view(x, k, A.u))
     _move_discs(c.n, dt, kick, keep, c.gravity * dt, -1.0 / c.spacing, view(x, k, A.hinge_moment), view(x, k, A.load_y),
                 view(x, k, A.v_rate), view(x, k, A.v))
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
@@ -123,10 +124,10 @@ def move(c, dt, w, x, k):
 
 
 @kernel
-def _move_discs(n, dt, kick, keep, fall, stiffness, felt, load, rate, displacement):
-    """In one direction: every disc is pulled by stiffness times the second difference of ``felt``."""
+def _move_discs(n, dt, kick, keep, fall, stiffness, field, load, rate, displacement):
+    """In one direction: every disc is pulled by stiffness times the second difference of ``field``."""
     for i in range(n):
-        force = load[i] + stiffness * ((felt[i + 2] + felt[i]) - 2.0 * felt[i + 1])
+        force = load[i] + stiffness * ((field[i + 2] + field[i]) - 2.0 * field[i + 1])
         rate[i + 1] = keep * rate[i + 1] + kick * force - fall
         displacement[i + 1] += dt * rate[i + 1]
 
@@ -143,8 +144,8 @@ def kinetic_energy(c, x, k):
 
 @kernel
 def axial_energy(c, x, k):
-    """Energy of the axial springs (J) for what they feel: 1/2 sum k_N du2; half springs at the supports are twice as stiff."""
-    u, n = view(x, k, A.u_felt), c.n
+    """Energy of the axial springs (J) in the present shape: 1/2 sum k_N du2; half springs at the supports are twice as stiff."""
+    u, n = view(x, k, A.u_shape), c.n
     total = 0.5 * ((u[1] - u[0]) ** 2 + (u[n + 1] - u[n]) ** 2)
     for i in range(1, n):
         total += (u[i + 1] - u[i]) ** 2
@@ -153,7 +154,7 @@ def axial_energy(c, x, k):
 
 @kernel
 def bending_energy(c, x, k):
-    """Energy of the hinges (J) for what they feel: 1/2 sum M2 / k_M."""
+    """Energy of the hinges (J) in the present shape: 1/2 sum M2 / k_M."""
     moment, n = view(x, k, A.hinge_moment), c.n
     total = 0.0
     for i in range(1, n + 1):
@@ -167,6 +168,6 @@ def bending_energy(c, x, k):
 
 @kernel
 def dissipation(c, w, x, k):
-    """Power (W) that the damping takes now. Leaves the rates in what the springs feel."""
-    feel(c, 0.0, 1.0, w, x, k)
+    """Power (W) that the damping takes now. Leaves the rates as the shape."""
+    deform(c, 0.0, 1.0, w, x, k)
     return 2.0 * (c.drag * kinetic_energy(c, x, k) + c.viscosity * (axial_energy(c, x, k) + bending_energy(c, x, k)))

@@ -4,7 +4,7 @@ from ..compilation import kernel
 from ..component import OK
 from ..ports import view
 from ..stepping import substep_count
-from .chain import axial_energy, bending_energy, chain, dissipation, feel, hold, kinetic_energy, move, potential, reactions
+from .chain import axial_energy, bending_energy, chain, deform, dissipation, hold, kinetic_energy, move, potential, reactions
 from .declarations import LAYOUT
 from .statics import rest, stable_step
 
@@ -74,7 +74,7 @@ def _move_and_react(c, n, dt, w, x, k):
     for _ in range(n):
         if damped:
             w[V.energy_damping] += dt * dissipation(c, w, x, k)
-        feel(c, 1.0, c.viscosity, w, x, k)
+        deform(c, 1.0, c.viscosity, w, x, k)
         at_left, at_right = reactions(c, w, x, k)
         left += at_left
         right += at_right
@@ -90,7 +90,7 @@ def settle(c, w, x, k):
     if left == 0.0 and right == 0.0:
         return
     for _ in range(2):
-        feel(c, 1.0, 0.0, w, x, k)
+        deform(c, 1.0, 0.0, w, x, k)
         at_left, at_right = reactions(c, w, x, k)
         w[V.energy_work_support] -= 0.5 * (left * at_left + right * at_right)
         _place(height, given)
@@ -102,7 +102,7 @@ def publish(w, x, k):
     c = chain(w, k)
     _publish_forces(c, w, x, k)
     _publish_rates(c, w, x, k)
-    feel(c, 1.0, 0.0, w, x, k)
+    deform(c, 1.0, 0.0, w, x, k)
     _publish_places(c, w, x, k)
     _publish_midspan(c, w, x, k)
     _publish_energies(c, w, x, k)
@@ -117,16 +117,16 @@ def _publish_forces(c, w, x, k):
     for i in range(c.n):
         total -= on_discs[i]
     w[V.transmitted_force] = total
-    feel(c, 1.0, c.viscosity, w, x, k)
+    deform(c, 1.0, c.viscosity, w, x, k)
     on_supports[0], on_supports[1] = reactions(c, w, x, k)
 
 
 @kernel
 def _publish_rates(c, w, x, k):
-    feel(c, 0.0, 1.0, w, x, k)
+    deform(c, 0.0, 1.0, w, x, k)
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.u_rate), view(w, k, A.velocity_x))
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.v_rate), view(w, k, A.velocity_y))
-    _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_felt), view(w, k, A.angular_velocity))
+    _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_shape), view(w, k, A.angular_velocity))
 
 
 @kernel
@@ -134,7 +134,7 @@ def _publish_places(c, w, x, k):
     _publish_axis(c.n, w[V.axis_x] + 0.5 * c.spacing, c.spacing, view(x, k, A.u), view(w, k, A.position_x))
     _publish_axis(c.n, w[V.axis_y], 0.0, view(x, k, A.v), view(w, k, A.position_y))
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.hinge_moment), view(w, k, A.moment))
-    _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_felt), view(w, k, A.angle))
+    _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_shape), view(w, k, A.angle))
 
 
 @kernel

@@ -4,7 +4,7 @@ import math
 
 from ..compilation import kernel
 from ..ports import view
-from .chain import END_HINGE, WALL_HINGE, A, feel
+from .chain import END_HINGE, WALL_HINGE, A, deform
 
 POWER_ITERATIONS = 80
 """Each halves the error of the highest mode's shape, and quarters that of its frequency."""
@@ -78,8 +78,8 @@ def stable_step(c, w, x, k):
 @kernel
 def _axial_frequency2(c):
     """Square of the highest axial frequency: a chain held at both ends, or at the left one only."""
-    shape = 1.0 if c.fixed else math.cos(0.25 * math.pi / c.n)
-    return 4.0 * c.axial / c.mass * shape * shape
+    factor = 1.0 if c.fixed else math.cos(0.25 * math.pi / c.n)
+    return 4.0 * c.axial / c.mass * factor * factor
 
 
 @kernel
@@ -98,7 +98,7 @@ def _highest_frequency2(c, parity, w, x, k):
     v[1], v[c.n] = 1.0, parity
     quotient = 0.0
     for _ in range(POWER_ITERATIONS):
-        feel(c, 1.0, 0.0, w, x, k)
+        deform(c, 1.0, 0.0, w, x, k)
         norm, product = 0.0, 0.0
         for i in range(1, c.n + 1):
             restoring = ((moment[i + 1] + moment[i - 1]) - 2.0 * moment[i]) / (c.spacing * c.mass)
