@@ -1,0 +1,164 @@
+"""The laboratory of Sonoda et al. (1993), sec. 2 and 4 (2): data of the tests and the system that computes one of them."""
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from components.units import cm, kgf
+
+from ..core.system import Connection, ComponentSpec, EnergyAlarm, PowerBond, SharedValue, System
+
+_DATA = Path(__file__).parent / "data"
+
+STATIC_RATIO = 1.29
+"""k (kgf/cm) / E_bar (kgf/cm2) of table 4; gives E_bar for the tests that table 4 leaves out."""
+
+Coupling = Literal["paper", "impulse", "jacobi"]
+"""paper: sand first, inputs held, exchange 1e-5 s. impulse: sand first, kinematics extrapolated, mean forces, 1e-4 s.
+jacobi: all at once, inputs held, 1e-4 s."""
+
+_COUPLINGS: Mapping[str, tuple[str, float, str, str]] = {
+    "paper": ("sequential", 1e-5, "held", "last"),
+    "impulse": ("sequential", 1e-4, "linear", "mean"),
+    "jacobi": ("jacobi", 1e-4, "held", "last"),
+}
+
+
+@dataclass(frozen=True)
+class Test:
+    """A row of table 2, with E_bar from table 4 where it is given there."""
+
+    number: int
+    sand: str
+    box: int
+    water_content: float
+    """percent of mass"""
+    compaction: float
+    """Pa"""
+    static_stiffness: float
+    """secant spring constant k at 4 cm (N/m)"""
+    peak_force: float
+    """measured peak of the transmitted force (N)"""
+    modulus: float
+    """fictitious modulus E_bar (Pa)"""
+    modulus_in_table_4: bool
+
+
+def _rows(table: str) -> list[dict[str, str]]:
+    lines = (_DATA / f"sonoda1993_{table}.csv").read_text(encoding="utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+@cache
+def tests() -> dict[int, Test]:
+    """The sixteen tests of table 2 by number."""
+    printed = {int(row["no"]): float(row["e_bar_kgf_per_cm2"]) for row in _rows("table4")}
+    found = {}
+    for row in _rows("table2"):
+        number, stiffness = int(row["no"]), float(row["k_kgf_per_cm"])
+        found[number] = Test(
+            number, row["sand"], int(row["box"]), float(row["water_content_percent"]),
+            float(row["compaction_pressure_kgf_per_cm2"]) * kgf / cm**2, stiffness * kgf / cm,
+            float(row["peak_transmitted_force_kgf"]) * kgf,
+            printed.get(number, stiffness / STATIC_RATIO) * kgf / cm**2, number in printed)
+    return found
+
+
+@dataclass(frozen=True)
+class TableFiveRow:
+    """A row of table 5: what the paper computed."""
+
+    modulus: float
+    """Pa"""
+    damping: float
+    penetration: float
+    """m"""
+    peak_force: float
+    """N"""
+
+
+@cache
+def table_5() -> list[TableFiveRow]:
+    """Influence of the damping constant h, computed in the paper."""
+    return [TableFiveRow(float(r["e_bar_kgf_per_cm2"]) * kgf / cm**2, float(r["h"]), float(r["penetration_cm"]) * cm,
+                         float(r["peak_transmitted_force_kgf"]) * kgf) for r in _rows("table5")]
+
+
+BALL_MASS = 4.0
+BALL_RADIUS = 4.95 * cm
+BALL_SPEED = 8.0
+SPAN = 120 * cm
+ELEMENTS = 24
+LAYER = 10 * cm
+DISC_RADIUS = 0.5 * cm
+BOX_WIDTH = {1: 37 * cm, 2: 45 * cm}
+"""Widths of the two sand boxes (fig. 2)."""
+_GAP = 0.5e-3
+"""Distance (m) between ball and sand at the start."""
+
+
+def discs_in(box: int) -> int:
+    """Number of sand discs of 1 cm in a layer of 10 cm (370 in box 1, as in the paper)."""
+    return round(BOX_WIDTH[box] / (2 * DISC_RADIUS)) * round(LAYER / (2 * DISC_RADIUS))
+
+
+def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper") -> System:
+    """The laboratory impact of fig. 14 as a co-simulation of three FMUs.
+
+    fmus: files of the FMUs ``rock``, ``sand`` (built for :func:`discs_in` discs) and ``beam``.
+    """
+    master, exchange, kinematics, forces = _COUPLINGS[coupling]
+    width, spacing = BOX_WIDTH[test.box], SPAN / ELEMENTS
+    return System(
+        name="lab-impact" if test.number == 4 else f"lab-impact-{test.number}",
+        description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand on an H-100x50x7 beam of 120 cm",
+        components={
+            "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
+                "modulus": test.modulus, "box.left": 0.5 * (SPAN - width), "box.width": width,
+                "kinematics": kinematics, "forces": forces}),
+            "rock": ComponentSpec(fmu=fmus["rock"], parameters={
+                "position0.x": 0.5 * SPAN, "position0.y": LAYER + BALL_RADIUS + _GAP, "velocity0.y": -BALL_SPEED}),
+            "beam": ComponentSpec(fmu=fmus["beam"], parameters={"span": SPAN, "axis.y": -0.5 * spacing}),
+        },
+        shared={
+            "rock_radius": SharedValue(value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
+            "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
+            "beam_radius": SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"]),
+        },
+        connections=lab_connections(),
+        bonds=lab_bonds(),
+        energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
+        master=master,
+        order=["sand", "rock", "beam"],
+        stop_time=0.03,
+        exchange_step=exchange,
+        output_interval=1e-4,
+        state_interval=5e-4,
+        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "beam.midspan.deflection", "beam.energy.elastic",
+               "beam.energy.strain_estimate"],
+    )
+
+
+_MOTION = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity")
+_FORCES = ("force.x", "force.y", "torque")
+
+
+def lab_connections() -> list[Connection]:
+    """Kinematics of rock and beam to the sand, contact forces back."""
+    return ([Connection(source=f"rock.{q}", target=f"sand.rock.{q}") for q in _MOTION]
+            + [Connection(source=f"beam.{q}[*]", target=f"sand.beam.{q}[*]") for q in _MOTION]
+            + [Connection(source=f"sand.rock.{q}", target=f"rock.{q}") for q in _FORCES]
+            + [Connection(source=f"sand.beam.{q}[*]", target=f"beam.{q}[*]") for q in _FORCES])
+
+
+def lab_bonds() -> dict[str, PowerBond]:
+    """The two interfaces of the cushion."""
+    return {
+        "sand_rock": PowerBond(giver="sand", force=[f"rock.{q}" for q in _FORCES], taker="rock", position=list(_MOTION[:3]),
+                               work="energy.work.rock"),
+        "sand_beam": PowerBond(giver="sand", force=[f"beam.{q}[*]" for q in _FORCES], taker="beam",
+                               position=[f"{q}[*]" for q in _MOTION[:3]], work="energy.work.beam"),
+    }
