@@ -10,6 +10,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import fmpy
 import numpy as np
@@ -87,6 +88,7 @@ def read_description(xml: bytes) -> Description:
     Raises:
         ValueError: it is no FMI 2.0 co-simulation, or cannot be understood.
     """
+    _check_kind(xml)
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as file:
         file.writestr(_DESCRIPTION_FILE, xml)
@@ -98,16 +100,23 @@ def read_description(xml: bytes) -> Description:
         model = _read_leniently(archive, error)
     except Exception as error:  # whatever a broken file does to the reader
         raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
-    if model.fmiVersion != "2.0":
-        raise ValueError(f"is FMI {model.fmiVersion}; this program drives FMI 2.0")
-    if model.coSimulation is None:
-        raise ValueError("is for model exchange only; co-simulation is needed")
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation
     return Description(model.modelName, model.guid, interface.modelIdentifier, model.generationTool or "",
                        interface.canBeInstantiatedOnlyOncePerProcess,
                        interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
                        {v.name: _port(v, units) for v in model.modelVariables}, warnings)
+
+
+def _check_kind(xml: bytes) -> None:
+    try:
+        root = ElementTree.fromstring(xml)
+    except ElementTree.ParseError as error:
+        raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
+    if root.get("fmiVersion") != "2.0":
+        raise ValueError(f"is FMI {root.get('fmiVersion')}; this program drives FMI 2.0")
+    if root.find("CoSimulation") is None:
+        raise ValueError("is for model exchange only; co-simulation is needed")
 
 
 def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:

@@ -58,8 +58,8 @@ class Mock:
     calls: list[tuple[Any, ...]] = field(default_factory=list)
 
     def model_description(self) -> bytes:
-        units = "".join(f"<Unit name={quoteattr(u)}><BaseUnit {_UNITS[u]}/></Unit>" for u in sorted({p.unit for p in self.ports} - {""})
-                        if u in _UNITS)
+        used = sorted({port.unit for port in self.ports} & set(_UNITS))
+        units = "".join(f"<Unit name={quoteattr(unit)}><BaseUnit {_UNITS[unit]}/></Unit>" for unit in used)
         variables = "".join(port.xml(i) for i, port in enumerate(self.ports))
         outputs = "".join(f"<Unknown index='{i + 1}'/>" for i, p in enumerate(self.ports) if p.causality == "output")
         flag = str(self.serializes).lower()
@@ -162,11 +162,11 @@ def spring(stiffness: float = 1.0, ends: int = 1) -> Mock:
     return Mock(ports, step, step)
 
 
-def wired(components: Mapping[str, Mock], connections: list[str], **settings: Any) -> tuple[Any, Mapping[str, Mock]]:
+def wired(mocks: Mapping[str, Mock], connections: list[str], **settings: Any) -> tuple[Any, Mapping[str, Mock]]:
     """A system of mocks and its sources."""
     from orchestrator.core.system import system_from
 
     specs = settings.pop("components", {})
-    data = {"name": "test", "components": {name: {"fmu": "mock", **specs.get(name, {})} for name in components},
+    data = {"name": "test", "components": {name: {"fmu": "mock", **specs.get(name, {})} for name in mocks},
             "connections": connections, "stop_time": 1.0, "exchange_step": 0.1, **settings}
-    return system_from(data), components
+    return system_from(data), mocks

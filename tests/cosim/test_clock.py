@@ -1,0 +1,18 @@
+import pytest
+
+from orchestrator.core.clock import to_seconds, to_ticks
+
+
+@pytest.mark.parametrize(("seconds", "ticks"), [
+    (1e-6, 10 ** 6), (2.5e-7, 250_000), (0.1, 10 ** 11), (1e-12, 1), (-0.5, -5 * 10 ** 11), (9.765625e-6, 9_765_625)])
+def test_ticks_are_the_decimal_number_that_was_written(seconds, ticks):
+    assert to_ticks(seconds) == ticks
+
+
+def test_a_time_comes_back_as_the_float_that_was_written():
+    assert [to_seconds(to_ticks(n / 1e5)) for n in range(3000)] == [n / 1e5 for n in range(3000)]
+
+
+def test_a_step_between_two_ticks_is_refused():
+    with pytest.raises(ValueError, match=r"1e-13 s is no whole number of picoseconds"):
+        to_ticks(1e-13)
