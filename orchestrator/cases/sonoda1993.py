@@ -9,7 +9,7 @@ from typing import Literal
 
 from components.units import cm, kgf
 
-from ..core.system import Connection, ComponentSpec, EnergyAlarm, PowerBond, SharedValue, System
+from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System
 
 _DATA = Path(__file__).parent / "data"
 

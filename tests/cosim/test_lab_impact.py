@@ -1,0 +1,120 @@
+"""The laboratory impact as a co-simulation of FMUs against one monolithic program of the same physics."""
+
+import numpy as np
+import pytest
+
+from components.sand_cushion import COMPONENT as SAND
+from components.sand_cushion.declarations import ROW
+from fmus.build import build_if_needed
+from orchestrator.cases.sonoda1993 import lab_system
+from orchestrator.cases.sonoda1993 import tests as laboratory_tests
+from orchestrator.core.errors import InputRefused, RunFailed
+from orchestrator.core.reading import Run, read_run
+from orchestrator.core.run import simulate
+from orchestrator.core.system import System, with_values
+from tests.monolithic import Monolith, from_system
+
+END = 0.02
+IMPACT_ENERGY = 0.5 * 4.0 * 8.0**2
+
+
+@pytest.fixture(scope="module")
+def fmus() -> dict[str, str]:
+    names = {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}
+    return {key: str(build_if_needed(name)) for key, name in names.items()}
+
+
+def system(fmus: dict[str, str], coupling: str = "paper") -> System:
+    return lab_system(fmus, laboratory_tests()[4], coupling).model_copy(update={"stop_time": END, "state_interval": END})
+
+
+@pytest.fixture(scope="module")
+def paper(fmus, tmp_path_factory) -> Run:
+    return simulate(system(fmus), tmp_path_factory.mktemp("paper") / "run")
+
+
+@pytest.fixture(scope="module")
+def monolith(fmus) -> Monolith:
+    program = from_system(system(fmus), END)
+    program.run()
+    return program
+
+
+def final_sand(run: Run):
+    """The sand as the FMU's last serialized state has it."""
+    *_, (time, content) = run.states("sand")
+    assert time == pytest.approx(END, abs=1e-12)
+    instance = SAND.instance()
+    begin = content.index(b"rockshed")
+    instance.from_bytes(content[begin:begin + len(instance.to_bytes())])
+    return instance
+
+
+def test_positions_equal_the_monolithic_program_bit_for_bit(paper, monolith):
+    for axis in ("x", "y"):
+        assert paper.series[f"rock.position.{axis}"][-1] == monolith.rock[f"position.{axis}"]
+        beam = [paper.series[f"beam.position.{axis}[{i + 1}]"][-1] for i in range(24)]
+        np.testing.assert_array_equal(beam, monolith.beam[f"position.{axis}"])
+    discs = slice(0, ROW * 370)
+    np.testing.assert_array_equal(final_sand(paper).state("body")[discs], monolith.sand.state("body")[discs])
+
+
+def test_the_run_is_no_trivial_one(paper):
+    """The rock has come to a depth of several centimetres and the beam has bent."""
+    assert paper.figure("sand.penetration maximum").value > 0.05
+    assert paper.figure("beam.midspan.deflection maximum").value > 1e-4
+
+
+def test_impulse_conserving_exchange_is_as_good_at_ten_times_the_step(fmus, monolith, tmp_path):
+    run = simulate(system(fmus, "impulse"), tmp_path / "run")
+    peak = monolith.column("transmitted_force").max()
+    assert run.figure("sand.transmitted_force maximum").value == pytest.approx(peak, rel=0.01)
+    assert abs(run.figure("coupling.sand_rock.energy").value) < 0.0005 * IMPACT_ENERGY
+    assert abs(run.figure("coupling.sand_beam.energy").value) < 0.0005 * IMPACT_ENERGY
+    work = monolith.column("work_on_rock").sum()
+    assert run.figure("coupling.sand_rock.work.taker").value == pytest.approx(work, abs=0.005 * IMPACT_ENERGY)
+
+
+def test_jacobi_with_held_inputs_shows_its_error_in_the_ledger(fmus, tmp_path):
+    """About 1.9 % of the impact energy by the digest of the paper, whose sand had another stiffness."""
+    run = simulate(system(fmus, "jacobi"), tmp_path / "run")
+    assert 0.012 * IMPACT_ENERGY < run.figure("coupling.sand_rock.energy").value < 0.025 * IMPACT_ENERGY
+    assert any("sand_rock" in warning for warning in run.provenance["warnings"])
+
+
+def residual(run: Run) -> float:
+    """Largest error of the energy balance of the whole system, as a share of the impact energy: what the components miss
+    themselves, and the work that one side of an interface counts and the other does not."""
+    names = [f"{name}.energy.residual" for name in ("rock", "sand", "beam")]
+    names += ["rock.energy.work.contact", "sand.energy.work.rock", "beam.energy.work.contact", "sand.energy.work.beam"]
+    return float(np.abs(sum(run.series[name] for name in names)).max()) / IMPACT_ENERGY
+
+
+def test_energy_residual_is_small_and_halves_with_the_step(fmus, paper, tmp_path):
+    half = with_values(system(fmus), {"sand.internal_step": 5e-6, "rock.internal_step": 5e-6, "beam.internal_step": 5e-7})
+    finer = simulate(half.model_copy(update={"exchange_step": 5e-6}), tmp_path / "run")
+    assert residual(paper) < 0.006
+    assert residual(finer) < 0.6 * residual(paper)
+
+
+def test_a_single_step_for_sand_and_beam_is_refused_with_both_numbers(fmus, tmp_path):
+    coarse = with_values(system(fmus), {"beam.internal_step": 1e-5})
+    with pytest.raises(InputRefused, match=r"1e-05.*6\.\d+e-06"):
+        simulate(coarse, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_single_step_diverges_within_a_millisecond_when_it_is_allowed(fmus, tmp_path):
+    coarse = with_values(system(fmus), {"beam.internal_step": 1e-5})
+    with pytest.raises(RunFailed, match=r"beam at t = .*diverged.*internal_step is 1e-05 s and the largest stable one 6"):
+        simulate(coarse, tmp_path / "run", allow_unstable=True)
+    run = read_run(tmp_path / "run")
+    assert run.status == "failed"
+    assert run.series["time"][-1] <= 1e-3
+    assert "beam" in run.provenance["error"]
+
+
+def test_plain_calls_give_the_same_bits_as_the_compiled_loop(fmus, paper, tmp_path):
+    plain = simulate(system(fmus), tmp_path / "run", plain=True)
+    for name, values in paper.series.items():
+        np.testing.assert_array_equal(values, plain.series[name], err_msg=name)

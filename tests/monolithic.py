@@ -1,0 +1,126 @@
+"""The laboratory impact as one program: rock, sand and beam in one loop over shared positions, without ports, FMI or master.
+
+This is the reference that the co-simulation is compared with. It uses the components' physics (contact forces, motion of discs,
+rock and beam) but its own loop: forces at the positions of the moment, then everything moves, the beam in shorter steps.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.compilation import kernel
+from components.component import Instance
+from components.falling_rock import COMPONENT as ROCK
+from components.falling_rock import kernel as rock_kernel
+from components.falling_rock.declarations import LAYOUT as ROCK_LAYOUT
+from components.ports import view
+from components.rbsm_beam import COMPONENT as BEAM
+from components.rbsm_beam import kernel as beam_kernel
+from components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
+from components.sand_cushion import COMPONENT as SAND
+from components.sand_cushion import contact_search, forces
+from components.sand_cushion import kernel as sand_kernel
+from components.sand_cushion.declarations import FORCE_ROW, FREE, ROW, SUM
+from components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
+from orchestrator.core.system import System
+
+RV, SV, BV = ROCK_LAYOUT.scalar, SAND_LAYOUT.scalar, BEAM_LAYOUT.scalar
+SA, BA = SAND_LAYOUT.array, BEAM_LAYOUT.array
+
+COLUMNS = ("transmitted_force", "rock_force_y", "penetration", "beam_energy", "work_on_rock", "work_on_beam")
+
+
+@dataclass
+class Monolith:
+    """The three subsystems in one program, initialised; ``history`` has a row of :data:`COLUMNS` for every step."""
+
+    rock: Instance
+    sand: Instance
+    beam: Instance
+    dt: float
+    beam_steps: int
+    history: NDArray[np.float64]
+
+    def run(self) -> None:
+        """All steps."""
+        inertia = float(rock_kernel.inertia(self.rock.w))
+        rock, sand, beam = self.rock, self.sand, self.beam
+        status = _run(self.dt, self.beam_steps, inertia, rock.w, sand.w, sand.x, sand.k, beam.w, beam.x, beam.k, self.history)
+        assert status == 0, f"stopped with status {status}"
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """One column of the history."""
+        return self.history[:, COLUMNS.index(name)]
+
+
+def from_system(system: System, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6) -> Monolith:
+    """The monolithic program of a laboratory system: same parameters, same start."""
+    instances = {name: component.instance(**_sizes(name, system))
+                 for name, component in (("rock", ROCK), ("sand", SAND), ("beam", BEAM))}
+    for name, instance in instances.items():
+        for parameter, value in system.components[name].parameters.items():
+            instance[parameter] = value
+    for shared in system.shared.values():
+        for target in shared.targets:
+            name, _, parameter = target.partition(".")
+            instances[name][parameter] = shared.value
+    rock, sand, beam = instances["rock"], instances["sand"], instances["beam"]
+    for instance in (rock, beam):
+        instance.initialise()
+    for quantity in ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity"):
+        sand[f"rock.{quantity}"] = rock[quantity]
+        sand[f"beam.{quantity}"] = beam[quantity]
+    sand.initialise()
+    return Monolith(rock, sand, beam, dt, round(dt / beam_step), np.zeros((round(stop_time / dt), len(COLUMNS))))
+
+
+def _sizes(name: str, system: System) -> Mapping[str, int]:
+    width = system.components["sand"].parameters["box.width"]
+    return {"rock": {}, "sand": {"discs": round(float(width) / 0.01) * 10}, "beam": {}}[name]
+
+
+@kernel
+def _run(dt, beam_steps, inertia, rw, sw, sx, sk, bw, bx, bk, history):
+    n, m = contact_search.disc_count(sk), contact_search.beam_count(sk)
+    body, load, sums = view(sx, sk, SA.body), view(sx, sk, SA.load), view(sx, sk, SA.sums)
+    fx, fy, torque = view(bw, bk, BA.force_x), view(bw, bk, BA.force_y), view(bw, bk, BA.torque)
+    for s in range(history.shape[0]):
+        if contact_search.is_stale(sw, sx, sk):
+            contact_search.rebuild(sw, sx, sk)
+        forces.contact_forces(dt, sw, sx, sk)
+        sand_kernel.move_discs(n, dt, sw[SV.gravity], sw[SV.rotation] == FREE, body, view(sx, sk, SA.angle), load, sums)
+        at = FORCE_ROW * n
+        history[s, 0], history[s, 1] = sums[SUM.transmitted], load[at + 1]
+        rock_y = rw[RV.position_y]
+        history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
+        rock_x, rock_angle = rw[RV.position_x], rw[RV.angle]
+        rock_kernel.move(rw[RV.mass], inertia, rw[RV.gravity], load[at], load[at + 1], load[at + 2], dt, rw)
+        history[s, 4] = (load[at] * (rw[RV.position_x] - rock_x) + load[at + 1] * (rw[RV.position_y] - rock_y)
+                         + load[at + 2] * (rw[RV.angle] - rock_angle))
+        for b in range(m):
+            at = FORCE_ROW * (n + 1 + b)
+            fx[b], fy[b], torque[b] = load[at], load[at + 1], load[at + 2]
+        before = bw[BV.energy_work_contact]
+        beam_kernel.advance(beam_steps, dt / beam_steps, bw, bx, bk)
+        status = beam_kernel.publish(bw, bx, bk)
+        if status != 0:
+            return status
+        history[s, 3], history[s, 5] = bw[BV.energy_elastic], bw[BV.energy_work_contact] - before
+        _share(n, m, rw, bw, bk, body)
+    return 0
+
+
+@kernel
+def _share(n, m, rw, bw, bk, body):
+    """Rock and beam discs are where they are for the sand too."""
+    at = ROW * n
+    body[at], body[at + 1], body[at + 6] = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
+    body[at + 2], body[at + 3], body[at + 4] = rw[RV.velocity_x], rw[RV.velocity_y], rw[RV.angular_velocity]
+    px, py, angle = view(bw, bk, BA.position_x), view(bw, bk, BA.position_y), view(bw, bk, BA.angle)
+    vx, vy, omega = view(bw, bk, BA.velocity_x), view(bw, bk, BA.velocity_y), view(bw, bk, BA.angular_velocity)
+    for b in range(m):
+        at = ROW * (n + 1 + b)
+        body[at], body[at + 1], body[at + 6] = px[b], py[b], angle[b]
+        body[at + 2], body[at + 3], body[at + 4] = vx[b], vy[b], omega[b]
