@@ -180,9 +180,10 @@ class ComponentSlave(Fmi2Slave):
 
     def _compile_step(self) -> None:
         """Compile the step now or load it from the cache, so that the first step takes no longer than the others."""
-        step: Any = self.component.step
-        with ForeignFoldersHidden():
-            step.compile(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
+        compiler = getattr(self.component.step, "compile", None)
+        if compiler is not None:  # there is none with NUMBA_DISABLE_JIT, for debugging
+            with ForeignFoldersHidden():
+                compiler(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
 
     def _warn_of_unstable_step(self) -> None:
         if {"internal_step", "stable_step"} <= self._instance.references.keys():

@@ -55,3 +55,17 @@ def test_what_is_wrong_is_the_status_of_the_call_itself(tank):
     with pytest.raises(RuntimeError, match="no serialized state"):
         tank.restore(b"nothing")
     assert tank.set_text(0, "x") == 3
+
+
+DEBUGGING = """
+from components.catalogue import component
+from fmus.in_process import InProcess
+slave = InProcess(component("FallingRock")).instantiate("rock")
+statuses = slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation(), slave.step(0.0, 1e-5)
+assert statuses == (0, 0, 0, 0)
+print(type(component("FallingRock").step).__name__)
+"""
+
+
+def test_the_code_runs_uncompiled_for_a_debugger(python):
+    assert python(DEBUGGING, NUMBA_DISABLE_JIT="1").strip() == "function"
