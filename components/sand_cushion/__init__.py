@@ -18,8 +18,8 @@ COMPONENT = Component(
     faults={
         kernel.LIST_FULL: "there is no more room for contact candidates (12 a disc): reduce disc.spread "
                           "({disc.spread}) or the overlap of the discs",
-        kernel.DIVERGED: "the energy of the discs is no longer a finite number: the internal step {internal_step} s stands against a "
-                         "stable step of {stable_step} s; reduce internal_step or the exchange step",
+        kernel.DIVERGED: "the energy of the discs is no longer a finite number: the internal step {internal_step} s stands against "
+                         "a stable step of {stable_step} s; reduce internal_step or the exchange step",
         kernel.ROCK_INSIDE: "the rock starts inside the sand: its lowest point lies {penetration} m under the surface at "
                             "{surface_height} m; raise the rock's position0.y by at least that much",
         kernel.BEAM_TOO_NARROW: "the beam is narrower than the cushion, whose box begins at box.left = {box.left} m and is "

@@ -10,7 +10,7 @@ from .declarations import BEAM_SURFACE, FORCE_ROW, FREE, INDEX, KIND, LAW, LAYOU
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-_ROLLING = 2.25
+ROLLING = 2.25
 """Rolling stiffness / (k_n (mu_r R)^2), after Ai et al. (2011), eq. (20)."""
 
 
@@ -69,7 +69,7 @@ def between_discs(n, dt, rotating, body, load, row, partner, spring, roll, law, 
             turn = 0.0
             if rolls:
                 radius = ri * rj / reach
-                bend = _ROLLING * stiffness * rolling * rolling * radius * radius
+                bend = ROLLING * stiffness * rolling * rolling * radius * radius
                 turn, lost = rolling_moment(roll[p], wj - wi, bend, rolling * radius * normal, dt)
                 roll[p] = turn
                 rolled += lost

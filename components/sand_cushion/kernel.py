@@ -8,7 +8,7 @@ from ..ports import view
 from ..stepping import substep_count
 from .contact_search import beam_count, disc_count, forget, is_stale, rebuild
 from .declarations import BEAM_DISCS, FLOOR, FORCE_ROW, FREE, INDEX, KIND, LAW, LAYOUT, LINEAR, MEAN, RANDOM, ROW, SUM
-from .forces import contact_forces
+from .forces import ROLLING, contact_forces
 from .packing import pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -84,20 +84,26 @@ def set_laws(w, x, k):
 
 @kernel
 def stable_step_of(w):
-    """Step below which the integration of the lightest disc between six of its neighbours is stable.
+    """Step below which the integration of the lightest disc among six neighbours of its kind is stable.
 
-    For a contact, (n.(u_j - u_i))^2 <= 2 (n.u_i)^2 + 2 (n.u_j)^2; with six neighbours sum n n^T = 3 I. So
-    omega^2 <= 2 * 3 (k_n + k_s) / m, and 1 + 2 times the tangential part where discs turn (I = m r^2 / 2). Velocity lags
-    half a step behind in the dashpots: dt <= 2 / omega (sqrt(1 + z^2) - z), z the damping of that mode.
+    For a contact, (n.(u_j - u_i))^2 <= 2 (n.u_i)^2 + 2 (n.u_j)^2, and six neighbours have sum n n^T = 3 I: translation has
+    omega^2 <= 6 (k_n + k_s) / m. Discs that all turn the same way shear their contacts most: omega^2 <= 24 k_s / m, and rolling
+    resistance adds 12 of its stiffness / I. Dashpots likewise, with the velocity of half a step before:
+    dt <= 2 / omega (sqrt(1 + z^2) - z) with 2 z omega their bound.
     """
     least = w[V.disc_radius] * (1.0 - (w[V.disc_spread] if w[V.packing] == RANDOM else 0.0))
     mass = w[V.unit_weight] * math.pi * least * least * w[V.depth]
     stiffness = sand_stiffness(w)
     for kind in (KIND.rock, KIND.base, KIND.wall):
         stiffness = max(stiffness, boundary_stiffness(kind, w))
-    turning = 3.0 if w[V.rotation] == FREE else 1.0
-    omega = math.sqrt(6.0 * stiffness * (1.0 + turning * w[V.tangential_ratio]) / mass)
-    z = w[V.damping] * omega / math.sqrt(stiffness / mass)
+    contact = math.sqrt(stiffness / mass)
+    ratio = w[V.tangential_ratio]
+    springs, dashpots = 6.0 * (1.0 + ratio), 6.0 * (1.0 + math.sqrt(ratio))
+    if w[V.rotation] == FREE:
+        springs = max(springs, 24.0 * ratio + 6.0 * ROLLING * w[V.rolling_resistance] ** 2)
+        dashpots = max(dashpots, 24.0 * math.sqrt(ratio))
+    omega = contact * math.sqrt(springs)
+    z = w[V.damping] * dashpots * contact / omega
     return 2.0 / omega * (math.sqrt(1.0 + z * z) - z)
 
 
