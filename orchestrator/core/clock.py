@@ -1,6 +1,7 @@
 """Time as whole ticks: steps add up exactly, and a time in seconds is computed from its tick and never accumulated."""
 
 from decimal import Decimal
+from math import ulp
 
 TICKS_PER_SECOND = 10 ** 12
 """A tick is a picosecond: steps in use go down to 1e-7 s, and a step that follows from a wave speed needs a few digits more. In 64
@@ -8,13 +9,14 @@ bits, that reaches over 100 days."""
 
 
 def to_ticks(seconds: float) -> int:
-    """The ticks in ``seconds``, read as the decimal number that its shortest writing shows.
+    """The ticks in ``seconds``, as far as a float can tell: 3 * 0.1 has as many as 0.3.
 
     Raises:
         ValueError: not a whole number of ticks.
     """
-    ticks = Decimal(repr(float(seconds))) * TICKS_PER_SECOND
-    if ticks != ticks.to_integral_value():
+    exact = Decimal(seconds) * TICKS_PER_SECOND
+    ticks = exact.to_integral_value()
+    if abs(exact - ticks) > 2 * Decimal(ulp(seconds)) * TICKS_PER_SECOND:
         raise ValueError(f"{seconds!r} s is no whole number of picoseconds")
     return int(ticks)
 

@@ -47,9 +47,9 @@ def initialise(plan: Plan, slaves: Mapping[str, Slave], state: State, allow_unst
     """
     timing = plan.timing
     _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)))
-    _settle(state, slaves)
+    before = _settle(state, slaves)
     _phase(slaves, lambda slave: slave.exit_initialisation())
-    unsettled = _settle(state, slaves)
+    unsettled = _settle(state, slaves) or before
     if bad := [end for name in plan.order if (end := state.not_finite(name)) is not None]:
         raise InputRefused([Problem(e.name, "is no finite number after the initialisation", "check the parameters") for e in bad])
     warnings = [f"{name}: {text}" for name, slave in slaves.items() for status, text in slave.messages if status == WARNING]

@@ -14,7 +14,8 @@ from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 SHAPES = """<TypeDefinitions><SimpleType name='Shape'><Enumeration><Item name='sphere' value='1'/><Item name='disc' value='2'/>
             </Enumeration></SimpleType></TypeDefinitions>"""
 BODY = Mock([par("mass", 1.0, "kg", extra="min='0.001' max='100'"),
-             par("shape", 1, kind="Enumeration", extra="declaredType='Shape'"), par("layers", 3, kind="Integer"), par("rough", 1, kind="Boolean"),
+             par("shape", 1, kind="Enumeration", extra="declaredType='Shape'"),
+             par("layers", 3, kind="Integer"), par("rough", 1, kind="Boolean"),
              inp("force.x", "N"), inp("force.y", "N"), inp("load[1]", "kN"), inp("load[2]", "kN"), inp("gear", kind="Integer"),
              out("position.x", "m"), out("speed", "m/s"), out("count", kind="Integer")], types=SHAPES)
 PUSH = Mock([inp("position", "m"), out("force.x", "N"), out("force.y", "N"), *(out(f"load[{i}]", "N") for i in (1, 2, 3))])
