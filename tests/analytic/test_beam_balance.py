@@ -60,7 +60,8 @@ def test_momentum(chosen, sequence, speed):
         force = instance["force.y"] - MASS * instance["gravity"]
         left, right = instance["support.mean_force.y"]
         impulse = EXCHANGE * (force.sum() - left - right)
-        scale = EXCHANGE * (np.abs(force).sum() + abs(left) + abs(right)) + 1e-9
+        passed_on = np.abs(force).sum() + np.abs(instance["torque"]).sum() * N / SPAN + abs(left) + abs(right)
+        scale = EXCHANGE * passed_on + MASS * (np.abs(before) + np.abs(instance["velocity.y"])).sum()
         assert gained.sum() == pytest.approx(impulse, abs=1e-12 * scale)
         if chosen["supports"] == "simple":
             moment_impulse = EXCHANGE * (force @ PLACES + instance["torque"].sum() - right * SPAN)
