@@ -12,7 +12,7 @@ from orchestrator.core.errors import InputRefused, RunFailed
 from orchestrator.core.reading import Run, read_run
 from orchestrator.core.run import simulate
 from orchestrator.core.system import System, with_values
-from tests.monolithic import Monolith, from_system
+from orchestrator.bench.monolithic import Monolith, from_system
 
 END = 0.02
 IMPACT_ENERGY = 0.5 * 4.0 * 8.0**2

@@ -24,7 +24,8 @@ from components.sand_cushion import contact_search, forces
 from components.sand_cushion import kernel as sand_kernel
 from components.sand_cushion.declarations import FORCE_ROW, FREE, ROW, SUM
 from components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
-from orchestrator.core.system import System
+
+from ..core.system import System
 
 RV, SV, BV = ROCK_LAYOUT.scalar, SAND_LAYOUT.scalar, BEAM_LAYOUT.scalar
 SA, BA = SAND_LAYOUT.array, BEAM_LAYOUT.array

@@ -1,0 +1,56 @@
+"""Price of the coupling: the laboratory impact as FMUs against the same physics as one program."""
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+
+from fmus.build import build_if_needed
+
+from ..cases.sonoda1993 import Coupling, lab_system, tests
+from ..core.run import simulate
+from ..core.system import System
+from .interleave import Contestant
+from .monolithic import from_system
+
+END = 0.02
+"""Simulated time (s)."""
+
+
+def lab(coupling: Coupling) -> System:
+    """Test 4 for 20 ms; rows of results every 0.1 ms as usual, but no states for pictures, which the one program has not either."""
+    fmus = {key: str(build_if_needed(name)) for key, name in {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}.items()}
+    system = lab_system(fmus, tests()[4], coupling)
+    components = {name: spec.model_copy(update={"record_states": False}) for name, spec in system.components.items()}
+    return system.model_copy(update={"components": components, "stop_time": END, "state_interval": None})
+
+
+def one_program() -> Contestant:
+    """The monolithic program, without its preparation."""
+    system = lab("paper")
+
+    def work() -> float:
+        program = from_system(system, END)
+        begin = perf_counter()
+        program.run()
+        return perf_counter() - begin
+
+    return work
+
+
+def co_simulation(coupling: Coupling, plain: bool = False) -> Contestant:
+    """The exchanges of a co-simulation, results included, without its preparation."""
+    system = lab(coupling)
+
+    def work() -> float:
+        with tempfile.TemporaryDirectory() as folder:
+            run = simulate(system, Path(folder) / "run", plain=plain)
+        return float(run.provenance["wall_time"]["exchanges"])
+
+    return work
+
+
+def contestants() -> Mapping[str, Contestant]:
+    """The one program, and the co-simulation with both exchange steps and both drivers."""
+    return {"one program": one_program(), "paper": co_simulation("paper"), "impulse": co_simulation("impulse"),
+            "paper, plain calls": co_simulation("paper", plain=True)}
