@@ -85,8 +85,8 @@ LAYOUT = Layout(
         param("lattice_shift", "square and hexagonal packing: each disc is moved at random by up to this part of its diameter", 0.0,
               minimum=0.0, maximum=0.5),
         count("seed", "random packing and lattice shift: number of the sample", 1, minimum=0, maximum=2**31 - 1),
-        param("settling.time", "longest time of settling under gravity before the start; ends earlier when all discs are at rest", 2.0,
-              "s", minimum=0.0),
+        param("settling.time", "longest time of settling under gravity before the start; ends earlier when discs rest", 2.0, "s",
+              minimum=0.0),
         # the contact law
         param("modulus", "fictitious modulus E_bar of the sand", 30.4 * kgf / cm ** 2, "Pa", minimum=1e-6,
               source="Sonoda et al. 1993, table 4, test 4"),
