@@ -1,0 +1,79 @@
+"""Sliding and rolling discs against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.sand_discs import RADIUS, discs_at, masses, rows, run, sand_stiffness
+
+G = 9.80665
+ON_FLOOR = {"base.y": 0.0, "gravity": G}
+MU = math.tan(math.radians(30.0))
+
+
+def resting_height(number=1):
+    """Height of a disc's centre that carries its own weight and that of number - 1 discs, in the literal model."""
+    disc = discs_at([(0.0, 1.0)], parameters=ON_FLOOR)
+    return RADIUS - number * masses(disc)[0] * G / sand_stiffness(disc)
+
+
+def test_a_disc_comes_to_rest_with_the_overlap_that_carries_it():
+    disc = discs_at([(0.0, RADIUS)], parameters={**ON_FLOOR, "damping": 0.5})
+    run(disc, 0.05)
+    overlap = RADIUS - rows(disc)[0, 1]
+    assert overlap == pytest.approx(masses(disc)[0] * G / sand_stiffness(disc), rel=1e-9)
+    assert disc["transmitted_force"] == pytest.approx(masses(disc)[0] * G, rel=1e-12)
+
+
+def test_a_locked_disc_slides_with_the_deceleration_mu_g():
+    disc = discs_at([(0.0, resting_height())], [(1.0, 0.0)], parameters={**ON_FLOOR, "rotation": "locked"})
+    run(disc, 0.1)
+    assert rows(disc)[0, 2] == pytest.approx(1.0 - MU * G * 0.1, rel=1e-9)
+    run(disc, 0.2)  # it stops at 0.177 s; the tangential spring then swings and its dashpot calms it
+    assert rows(disc)[0, 2] == pytest.approx(0.0, abs=1e-9)
+    assert rows(disc)[0, 0] == pytest.approx(1.0 / (2.0 * MU * G), rel=1e-3)
+
+
+def test_a_sliding_disc_ends_rolling_at_two_thirds_of_its_speed():
+    """I = m r^2 / 2: v = v0 - mu g t, omega r = -2 mu g t; they meet at t = v0 / (3 mu g)."""
+    disc = discs_at([(0.0, resting_height())], [(1.0, 0.0)], parameters=ON_FLOOR)
+    rolling_from = 1.0 / (3.0 * MU * G)
+    run(disc, 0.5 * rolling_from)
+    assert rows(disc)[0, 2] == pytest.approx(5.0 / 6.0, rel=1e-3)
+    assert rows(disc)[0, 4] * RADIUS == pytest.approx(-1.0 / 3.0, rel=1e-3)
+    run(disc, 0.49 * rolling_from)
+    assert rows(disc)[0, 2] + rows(disc)[0, 4] * RADIUS > 5e-3
+    run(disc, 0.03 * rolling_from)
+    assert rows(disc)[0, 2] + rows(disc)[0, 4] * RADIUS == pytest.approx(0.0, abs=3e-3)
+    run(disc, rolling_from)
+    assert rows(disc)[0, 2] == pytest.approx(2.0 / 3.0, rel=1e-9)
+    assert rows(disc)[0, 4] == pytest.approx(-2.0 / 3.0 / RADIUS, rel=1e-9)
+    assert disc["energy.sliding"] == pytest.approx(masses(disc)[0] / 6.0, rel=1e-2)
+
+
+def column(spin, rolling_resistance):
+    """Two smooth discs, one upon the other, that turn against each other with +-spin (rad/s)."""
+    lower = resting_height(2)
+    return discs_at([(0.0, lower), (0.0, lower + RADIUS + resting_height())], spins=[spin, -spin],
+                    parameters={**ON_FLOOR, "friction_angle": 0.0, "rolling_resistance": rolling_resistance})
+
+
+def test_rolling_resistance_slows_at_its_limit():
+    """Two equal discs have the effective radius r/2: moment mu_r m g r/2 on I = m r^2 / 2 is the deceleration mu_r g / r."""
+    discs = column(10.0, 0.3)
+    run(discs, 2e-3)
+    before = rows(discs)[:, 4].copy()
+    run(discs, 4e-3)
+    assert before - rows(discs)[:, 4] == pytest.approx(np.array((1.0, -1.0)) * 0.3 * G / RADIUS * 4e-3, rel=1e-6)
+    assert discs["energy.rolling"] > 0.9 * (discs["energy.start"] - discs["energy.kinetic"] - discs["energy.gravity"]) > 0.0
+
+
+def test_rolling_resistance_holds_discs_that_turn_slowly():
+    held, released = column(0.02, 0.3), column(0.02, 0.0)
+    for _ in range(100):
+        run(held, 1e-3)
+        run(released, 1e-3)
+        assert abs(held.state("angle")).max() < 1e-5
+    assert released.state("angle") == pytest.approx([2e-3, -2e-3], rel=1e-9)
+    assert held["energy.rolling"] == 0.0

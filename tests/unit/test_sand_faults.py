@@ -1,0 +1,65 @@
+"""What the sand cushion refuses, and what it says then."""
+
+import math
+
+import numpy as np
+import pytest
+
+from components.component import ComponentError
+from components.sand_cushion import COMPONENT
+from tests.sand_discs import SMALL_BOX, cushion, discs_at, run, stirred
+
+
+def test_all_bad_values_are_named_at_once():
+    with pytest.raises(ComponentError) as refusal:
+        cushion({"disc.radius": -0.005, "modulus": math.nan, "depth": 0.0, "damping": -0.1, "packing": 4.0,
+                 "rock.position.y": math.inf})
+    assert len(refusal.value.problems) == 6
+    assert "disc.radius = -0.005 m: allowed is 1e-09 to inf m" in str(refusal.value)
+    assert "modulus = nan: must be a finite number" in str(refusal.value)
+
+
+def test_an_unknown_choice_is_answered_with_the_known_ones():
+    with pytest.raises(ComponentError, match="rotation = frei: choose one of free, locked"):
+        cushion({"rotation": "frei"})
+
+
+@pytest.mark.parametrize("sizes", [{"discs": 0}, {"elements": 0}])
+def test_nothing_is_no_size(sizes):
+    with pytest.raises(ComponentError, match="allowed is 1 to"):
+        COMPONENT.instance(**sizes)
+
+
+def test_a_rock_inside_the_sand():
+    with pytest.raises(ComponentError, match=r"lies 0\.01997\d* m under the surface at 0\.05997\d* m.*position0\.y"):
+        cushion({**SMALL_BOX, "rock.position.y": 0.06 - 0.02 + 0.0495})
+
+
+def test_a_rock_that_touches_the_sand_is_no_fault():
+    surface = cushion(SMALL_BOX)["surface_height"]
+    cushion({**SMALL_BOX, "rock.position.x": 0.055, "rock.position.y": surface + 0.0495})
+
+
+@pytest.mark.parametrize("box", [{"box.left": -0.01, "box.width": 0.1}, {"box.left": 0.15, "box.width": 0.1}], ids=str)
+@pytest.mark.parametrize("base", ["beam_discs", "beam_surface"])
+def test_a_beam_narrower_than_the_cushion(base, box):
+    with pytest.raises(ComponentError, match=f"beam is narrower.*box.left = {box['box.left']}.*make the beam longer"):
+        cushion({**SMALL_BOX, "base": base, **box})
+    cushion({**SMALL_BOX, "base": "floor", **box})
+
+
+def test_beam_discs_out_of_order():
+    with pytest.raises(ComponentError, match="from left to right"):
+        cushion({**SMALL_BOX, "base": "beam_discs", "beam.position.x": np.array((0.025, 0.125, 0.075, 0.175))})
+
+
+def test_more_neighbours_than_there_is_room_for():
+    with pytest.raises(ComponentError, match="no more room for contact candidates"):
+        discs_at([(1e-5 * i, 1e-5 * i * i) for i in range(60)])
+
+
+def test_a_step_far_above_the_stable_one_ends_with_both_numbers():
+    sand = stirred(cushion({**SMALL_BOX, "packing": "hexagonal", "internal_step": 1e-3}), 0.1)
+    both = rf"internal step 0\.001 s stands against a stable step of {sand['stable_step']:.6g} s"
+    with pytest.raises(ComponentError, match=rf"at t = .*{both}"):
+        run(sand, 5.0, 1e-3)

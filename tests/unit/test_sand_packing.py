@@ -1,0 +1,75 @@
+"""Where the discs lie at the start."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.sand_discs import RADIUS, SMALL_BOX, cushion, masses, rows
+
+BOX = {**SMALL_BOX, "settling.time": 0.0, "rock.position.y": 10.0}
+
+
+def test_the_paper_s_square_lattice_has_ten_rows_of_37():
+    sand = cushion({**SMALL_BOX, "box.width": 0.37, "gravity": 0.0}, discs=370)
+    x, y = rows(sand)[:, 0].reshape(10, 37), rows(sand)[:, 1].reshape(10, 37)
+    assert x == pytest.approx(np.tile(RADIUS + 0.01 * np.arange(37), (10, 1)))
+    assert y == pytest.approx(np.tile((RADIUS + 0.01 * np.arange(10))[:, None], (1, 37)))
+    assert sand["surface_height"] == pytest.approx(0.1)
+
+
+def test_a_hexagonal_lattice_has_its_rows_in_the_gaps_of_the_one_below():
+    sand = cushion({**BOX, "packing": "hexagonal", "gravity": 0.0}, discs=57)
+    heights, counts = np.unique(rows(sand)[:, 1].round(12), return_counts=True)
+    assert counts.tolist() == [10, 9, 10, 9, 10, 9]
+    assert np.diff(heights) == pytest.approx(math.sqrt(3.0) * RADIUS)
+    assert rows(sand)[10:19, 0] == pytest.approx(0.01 + 0.01 * np.arange(9))
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.25, 0.5])
+def test_random_radii_fill_the_spread(spread):
+    sand = cushion({**BOX, "packing": "random", "disc.spread": spread}, discs=500)
+    scaled = rows(sand)[:, 5] / RADIUS - 1.0
+    assert abs(scaled).max() <= spread + 1e-12
+    assert scaled.mean() == pytest.approx(0.0, abs=4.0 * spread / math.sqrt(3.0 * 500) + 1e-12)
+    assert scaled.std() == pytest.approx(spread / math.sqrt(3.0), rel=0.1, abs=1e-12)
+    assert masses(sand) == pytest.approx(1800.0 * math.pi * rows(sand)[:, 5] ** 2 * 0.1)
+
+
+def test_a_random_heap_starts_without_touching():
+    sand = cushion({**BOX, "packing": "random", "disc.spread": 0.5}, discs=200)
+    assert sand["energy.elastic"] == 0.0
+    assert sand["transmitted_force"] == 0.0
+
+
+def test_seeds_give_samples():
+    random = {**SMALL_BOX, "packing": "random", "disc.spread": 0.25}
+    first, again, other = (rows(cushion({**random, "seed": seed})) for seed in (3, 3, 4))
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first[:, 5], other[:, 5])
+    assert abs(first[:, :2] - other[:, :2]).max() > RADIUS
+
+
+def test_lattice_shift_moves_each_disc_by_up_to_its_part_of_the_diameter():
+    plain, moved = (rows(cushion({**BOX, "lattice_shift": shift}))[:, :2] for shift in (0.0, 0.1))
+    way = abs(moved - plain)
+    assert way.max() <= 0.1 * 2 * RADIUS
+    assert way.mean() == pytest.approx(0.05 * 2 * RADIUS, rel=0.2)
+
+
+@pytest.mark.parametrize("packing", ["square", "hexagonal", "random"])
+def test_settled_discs_lie_in_the_box(packing):
+    sand = cushion({**SMALL_BOX, "packing": packing, "disc.spread": 0.25, "rotation": "free"})
+    x, y, radius = rows(sand)[:, 0], rows(sand)[:, 1], rows(sand)[:, 5]
+    slack = 5e-5
+    assert (x - radius).min() > -slack
+    assert (x + radius).max() < 0.1 + slack
+    assert (y - radius).min() > -slack
+    assert sand["surface_height"] <= (y + radius).max() + 1e-15
+
+
+def test_surface_height_is_that_under_the_rock():
+    """Lattice of six discs in a box for ten: nothing lies under a rock at the right end."""
+    narrow = {**BOX, "rock.radius": 0.01}
+    assert cushion({**narrow, "rock.position.x": 0.01}, discs=16)["surface_height"] == pytest.approx(0.02, rel=1e-3)
+    assert cushion({**narrow, "rock.position.x": 0.09}, discs=16)["surface_height"] == pytest.approx(0.01, rel=1e-3)
