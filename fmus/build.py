@@ -12,6 +12,7 @@ import tempfile
 import uuid
 import zipfile
 from collections.abc import Iterator, Mapping
+from importlib.metadata import distribution
 from pathlib import Path
 
 import pythonfmu
@@ -97,6 +98,7 @@ def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
     files = {f"resources/{library_name}/{path}": content for path, content in library.items()}
     files |= dict(_binaries(component))
     files["documentation/index.html"] = index_html(component, sizes).encode()
+    files["documentation/licenses/pythonfmu.txt"] = _pythonfmu_license()
     icon = component.folder / "icon.png"
     if icon.is_file():
         files["model.png"] = icon.read_bytes()
@@ -130,6 +132,12 @@ def _library_files(component: Component) -> Files:
 def _binaries(component: Component) -> Iterator[tuple[str, bytes]]:
     for path in sorted((_PYTHONFMU / "resources" / "binaries").glob("*/*")):
         yield f"binaries/{path.parent.name}/{component.name}{path.suffix}", path.read_bytes()
+
+
+def _pythonfmu_license() -> bytes:
+    """Its text has to accompany every copy."""
+    texts = [file.read_binary() for file in distribution("pythonfmu").files or () if file.name == "LICENSE"]
+    return b"\n".join(texts)
 
 
 def _digest(files: Files) -> str:

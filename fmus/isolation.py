@@ -5,12 +5,15 @@ such a folder (``json.py``, ``numpy.py``, ``components/``) would be imported in 
 runs before anything else of an FMU is imported, so it may itself import only what every interpreter has loaded from the start.
 """
 
+from __future__ import annotations  # an older Python must get as far as the message that it is too old
+
 import os
 import sys
 from types import ModuleType, TracebackType
 
 _MARK = "slavemodule.txt"
 _LIBRARIES = ("numpy", "numba")
+_OLDEST_PYTHON = (3, 11)
 
 
 class ForeignFoldersHidden:
@@ -28,8 +31,11 @@ def require_libraries(fmu: str) -> None:
     """Import numpy and numba, the real ones.
 
     Raises:
-        ImportError: they are not installed, or another FMU's modules stand in their place or keep them from loading.
+        ImportError: Python is too old, they are not installed, or another FMU's modules stand in their place or keep them from
+            loading.
     """
+    if sys.version_info < _OLDEST_PYTHON:
+        raise ImportError(f"{fmu} needs Python 3.11 or later; this process runs {sys.version.split()[0]} ({sys.prefix})")
     with ForeignFoldersHidden():
         for name in _LIBRARIES:
             try:

@@ -95,7 +95,7 @@ class ComponentSlave(Fmi2Slave):
         super().__init__(**kwargs)
         self._instance = instance = Instance(self.component, self.sizes)
         self._phase, self._stale, self._previewed = _Phase.INSTANTIATED, _Stale.STATE, False
-        self._time, self._stop_time = math.nan, math.inf
+        self._time, self._stop_time, self._compiled = math.nan, math.inf, False
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
         self._table = [(name, variable) for variable in self.component.layout.ordered
                        for name in variable.element_names(self.sizes)]
@@ -181,9 +181,10 @@ class ComponentSlave(Fmi2Slave):
     def _compile_step(self) -> None:
         """Compile the step now or load it from the cache, so that the first step takes no longer than the others."""
         compiler = getattr(self.component.step, "compile", None)
-        if compiler is not None:  # there is none with NUMBA_DISABLE_JIT, for debugging
+        if compiler is not None and not self._compiled:  # there is none with NUMBA_DISABLE_JIT, for debugging
             with ForeignFoldersHidden():
                 compiler(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
+        self._compiled = True
 
     def _warn_of_unstable_step(self) -> None:
         if {"internal_step", "stable_step"} <= self._instance.references.keys():
@@ -326,6 +327,8 @@ class ComponentSlave(Fmi2Slave):
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
         self._phase, self._time, self._previewed = _Phase(phase), time, False
         self._stale = _Stale.STATE if phase in (_Phase.INSTANTIATED, _Phase.INITIALISING) else _Stale.NOTHING
+        if self._phase is _Phase.RUNNING:
+            self._compile_step()
 
     @staticmethod
     def _fmu_state_to_bytes(state: bytes) -> bytes:

@@ -90,6 +90,11 @@ def test_documentation_has_the_readme_and_all_variables_and_sizes(fmus):
     assert "<tr><td>tanks</td><td>3</td><td>number of tanks</td></tr>" in page
 
 
+def test_the_license_of_pythonfmu_accompanies_its_files(fmus):
+    with zipfile.ZipFile(fmus["Probe"]) as archive:
+        assert b"Permission is hereby granted" in archive.read("documentation/licenses/pythonfmu.txt")
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_the_icon_is_a_small_picture(fmus, name):
     with zipfile.ZipFile(fmus[name]) as archive:

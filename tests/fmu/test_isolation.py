@@ -10,6 +10,7 @@ import pytest
 
 from components.catalogue import component
 from fmus.build import build_component
+from fmus.isolation import require_libraries
 
 LOADED_BY_NUMBA = """
 import sys
@@ -160,6 +161,12 @@ def test_a_missing_library_is_told_and_can_be_mended(fmus, python):
     text = python(MISSING, fmus["FallingRock"])
     assert "FallingRock needs numba in the Python that runs it" in text
     assert "Remedy: pip install numpy numba" in text
+
+
+def test_an_old_python_is_told(monkeypatch):
+    monkeypatch.setattr("sys.version_info", (3, 9, 1))
+    with pytest.raises(ImportError, match=r"FallingRock needs Python 3\.11 or later; this process runs 3\."):
+        require_libraries("FallingRock")
 
 
 ALONE = """
