@@ -1,0 +1,156 @@
+"""What a serialized state of the sand cushion looks like: bodies, box and contacts, for pictures and inspection.
+
+Nothing is simulated here: positions are those of the state, and forces follow from them and from the springs it holds.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compilation import kernel
+from ..component import Instance
+from ..ports import view
+from . import COMPONENT
+from .contact_search import base_top, beam_count, disc_count
+from .declarations import BEAM_DISCS, LAW, LAYOUT, ROW
+from .forces import kind_of, touch
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+_COLUMNS = 9
+"""Numbers per contact that :func:`list_contacts` writes: bodies, both points, overlap, normal and tangential force."""
+
+
+@dataclass(frozen=True, slots=True)
+class Discs:
+    """Discs of one kind: centres (m), radii (m), angles (rad, counter-clockwise) and velocities (m/s), an array each."""
+
+    x: Floats
+    y: Floats
+    radius: Floats
+    angle: Floats
+    velocity_x: Floats
+    velocity_y: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """The box (m): inner face of the left wall, distance of the walls, height of the base's highest point."""
+
+    left: float
+    width: float
+    base: float
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """Contacts that touch, an array each.
+
+    first, second: numbers of the bodies: sand discs from 0, then the rock, the beam discs, left wall, right wall, base.
+    x1, y1: centre of the first body (m). x2, y2: centre of the second, or the foot on a plane (m).
+    overlap: in m, positive.
+    normal_force: k_n * overlap (N), the elastic part: the dashpot's depends on the step. Compression is positive.
+    tangential_force: force of the tangential spring (N) at the last internal step; positive when it turns the first body
+        counter-clockwise.
+    """
+
+    first: Integers
+    second: Integers
+    x1: Floats
+    y1: Floats
+    x2: Floats
+    y2: Floats
+    overlap: Floats
+    normal_force: Floats
+    tangential_force: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class SandState:
+    """A sand cushion at one instant. ``rock`` holds one disc."""
+
+    discs: Discs
+    rock: Discs
+    beam: Discs
+    box: Box
+    contacts: Contacts
+
+
+def read(content: bytes, sizes: Mapping[str, int]) -> SandState:
+    """Decode what :meth:`components.component.Instance.to_bytes` wrote for a cushion of these ``sizes``.
+
+    Raises:
+        ComponentError: not such a state, of another component or other sizes, or cut short.
+    """
+    instance = COMPONENT.instance(**sizes)
+    instance.from_bytes(content)
+    return snapshot(instance)
+
+
+def snapshot(instance: Instance) -> SandState:
+    """The present state of a cushion. The arrays are copies."""
+    discs = instance.sizes["discs"]
+    body = instance.state("body").reshape(-1, ROW)
+    others = body[discs:, 6]  # rock and beam discs keep their angle where a sand disc has its inverse mass
+    angle = np.concatenate((instance.state("angle"), others))
+    return SandState(_discs(body, angle, slice(0, discs)), _discs(body, angle, slice(discs, discs + 1)),
+                     _discs(body, angle, slice(discs + 1, None)), _box(instance), _contacts(instance))
+
+
+def _discs(body: Floats, angle: Floats, which: slice) -> Discs:
+    x, y, vx, vy, _, radius = (np.copy(column[which]) for column in body.T[:6])
+    return Discs(x, y, radius, np.copy(angle[which]), vx, vy)
+
+
+def _box(instance: Instance) -> Box:
+    return Box(instance["box.left"], instance["box.width"], float(_base(instance.w, instance.x, instance.k)))
+
+
+def _contacts(instance: Instance) -> Contacts:
+    table = np.empty((instance.state("partner").size, _COLUMNS))
+    table = table[:list_contacts(instance.w, instance.x, instance.k, table)]
+    bodies = table[:, :2].astype(np.int64)
+    return Contacts(bodies[:, 0], bodies[:, 1], *(np.copy(column) for column in table.T[2:]))
+
+
+@kernel
+def _base(w, x, k):
+    """Highest point (m) of whatever carries the sand."""
+    n, m = disc_count(k), beam_count(k)
+    body = view(x, k, A.body)
+    if w[V.base] != BEAM_DISCS:
+        return base_top(w, body, n, m)
+    top = body[ROW * (n + 1) + 1]
+    for b in range(n + 1, n + m + 1):
+        top = max(top, body[ROW * b + 1])
+    return top + w[V.beam_radius]
+
+
+@kernel
+def list_contacts(w, x, k, table):
+    """Write a row of ``table`` for each contact that touches; returns their number. The list of candidates has room for all."""
+    n, m = disc_count(k), beam_count(k)
+    body, law, spring = view(x, k, A.body), view(x, k, A.law), view(x, k, A.spring)
+    row, partner = view(k, k, A.row), view(k, k, A.partner)
+    found = 0
+    for i in range(n + 1):
+        for p in range(row[2 * i], row[2 * i + 2]):
+            j = partner[p]
+            nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
+            if gap >= 0.0:
+                continue
+            xi, yi, reach = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5] + gap
+            if j <= n + m:
+                reach += body[ROW * j + 5]
+            stiffness = law[(0 if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
+            table[found, 0], table[found, 1] = i, j
+            table[found, 2], table[found, 3] = xi, yi
+            table[found, 4], table[found, 5] = xi + nx * reach, yi + ny * reach
+            table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, spring[p]
+            found += 1
+    return found
