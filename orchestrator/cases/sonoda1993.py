@@ -1,7 +1,9 @@
 """The laboratory of Sonoda et al. (1993), sec. 2 and 4 (2): data of the tests and the system that computes one of them."""
 
 import csv
-from collections.abc import Mapping
+import math
+from bisect import bisect
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -9,7 +11,9 @@ from typing import Literal
 
 from components.units import cm, kgf
 
+from ..core.schedule import Scheme
 from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System
+from ..headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_TRANSMITTED, PENETRATION, Known, Reference
 
 _DATA = Path(__file__).parent / "data"
 
@@ -20,7 +24,7 @@ Coupling = Literal["paper", "impulse", "jacobi"]
 """paper: sand first, inputs held, exchange 1e-5 s. impulse: sand first, kinematics extrapolated, mean forces, 1e-4 s.
 jacobi: all at once, inputs held, 1e-4 s."""
 
-_COUPLINGS: Mapping[str, tuple[str, float, str, str]] = {
+_COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "paper": ("sequential", 1e-5, "held", "last"),
     "impulse": ("sequential", 1e-4, "linear", "mean"),
     "jacobi": ("jacobi", 1e-4, "held", "last"),
@@ -99,28 +103,48 @@ BOX_WIDTH = {1: 37 * cm, 2: 45 * cm}
 _GAP = 0.5e-3
 """Distance (m) between ball and sand at the start."""
 
+DEFAULT_TEST = 4
+"""The test that fig. 17 shows, and ``lab-impact`` computes."""
+BEAM_ENERGY = {4: 13 * kgf * cm, 10: 40 * kgf * cm}
+"""Peak energy of the beam measured by its strain (J), read from figs 17 and 18; the tests that these do not show are missing."""
+
+
+def case_name(test: int) -> str:
+    """Name of the case of a test of table 2."""
+    return "lab-impact" if test == DEFAULT_TEST else f"lab-impact-{test}"
+
+
+def discs_across(box: int) -> int:
+    """Number of sand discs of 1 cm side by side."""
+    return round(BOX_WIDTH[box] / (2 * DISC_RADIUS))
+
 
 def discs_in(box: int) -> int:
     """Number of sand discs of 1 cm in a layer of 10 cm (370 in box 1, as in the paper)."""
-    return round(BOX_WIDTH[box] / (2 * DISC_RADIUS)) * round(LAYER / (2 * DISC_RADIUS))
+    return discs_across(box) * round(LAYER / (2 * DISC_RADIUS))
 
 
-def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper") -> System:
+def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper", discs: int | None = None,
+               elements: int = ELEMENTS) -> System:
     """The laboratory impact of fig. 14 as a co-simulation of three FMUs.
 
-    fmus: files of the FMUs ``rock``, ``sand`` (built for :func:`discs_in` discs) and ``beam``.
+    fmus: files of the FMUs ``rock``, ``sand`` and ``beam``.
+    discs, elements: sizes that ``sand`` and ``beam`` were built with, by default :func:`discs_in` and 24; the rock starts above
+        the layer that so many discs make, and the beam's discs share the span.
     """
     master, exchange, kinematics, forces = _COUPLINGS[coupling]
-    width, spacing = BOX_WIDTH[test.box], SPAN / ELEMENTS
+    width, spacing = BOX_WIDTH[test.box], SPAN / elements
+    rows = math.ceil((discs or discs_in(test.box)) / discs_across(test.box))
     return System(
-        name="lab-impact" if test.number == 4 else f"lab-impact-{test.number}",
+        name=case_name(test.number),
         description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand on an H-100x50x7 beam of 120 cm",
         components={
             "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
                 "modulus": test.modulus, "box.left": 0.5 * (SPAN - width), "box.width": width,
                 "kinematics": kinematics, "forces": forces}),
             "rock": ComponentSpec(fmu=fmus["rock"], parameters={
-                "position0.x": 0.5 * SPAN, "position0.y": LAYER + BALL_RADIUS + _GAP, "velocity0.y": -BALL_SPEED}),
+                "position0.x": 0.5 * SPAN, "position0.y": rows * 2 * DISC_RADIUS + BALL_RADIUS + _GAP,
+                "velocity0.y": -BALL_SPEED}),
             "beam": ComponentSpec(fmu=fmus["beam"], parameters={"span": SPAN, "axis.y": -0.5 * spacing}),
         },
         shared={
@@ -133,7 +157,7 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
         energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
         master=master,
         order=["sand", "rock", "beam"],
-        stop_time=0.03,
+        stop_time=0.04,
         exchange_step=exchange,
         output_interval=1e-4,
         state_interval=5e-4,
@@ -162,3 +186,25 @@ def lab_bonds() -> dict[str, PowerBond]:
         "sand_beam": PowerBond(giver="sand", force=[f"beam.{q}[*]" for q in _FORCES], taker="beam",
                                position=[f"{q}[*]" for q in _MOTION[:3]], work="energy.work.beam"),
     }
+
+
+def known_of(test: Test) -> dict[str, Known]:
+    """What the paper gives to compare with the computation of a test, by the name of the figure."""
+    measured = BEAM_ENERGY.get(test.number)
+    return {
+        PEAK_TRANSMITTED: Known(_trend(test.modulus, lambda row: row.peak_force), Reference(test.peak_force)),
+        PENETRATION: Known(_trend(test.modulus, lambda row: row.penetration)),
+        BEAM_ENERGY_FROM_STRAIN: Known(experiment=Reference(measured, "read from fig. 17 or 18") if measured else None),
+    }
+
+
+def _trend(modulus: float, value: Callable[[TableFiveRow], float], damping: float = 0.2) -> Reference:
+    """The paper's own result for another modulus: a power law through the two nearest rows of table 5."""
+    rows = sorted((row for row in table_5() if row.damping == damping), key=lambda row: row.modulus)
+    above = min(max(1, bisect([row.modulus for row in rows], modulus)), len(rows) - 1)
+    low, high = rows[above - 1], rows[above]
+    exponent = math.log(value(high) / value(low)) / math.log(high.modulus / low.modulus)
+    inside = rows[0].modulus <= modulus <= rows[-1].modulus
+    return Reference(value(low) * (modulus / low.modulus) ** exponent,
+                     f"the paper's table 5, h = {damping:g}, {'interpolated' if inside else 'extrapolated'} to "
+                     f"E_bar = {modulus / kgf * cm ** 2:.1f} kgf/cm2")

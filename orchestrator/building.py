@@ -1,0 +1,127 @@
+"""FMUs of our components, built where they are missing or out of date, and the sizes they are built in."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from components.catalogue import NAMES, component
+from components.component import ComponentError
+
+from .cases.registry import Case
+from .core.errors import InputRefused, Problem
+from .core.names import nearest
+from .core.system import Value
+
+Note = Callable[[str], None]
+"""Tells the user what is being done."""
+
+
+def assignments(option: str, texts: Sequence[str], problems: list[Problem]) -> dict[str, Value]:
+    """Values by name from ``name=value``, as it is written on the command line. The last of several for one name holds."""
+    found: dict[str, Value] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not (name and equals and value):
+            problems.append(Problem(option, f"{text!r} is no assignment", f"write {option} component.name=value"))
+        else:
+            found[name] = _value(value)
+    return found
+
+
+def _value(text: str) -> Value:
+    """A number where the text is one; words and truth values stay text until the port says what it takes."""
+    for read in (int, float):
+        try:
+            return read(text)
+        except ValueError:
+            continue
+    return text
+
+
+def case_sizes(chosen: Case, numbers: Mapping[str, Value], problems: list[Problem]) -> dict[str, dict[str, int]]:
+    """The sizes of all components of a case, with what was asked for in them."""
+    sizes = {name: dict(component(model).with_sizes(chosen.sizes.get(name))) for name, model in chosen.models.items()}
+    for name, value in numbers.items():
+        owner, _, size = name.partition(".")
+        if size not in sizes.get(owner, {}):
+            known = ", ".join(f"{c}.{s}" for c, its in sizes.items() for s in its)
+            problems.append(Problem(f"--size {name}", "there is no such size", f"sizes of this case are {known}"))
+        elif not isinstance(value, int):
+            problems.append(Problem(f"--size {name}", f"{value!r} is no whole number", "give a whole number"))
+        else:
+            sizes[owner][size] = value
+    for owner, model in chosen.models.items():
+        try:
+            component(model).with_sizes(sizes[owner])
+        except ComponentError as error:
+            problems += [Problem(f"--size {owner}", text) for text in error.problems]
+    return sizes
+
+
+def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note) -> dict[str, str]:
+    """The FMU files of a case by component; those that are missing or out of date are built.
+
+    Raises:
+        InputRefused: they cannot be written.
+    """
+    from fmus.build import BuildError, build_if_needed, file_name, fmu_folder
+
+    files = {}
+    for name, model in chosen.models.items():
+        before = _changed_at(fmu_folder() / file_name(component(model), sizes[name]))
+        try:
+            file = build_if_needed(model, sizes[name])
+        except BuildError as error:
+            raise InputRefused([Problem(name, str(error))]) from error
+        if _changed_at(file) != before:
+            note(f"built {file}")
+        files[name] = str(file)
+    return files
+
+
+def _changed_at(file: Path) -> int:
+    return file.stat().st_mtime_ns if file.is_file() else 0
+
+
+def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None) -> list[Path]:
+    """Build the FMUs of these components, or of all. A size goes to those of them that have it.
+
+    Raises:
+        InputRefused: unknown components or sizes, sizes out of range, a folder that cannot be written.
+    """
+    from fmus.build import BuildError, build
+
+    problems: list[Problem] = []
+    sizes = assignments("--size", size_texts, problems)
+    chosen = list(dict.fromkeys(names or NAMES))
+    problems += [Problem(name, "there is no such component", nearest(name, NAMES)) for name in chosen if name not in NAMES]
+    known = [name for name in chosen if name in NAMES]
+    if not problems:
+        problems += _size_problems(known, sizes)
+    if problems:
+        raise InputRefused(problems)
+    try:
+        return [build(name, {s: int(n) for s, n in sizes.items() if s in component(name).sizes}, folder) for name in known]
+    except BuildError as error:
+        raise InputRefused([Problem("build", str(error))]) from error
+
+
+def _size_problems(names: Sequence[str], sizes: Mapping[str, Value]) -> list[Problem]:
+    known = {size for name in names for size in component(name).sizes}
+    problems = [Problem(f"--size {size}", f"{' and '.join(names)} {'have' if len(names) > 1 else 'has'} no such size",
+                        nearest(size, known)) for size in sizes if size not in known]
+    problems += [Problem(f"--size {size}", f"{value!r} is no whole number", "give a whole number")
+                 for size, value in sizes.items() if not isinstance(value, int)]
+    for name in names if not problems else []:
+        try:
+            component(name).with_sizes({s: int(n) for s, n in sizes.items() if s in component(name).sizes})
+        except ComponentError as error:
+            problems += [Problem(f"--size, {name}", text) for text in error.problems]
+    return problems
+
+
+def is_cold() -> bool:
+    """Whether no kernel of the present components has been compiled and kept on this machine."""
+    from components.compilation import cache_directory
+
+    folder = cache_directory()
+    return folder is None or not any(folder.glob("*.nbc"))

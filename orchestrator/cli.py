@@ -1,0 +1,238 @@
+"""The command line ``rockshed``. Commands import what they need when they run, so that help is there at once."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from .core.reading import Run
+    from .job import Request
+    from .screen import Screen
+
+RESULTS = Path("results")
+"""Folder of the runs that name no other."""
+
+app = typer.Typer(name="rockshed", no_args_is_help=True, add_completion=False, pretty_exceptions_show_locals=False,
+                  context_settings={"help_option_names": ["-h", "--help"]},
+                  help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.")
+
+Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no notes: results, warnings and errors only.")]
+Set = Annotated[list[str] | None, typer.Option("--set", metavar="COMPONENT.PARAMETER=VALUE",
+                                               help="Another value of a parameter or of a shared value. May be repeated.")]
+RunSize = Annotated[list[str] | None, typer.Option("--size", metavar="COMPONENT.SIZE=NUMBER",
+                                                   help="Build a component in another size. May be repeated.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"rockshed {version('rockshed')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _every_command(version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True,
+                                                         help="Print the version and end.")] = False) -> None:
+    pass
+
+
+@contextmanager
+def _screen(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
+    """The screen of a command; refusals and failures become messages and exit codes."""
+    from .core.errors import InputRefused
+    from .screen import INTERRUPTED, REFUSED, RUN_FAILED, Screen
+
+    screen = Screen(quiet, as_json)
+    try:
+        yield screen
+    except InputRefused as refusal:
+        screen.refuse(refusal.problems)
+        raise typer.Exit(REFUSED) from None
+    except KeyboardInterrupt:
+        screen.fail("interrupted")
+        raise typer.Exit(INTERRUPTED) from None
+    except OSError as error:
+        screen.fail(str(error))
+        raise typer.Exit(RUN_FAILED) from error
+
+
+@app.command("list")
+def list_() -> None:
+    """The cases that can be run, and the components that can be built."""
+    from components.catalogue import NAMES, component
+
+    from .cases.registry import cases
+    from .screen import plain_table
+
+    with _screen() as screen:
+        table = plain_table("case", "")
+        for case in cases().values():
+            table.add_row(case.name, case.summary)
+        parts = plain_table("component", "", "sizes")
+        for name in NAMES:
+            found = component(name)
+            parts.add_row(name, found.title, ", ".join(f"{size} = {entry.default}" for size, entry in found.sizes.items()))
+        screen.show(table, "", parts)
+
+
+@app.command()
+def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPONENT]...", help="All of them by default.")] = None,
+          size: Annotated[list[str] | None, typer.Option(metavar="NAME=NUMBER", help="A size other than the default. May be "
+                                                         "repeated.")] = None,
+          output_dir: Annotated[Path | None, typer.Option(help="Folder of the FMUs.")] = None, quiet: Quiet = False) -> None:
+    """Build FMUs, always anew."""
+    from .building import build_all
+
+    with _screen(quiet) as screen:
+        for file in build_all(components or [], size or [], output_dir):
+            screen.say(f"{file}  {file.stat().st_size / 1024:.0f} KiB")
+
+
+@app.command()
+def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
+         toml: Annotated[bool, typer.Option("--toml", help="Print the system as a file that `rockshed run` takes.")] = False,
+         ) -> None:
+    """What is in an FMU, or in a system: ports and steps, components, values and connections."""
+    from .export import system_text
+    from .inspection import show_fmu, show_system
+    from .job import Request, prepare
+
+    with _screen() as screen:
+        if target.endswith(".fmu"):
+            screen.show(*show_fmu(Path(target)))
+        elif toml:
+            screen.out.file.write(system_text(prepare(Request(target)).system))
+        else:
+            screen.show(*show_system(prepare(Request(target))))
+
+
+@app.command()
+def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
+           folder: Annotated[Path, typer.Argument(help="A new or empty folder.")],
+           set_: Set = None, size: RunSize = None, coupling: Annotated[str | None, typer.Option()] = None) -> None:
+    """Write a system and its FMUs into a folder: system.toml, which `rockshed run` takes, and the files it names."""
+    from .export import export_system
+    from .job import Request, prepare
+
+    with _screen() as screen:
+        job = prepare(Request(target, set_ or [], size or [], coupling), screen.note)
+        screen.say(str(export_system(job.system, folder)))
+
+
+@app.command()
+def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")],
+        set_: Set = None, size: RunSize = None,
+        output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")] = None,
+        stop_time: Annotated[float | None, typer.Option(metavar="SECONDS")] = None,
+        exchange_step: Annotated[float | None, typer.Option(metavar="SECONDS")] = None,
+        output_interval: Annotated[float | None, typer.Option(metavar="SECONDS")] = None,
+        state_interval: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time between two recorded states of the "
+                                                             "sand.")] = None,
+        master: Annotated[str | None, typer.Option(metavar="sequential|jacobi")] = None,
+        coupling: Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case.")] = None,
+        allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
+        in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
+        no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+        as_json: Json = False, quiet: Quiet = False) -> None:
+    """Run a case or a system file, compare, draw. FMUs that are missing are built."""
+    from .job import Request
+    from .screen import INTERRUPTED
+
+    options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
+               "state_interval": state_interval, "master": master}
+    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process)
+    with _screen(quiet, as_json) as screen:
+        done = _simulate(request, output_dir, allow_unstable, screen)
+        _finish(done, screen, not no_figures)
+        if done.status == "interrupted":
+            screen.warn(f"interrupted at t = {1e3 * done.series['time'][-1]:g} ms; the results until then are kept")
+            raise typer.Exit(INTERRUPTED)
+        if done.status == "failed":
+            from .screen import RUN_FAILED
+
+            screen.fail(f"{done.provenance['error']}; the results until then are in {done.folder}")
+            raise typer.Exit(RUN_FAILED)
+
+
+def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool, screen: "Screen") -> "Run":
+    """Prepare and carry out a run; one that fails or is interrupted gives what was computed until then."""
+    with screen.progress("preparing") as progress:
+        from .building import is_cold
+        from .core.errors import RunFailed
+        from .core.reading import add_figures, read_run
+        from .core.run import simulate
+        from .headlines import headlines
+        from .job import prepare
+        from .screen import COLD_START
+
+        job = prepare(request, screen.note)
+        folder = output_dir or RESULTS / job.name
+        if is_cold():
+            progress.describe(COLD_START)
+        with suppress(RunFailed):  # status and reason are in the results
+            simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress, facts=job.facts)
+    add_figures(folder, headlines(read_run(folder)))
+    return read_run(folder)
+
+
+def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
+    """Draw the figures, then show the table or its JSON."""
+    from . import comparison
+    from .cases.registry import known_of
+
+    figures: list[Path] = []
+    if with_figures:
+        with screen.busy("drawing"):
+            figures = _draw(done, done.folder / "figures", screen)
+    known = known_of(done.provenance)
+    for text in comparison.warnings(done):
+        screen.warn(text)
+    if screen.as_json:
+        screen.dump({"status": done.status, "folder": str(done.folder), "error": done.provenance.get("error"),
+                     "warnings": comparison.warnings(done), "caption": comparison.caption(done),
+                     "figures": comparison.figures_with(done, known), "pictures": [str(file) for file in figures]})
+        return
+    for line in comparison.caption(done):
+        screen.say(line)
+    screen.show("", comparison.table(done, known), "")
+    for line in comparison.notes(done, known):
+        screen.say(line)
+    screen.say(f"results in {done.folder}" + (f", {len(figures)} pictures in {figures[0].parent}" if figures else ""))
+
+
+def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
+    from .pictures import draw_all
+
+    return draw_all(done, folder, screen.note)
+
+
+@app.command()
+def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run, finished or not.")],
+         output_dir: Annotated[Path | None, typer.Option(help="Folder of the pictures; default RUN/figures.")] = None,
+         quiet: Quiet = False) -> None:
+    """Draw all pictures of a run again, also of one that failed, was interrupted or was killed."""
+    with _screen(quiet) as screen:
+        from .core.reading import read_run
+
+        found = read_run(run)
+        if found.status != "complete":
+            screen.warn(f"this run is not complete ({found.status}): pictures show what was computed until "
+                        f"t = {1e3 * found.series['time'][-1]:g} ms")
+        with screen.busy("drawing"):
+            files = _draw(found, output_dir or found.folder / "figures", screen)
+        for file in files:
+            screen.say(str(file))
+
+
+def main() -> None:
+    """The entry point of the command ``rockshed``."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

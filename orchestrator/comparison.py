@@ -1,0 +1,183 @@
+"""The short table at the end of a run: what was computed beside what the paper and the experiment found."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from rich.table import Table
+
+from components.units import cm, kgf, kN, mm, ms
+
+from . import headlines as h
+from .core.reading import Run
+from .screen import plain_table
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A unit on the screen: its size in SI and the digits after the point."""
+
+    unit: str
+    size: float
+    digits: int
+
+
+_FORCE = (Scale("kN", kN, 2), Scale("kgf", kgf, 0))
+_ENERGY = (Scale("J", 1.0, 2), Scale("kgf cm", kgf * cm, 1))
+_TIME = (Scale("ms", ms, 2),)
+_SHARE = (Scale("%", 0.01, 3),)
+_ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
+    h.PEAK_TRANSMITTED: ("peak transmitted force", _FORCE),
+    h.PEAK_TRANSMITTED_AT: ("  at", _TIME),
+    h.PEAK_ROCK: ("peak force on the rock", _FORCE),
+    h.PEAK_ROCK_AT: ("  at", _TIME),
+    h.RATIO: ("ratio of the two peaks", (Scale("", 1.0, 2),)),
+    h.IMPULSE_TRANSMITTED: ("transmitted impulse", (Scale("N s", 1.0, 1),)),
+    h.IMPULSE_ROCK: ("impulse on the rock", (Scale("N s", 1.0, 1),)),
+    h.DURATION: ("duration on the rock", (Scale("ms", ms, 1),)),
+    h.PENETRATION: ("penetration", (Scale("cm", cm, 2),)),
+    h.DEFLECTION: ("peak midspan deflection", (Scale("mm", mm, 3),)),
+    h.IMPACT_ENERGY: ("impact energy E0", _ENERGY),
+    h.BEAM_ENERGY: ("peak beam energy (5), (6)", _ENERGY),
+    h.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
+    h.BEAM_SHARE: ("peak beam energy / E0", (Scale("%", 0.01, 2),)),
+    h.RESIDUAL_SHARE: ("energy residual / E0", _SHARE),
+}
+_STILL = "the force on the rock has not ended: impulse and duration would be larger with a later stop time"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure as it is shown: text per column, deviations (computed / reference - 1) as numbers."""
+
+    label: str
+    unit: str
+    computed: str
+    paper: str = ""
+    paper_deviation: float | None = None
+    experiment: str = ""
+    experiment_deviation: float | None = None
+
+
+def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
+    """The rows of the table, in the order in which a designer asks for them."""
+    computed = {figure.name: float(figure.value) for figure in h.headlines(run)}
+    found = [row for name, (label, scales) in _ROWS.items() if name in computed
+             for row in _rows(label, scales, computed[name], known.get(name, h.Known()))]
+    return found + list(_couplings(run))
+
+
+def _rows(label: str, scales: tuple[Scale, ...], value: float, known: h.Known) -> Iterator[Row]:
+    """One row for each unit; the deviations stand in the first."""
+    for number, scale in enumerate(scales):
+        def text(reference: h.Reference | None, scale: Scale = scale) -> str:
+            return "" if reference is None else ("≈ " if reference.note else "") + _written(reference.value, scale)
+
+        first = number == 0
+        yield Row(label if first else "", scale.unit, _written(value, scale),
+                  text(known.paper), _deviation(value, known.paper) if first else None,
+                  text(known.experiment), _deviation(value, known.experiment) if first else None)
+
+
+def _written(value: float, scale: Scale) -> str:
+    return f"{value / scale.size:z.{scale.digits}f}"
+
+
+def _deviation(value: float, reference: h.Reference | None) -> float | None:
+    return None if reference is None else value / reference.value - 1.0
+
+
+def _couplings(run: Run) -> Iterator[Row]:
+    """Energy that each coupling has made, as a share of the impact energy."""
+    impact = h.impact_energy(run)
+    for column, values in run.series.items():
+        if column.startswith("coupling.") and column.endswith(".energy"):
+            bond = column.removeprefix("coupling.").removesuffix(".energy").replace("_", "-")
+            if impact:
+                yield Row(f"coupling {bond} / E0", "%", _written(values[-1] / impact, _SHARE[0]))
+            else:
+                yield Row(f"coupling {bond}", "J", f"{values[-1]:.4g}")
+
+
+def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
+    """What a reader has to know of the figures: where references that are only about right (≈) come from, what is cut off."""
+    found = [f"≈ {who}: {reference.note}" for entry in known.values()
+             for who, reference in (("paper", entry.paper), ("experiment", entry.experiment)) if reference and reference.note]
+    return list(dict.fromkeys(found)) + ([_STILL] if h.still_in_contact(run) else [])
+
+
+def warnings(run: Run) -> list[str]:
+    """What a reader of the figures has to know: what the run warned of, and whether the rock came through to the base."""
+    found = list(run.provenance.get("warnings", []))
+    clearance = next((float(f.value) for f in h.headlines(run) if f.name == h.CLEARANCE), None)
+    sand = h.roles(run).sand
+    if clearance is not None and sand is not None:
+        disc = 2.0 * float(run.provenance["components"][sand]["parameters"]["disc.radius"]["value"])
+        if clearance < disc:
+            found.append(f"the rock bottoms out: it comes within {clearance / mm:.1f} mm of the base, less than one sand disc "
+                         f"({disc / mm:.0f} mm); the cushion is too thin for this impact")
+    return found
+
+
+def caption(run: Run) -> list[str]:
+    """What was run, in three short lines: case and how it was changed; model of the sand; exchange and steps."""
+    facts = run.provenance
+    changed = ", ".join(f"{name} = {value}" for name, value in facts.get("changed", {}).items())
+    return [str(facts["name"]) + (f" with {changed}" if changed else ""), *filter(None, [model(run)]), scheme(run)]
+
+
+def model(run: Run) -> str:
+    """Which model of the sand was used."""
+    name = h.roles(run).sand
+    if name is None:
+        return ""
+    values = {key: entry["value"] for key, entry in run.provenance["components"][name]["parameters"].items()}
+    rotation, factor = values["rotation"], float(values["stiffness_factor"])
+    kind = {("locked", False): "calibrated", ("free", True): "literal"}.get((rotation, factor == 1.0), "modified")
+    modulus = float(values["modulus"]) / kgf * cm**2
+    return f"{kind} sand: rotation {rotation}, stiffness factor {factor:g}, E_bar {modulus:.1f} kgf/cm²"
+
+
+def scheme(run: Run) -> str:
+    """How values were exchanged, and with which steps."""
+    facts, system = run.provenance, run.provenance["system"]
+    steps = ", ".join(f"{name} {_step(entry):g}" for name, entry in facts["components"].items() if _step(entry))
+    coupling = f"coupling {facts['coupling']}" if "coupling" in facts else f"{system['master']} master"
+    return f"{coupling}: steps in ms: exchange {system['exchange_step'] / ms:g}" + (f", {steps}" if steps else "")
+
+
+def _step(component: Mapping[str, Any]) -> float:
+    """Internal step (ms) of a component; 0 if it names none."""
+    return float(component["parameters"].get("internal_step", {}).get("value", 0.0)) / ms
+
+
+# ------------------------------------------------------------------ as a table, as data
+
+
+def table(run: Run, known: Mapping[str, h.Known]) -> Table:
+    """The rows as a table for the screen, without the columns that nothing stands in."""
+    listed = rows(run, known)
+    columns = [("paper", "paper", [row.paper for row in listed]),
+               ("", "paper", [_percent(row.paper_deviation) for row in listed]),
+               ("experiment", "experiment", [row.experiment for row in listed]),
+               ("", "experiment", [_percent(row.experiment_deviation) for row in listed])]
+    present = {whose for _, whose, texts in columns if any(texts)}
+    shown = [(title, texts) for title, whose, texts in columns if whose in present]
+    titles = ["computed", *(title for title, _ in shown)]
+    made = plain_table("quantity", "unit", *titles, right=titles)
+    for number, row in enumerate(listed):
+        made.add_row(row.label, row.unit, row.computed, *(texts[number] for _, texts in shown))
+    return made
+
+
+def _percent(deviation: float | None) -> str:
+    return "" if deviation is None else f"{100.0 * deviation:+.0f} %"
+
+
+def figures_with(run: Run, known: Mapping[str, h.Known]) -> list[dict[str, Any]]:
+    """The summary as plain data, with what others found beside each figure."""
+    def beside(name: str) -> dict[str, float]:
+        entry = known.get(name, h.Known())
+        return {key: reference.value for key, reference in (("paper", entry.paper), ("experiment", entry.experiment)) if reference}
+
+    return [{**asdict(figure), **beside(figure.name)} for figure in run.summary]

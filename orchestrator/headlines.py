@@ -1,0 +1,181 @@
+"""Headline figures of an impact on a rock shed, and what a case has to compare them with.
+
+The figures follow from a run's results alone, whatever system it was: components are found by the model of their FMU, and a
+figure whose component or column is missing is left out.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .core.results import Figure
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from .core.reading import Run
+
+PEAK_TRANSMITTED = "peak transmitted force"
+PEAK_TRANSMITTED_AT = "peak transmitted force at"
+PEAK_ROCK = "peak force on the rock"
+PEAK_ROCK_AT = "peak force on the rock at"
+RATIO = "peak transmitted force / peak force on the rock"
+PENETRATION = "penetration"
+CLEARANCE = "least distance of rock and base"
+DEFLECTION = "peak midspan deflection"
+BEAM_ENERGY = "peak beam energy"
+BEAM_ENERGY_FROM_STRAIN = "peak beam energy from the midspan strain"
+BEAM_SHARE = "peak beam energy / impact energy"
+IMPULSE_ROCK = "impulse on the rock"
+IMPULSE_TRANSMITTED = "transmitted impulse"
+DURATION = "duration of the force on the rock"
+IMPACT_ENERGY = "impact energy"
+RESIDUAL = "largest energy residual of the system"
+RESIDUAL_SHARE = "largest energy residual of the system / impact energy"
+
+CONTACT_SHARE = 0.01
+"""Part of its peak above which the force on the rock counts towards its duration."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A value (SI) to compare with. ``note`` says how it was found if it is not printed as such; it then is only about right."""
+
+    value: float
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Known:
+    """What others found for a figure: by the paper's analysis, and in the experiment."""
+
+    paper: Reference | None = None
+    experiment: Reference | None = None
+
+
+@dataclass(frozen=True)
+class Roles:
+    """Names of the components that play the parts of an impact; None where there is no such component, or several."""
+
+    rock: str | None
+    sand: str | None
+    beam: str | None
+
+
+def roles(run: "Run") -> Roles:
+    """Who is who in a run, by the names of the models."""
+    def only(model: str) -> str | None:
+        names = [name for name, facts in run.provenance["components"].items() if facts["model"] == model]
+        return names[0] if len(names) == 1 else None
+
+    return Roles(only("FallingRock"), only("SandCushion"), only("RBSMBeam"))
+
+
+def extreme(run: "Run", column: str) -> tuple[float, float]:
+    """Largest value of an output and its time (s): over all exchanges if the run watched it and has ended, else over the rows."""
+    known = {figure.name: figure.value for figure in run.summary}
+    if f"{column} maximum" in known:
+        return float(known[f"{column} maximum"]), float(known[f"{column} maximum at"])
+    at = int(run.series[column].argmax())
+    return float(run.series[column][at]), float(run.series["time"][at])
+
+
+def system_residual(run: "Run") -> "NDArray[np.float64] | None":
+    """Energy (J) that the whole system has made since the start, at each row: what is stored and dissipated less what came in.
+
+    A component's residual is the change of its energies less the work done on it. The works of both sides of an interface
+    cancel but for what the coupling makes; with them the sum over all components is the balance of the system. None if a
+    component gives no balance.
+    """
+    total = None
+    for name in run.provenance["components"]:
+        if f"{name}.energy.residual" not in run.series:
+            return None
+        works = [column for column in run.series if column.startswith(f"{name}.energy.work.")]
+        for column in [f"{name}.energy.residual", *works]:
+            part = run.series[column] - run.series[column][0]
+            total = part if total is None else total + part
+    return total
+
+
+def impact_energy(run: "Run") -> float | None:
+    """Kinetic energy (J) of the rock at the start."""
+    column = f"{roles(run).rock}.energy.kinetic"
+    return float(run.series[column][0]) if column in run.series else None
+
+
+def headlines(run: "Run") -> list[Figure]:
+    """Every headline figure that the results give."""
+    return [*_forces(run), *_cushion(run), *_beam(run), *_energy(run)]
+
+
+def _forces(run: "Run") -> Iterator[Figure]:
+    sand = roles(run).sand
+    transmitted, rock = f"{sand}.transmitted_force", f"{sand}.rock.force.y"
+    if transmitted not in run.series or rock not in run.series:
+        return
+    (peak, peak_at), (on_rock, on_rock_at) = extreme(run, transmitted), extreme(run, rock)
+    yield Figure(PEAK_TRANSMITTED, peak, "N")
+    yield Figure(PEAK_TRANSMITTED_AT, peak_at, "s")
+    yield Figure(PEAK_ROCK, on_rock, "N")
+    yield Figure(PEAK_ROCK_AT, on_rock_at, "s")
+    if on_rock > 0.0:
+        yield Figure(RATIO, peak / on_rock)
+    time, force = run.series["time"], run.series[rock]
+    yield Figure(IMPULSE_ROCK, _integral(force, time), "N.s")
+    yield Figure(IMPULSE_TRANSMITTED, _integral(run.series[transmitted] - run.series[transmitted][0], time), "N.s")
+    touching = time[force > CONTACT_SHARE * on_rock]
+    if touching.size:
+        yield Figure(DURATION, float(touching[-1] - touching[0]), "s")
+
+
+def still_in_contact(run: "Run") -> bool:
+    """Whether the force on the rock has not ended with the run."""
+    column = f"{roles(run).sand}.rock.force.y"
+    return column in run.series and bool(run.series[column][-1] > CONTACT_SHARE * extreme(run, column)[0])
+
+
+def _integral(values: "NDArray[np.float64]", time: "NDArray[np.float64]") -> float:
+    return float((0.5 * (values[1:] + values[:-1]) * (time[1:] - time[:-1])).sum())
+
+
+def _cushion(run: "Run") -> Iterator[Figure]:
+    sand = roles(run).sand
+    if f"{sand}.penetration" not in run.series:
+        return
+    depth, _ = extreme(run, f"{sand}.penetration")
+    yield Figure(PENETRATION, depth, "m")
+    if sand and f"{sand}.surface_height" in run.series:
+        yield Figure(CLEARANCE, float(run.series[f"{sand}.surface_height"][0]) - base_height(run) - depth, "m")
+
+
+def base_height(run: "Run") -> float:
+    """Height (m) of what the sand rests on, at the start: the top of the beam's discs, or the floor."""
+    sand, beam = (run.provenance["components"][name] if name else None for name in (roles(run).sand, roles(run).beam))
+    if sand is None or beam is None or sand["parameters"]["base"]["value"] == "floor":
+        return float(sand["parameters"]["base.y"]["value"]) if sand else 0.0
+    tops = [values[0] for name, values in run.series.items() if name.startswith(f"{roles(run).beam}.position.y[")]
+    return float(max(tops, default=0.0)) + float(sand["parameters"]["beam.radius"]["value"])
+
+
+def _beam(run: "Run") -> Iterator[Figure]:
+    beam = roles(run).beam
+    for name, output, unit in ((DEFLECTION, "midspan.deflection", "m"), (BEAM_ENERGY, "energy.elastic", "J"),
+                               (BEAM_ENERGY_FROM_STRAIN, "energy.strain_estimate", "J")):
+        if f"{beam}.{output}" in run.series:
+            yield Figure(name, extreme(run, f"{beam}.{output}")[0], unit)
+
+
+def _energy(run: "Run") -> Iterator[Figure]:
+    impact, residual = impact_energy(run), system_residual(run)
+    if impact is not None:
+        yield Figure(IMPACT_ENERGY, impact, "J")
+    if residual is not None:
+        yield Figure(RESIDUAL, float(max(residual, key=abs)), "J")
+    if impact:
+        if residual is not None:
+            yield Figure(RESIDUAL_SHARE, float(abs(residual).max()) / impact)
+        column = f"{roles(run).beam}.energy.elastic"
+        if column in run.series:
+            yield Figure(BEAM_SHARE, extreme(run, column)[0] / impact)

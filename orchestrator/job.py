@@ -1,0 +1,128 @@
+"""From what a person asks for to a system that can be run: case or file, sizes, FMUs, values.
+
+Everything that is wrong with a request is collected before it is refused.
+"""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .building import Note, assignments, case_fmus, case_sizes
+from .cases.registry import Case, case
+from .core.errors import InputRefused, Problem
+from .core.slave import Source
+from .core.system import System, Value, load_system, system_from, with_values
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked for.
+
+    target: name of a case, or path of a system file (TOML).
+    settings: ``component.parameter=value``; sizes: ``component.size=value``.
+    options: keys of the system that are replaced, ``stop_time`` for instance.
+    """
+
+    target: str
+    settings: Sequence[str] = ()
+    sizes: Sequence[str] = ()
+    coupling: str | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    in_process: bool = False
+
+
+@dataclass(frozen=True)
+class Job:
+    """A system ready to run.
+
+    name: under which its results go. sources: components that are made without an FMU. facts: for the provenance of the run.
+    """
+
+    name: str
+    system: System
+    sources: Mapping[str, Source]
+    facts: Mapping[str, Any]
+
+
+def is_file(target: str) -> bool:
+    """Whether a target is meant as a system file and not as the name of a case."""
+    return target.endswith(".toml") or "/" in target or "\\" in target
+
+
+def prepare(request: Request, note: Note = lambda text: None) -> Job:
+    """Find the system, build its FMUs where that is needed, apply what the request changes.
+
+    Raises:
+        InputRefused: everything that is wrong with the request.
+    """
+    problems: list[Problem] = []
+    values = assignments("--set", request.settings, problems)
+    numbers = assignments("--size", request.sizes, problems)
+    if is_file(request.target):
+        problems += [Problem(option, "is for cases only", reason) for option, reason, given in (
+            ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
+            ("--coupling", "set --master, --exchange-step and the components' parameters", request.coupling),
+            ("--in-process", "a system file names FMU files", request.in_process)) if given]
+        if problems:
+            raise InputRefused(problems)
+        name = Path(request.target).stem
+        system = load_system(Path(request.target))
+        sources, facts = dict[str, Source](), dict[str, Any](system_file=request.target)
+    else:
+        name = case(request.target).name
+        system, sources, facts = _from_case(case(request.target), request, numbers, problems, note)
+    system = _changed(system, request, values, problems)
+    if problems:
+        raise InputRefused(problems + plan_problems(system, sources))
+    return Job(name, system, sources, {**facts, "changed": {**values, **request.options}})
+
+
+def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem]:
+    """What the FMUs find wrong with a system."""
+    from .core.plan import make_plan
+    from .core.run import sources_of
+
+    try:
+        make_plan(system, {**sources_of(system), **sources})
+    except InputRefused as refusal:
+        return refusal.problems
+    return []
+
+
+def _from_case(chosen: Case, request: Request, numbers: Mapping[str, Value], problems: list[Problem],
+               note: Note) -> tuple[System, dict[str, Source], dict[str, Any]]:
+    coupling = request.coupling or next(iter(chosen.couplings))
+    if coupling not in chosen.couplings:
+        problems.append(Problem("--coupling", f"{coupling!r} is unknown", f"choose one of {', '.join(chosen.couplings)}"))
+    sizes = case_sizes(chosen, numbers, problems)
+    if problems:
+        raise InputRefused(problems)
+    fmus = {} if request.in_process else case_fmus(chosen, sizes, note)
+    sources = _in_process(chosen, sizes) if request.in_process else {}
+    system = chosen.make(fmus or {name: f"{model} (in process)" for name, model in chosen.models.items()}, sizes, coupling)
+    return system, sources, {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+
+
+def _in_process(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> dict[str, Source]:
+    from components.catalogue import component
+    from fmus.in_process import InProcess
+
+    return {name: InProcess(component(model), sizes[name]) for name, model in chosen.models.items()}
+
+
+def _changed(system: System, request: Request, values: Mapping[str, Value], problems: list[Problem]) -> System:
+    """The system with other values and other keys, as far as they have the right form."""
+    try:
+        system = with_values(system, values)
+    except InputRefused as refusal:
+        problems += refusal.problems
+        for name, value in values.items():
+            with suppress(InputRefused):  # told already
+                system = with_values(system, {name: value})
+    try:
+        return system_from({**system.model_dump(), **request.options}, request.target)
+    except InputRefused as refusal:
+        problems += refusal.problems
+        return system

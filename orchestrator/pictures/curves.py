@@ -1,0 +1,138 @@
+"""Curves over time: forces, penetration, beam, energy balance."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from components.units import cm, kgf, kN, mm, ms
+
+from .. import headlines as h
+from ..core.reading import Run
+from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, reference_line
+
+Known = Mapping[str, h.Known]
+
+
+def forces(run: Run, known: Known, file: Path) -> None:
+    """Transmitted force and force on the rock, with the measured peak."""
+    with figure(run, file, WIDTH, 3.6) as made:
+        force_axes(run, known, made.subplots())
+
+
+def force_axes(run: Run, known: Known, axes: Axes) -> None:
+    """Both forces in kN, kgf at the right."""
+    sand, time = h.roles(run).sand, run.series["time"] / ms
+    for column, colour, name in ((f"{sand}.transmitted_force", TRANSMITTED, "transmitted to the base"),
+                                 (f"{sand}.rock.force.y", ROCK, "on the rock")):
+        peak, at = h.extreme(run, column)
+        axes.plot(time, run.series[column] / kN, color=colour, label=f"{name}, peak {peak / kN:.2f} kN at {at / ms:.1f} ms")
+        axes.plot(at / ms, peak / kN, "o", color=colour, markersize=3.5)
+    _references(axes, known.get(h.PEAK_TRANSMITTED, h.Known()), kN, "peak transmitted force, {}")
+    axes.set(xlabel="time (ms)", ylabel="force (kN)", xlim=(time[0], time[-1]))
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.12 * axes.get_ylim()[1])
+    other = axes.secondary_yaxis("right", functions=(lambda y: y * kN / kgf, lambda y: y * kgf / kN))
+    other.set_ylabel("(kgf)")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+
+
+def _references(axes: Axes, known: h.Known, unit: float, text: str) -> None:
+    if known.experiment:
+        reference_line(axes, known.experiment.value / unit, text.format("measured"))
+    if known.paper:
+        about = "paper's analysis, about" if known.paper.note else "paper's analysis"
+        reference_line(axes, known.paper.value / unit, text.format(about), ":")
+
+
+def penetration(run: Run, known: Known, file: Path) -> None:
+    """Depth of the rock's lowest point under the surface, downwards, and where the base lies."""
+    sand, time = h.roles(run).sand, run.series["time"] / ms
+    depth = run.series[f"{sand}.penetration"]
+    with figure(run, file, WIDTH, 3.2) as made:
+        axes = made.subplots()
+        axes.plot(time, depth / cm, color=ROCK)
+        most, at = h.extreme(run, f"{sand}.penetration")
+        axes.annotate(f"{most / cm:.2f} cm at {at / ms:.1f} ms", (at / ms, most / cm), xytext=(0, 6), textcoords="offset points",
+                      ha="center", va="bottom", fontsize=8.5, color=ROCK)
+        clearance = next((float(f.value) for f in h.headlines(run) if f.name == h.CLEARANCE), None)
+        if clearance is not None:
+            reference_line(axes, (most + clearance) / cm, "base", "-")
+        _references(axes, known.get(h.PENETRATION, h.Known()), cm, "largest, {}")
+        axes.axhline(0.0, color=GREY, linewidth=0.7)
+        axes.set(xlabel="time (ms)", ylabel="penetration (cm)", xlim=(time[0], time[-1]))
+        axes.invert_yaxis()
+
+
+def beam(run: Run, known: Known, file: Path) -> None:
+    """Deflection and energy of the beam."""
+    name, time = h.roles(run).beam, run.series["time"] / ms
+    energies = (("energy.elastic", "U = U_N + U_M, eq. (5)", INK, "-"), ("energy.bending", "U_M, bending", BEAM, "--"),
+                ("energy.axial", "U_N, axial", ROCK, "-"), ("energy.strain_estimate", "eq. (7), from the midspan strain", TRANSMITTED, "-"))
+    with figure(run, file, WIDTH, 4.8) as made:
+        upper, lower = made.subplots(2, sharex=True, height_ratios=(2, 3))
+        deflection = run.series[f"{name}.midspan.deflection"] / mm
+        upper.plot(time, deflection, color=BEAM)
+        upper.axhline(0.0, color=GREY, linewidth=0.7)
+        upper.set(ylabel="midspan deflection (mm)\ndownwards")
+        upper.invert_yaxis()
+        for output, label, colour, dashes in energies:
+            if f"{name}.{output}" in run.series:
+                lower.plot(time, run.series[f"{name}.{output}"], color=colour, linestyle=dashes, label=label, linewidth=1.2)
+        _references(lower, known.get(h.BEAM_ENERGY_FROM_STRAIN, h.Known()), 1.0, "peak by eq. (7), {}")
+        lower.set(xlabel="time (ms)", ylabel="energy of the beam (J)", xlim=(time[0], time[-1]))
+        lower.set_ylim(bottom=0.0)
+        lower.secondary_yaxis("right", functions=(lambda y: y / (kgf * cm), lambda y: y * kgf * cm)).set_ylabel("(kgf cm)")
+        lower.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+
+
+# ------------------------------------------------------------------ energy balance
+
+_PARTS = (
+    ("rock, kinetic", "#2f5d8a", (("rock", "energy.kinetic"),)),
+    ("sand, kinetic", "#8fb3d4", (("sand", "energy.kinetic"),)),
+    ("gravity, above its least", "#c9cfd4", (("rock", "energy.gravity"), ("sand", "energy.gravity"), ("beam", "energy.gravity"))),
+    ("sand, elastic", "#7fae7a", (("sand", "energy.elastic"),)),
+    ("beam, kinetic and elastic", "#3d7d3f", (("beam", "energy.kinetic"), ("beam", "energy.elastic"))),
+    ("lost in normal dashpots", "#f2cf96", (("sand", "energy.normal_dashpot"),)),
+    ("lost in tangential dashpots", "#e3a857", (("sand", "energy.tangential_dashpot"),)),
+    ("lost in sliding", "#c0561a", (("sand", "energy.sliding"),)),
+    ("lost in rolling", "#8c2f12", (("sand", "energy.rolling"),)),
+    ("lost in the beam", "#5c3a2e", (("beam", "energy.damping"),)),
+)
+"""Name, colour and energies of each layer; the components by their role."""
+_SHOWN = 1e-4
+"""A layer is left out if it never reaches this part of the sum."""
+
+
+def energy(run: Run, file: Path) -> None:
+    """Where the energy of the impact is at each time, and the error of the balance."""
+    time, layers = run.series["time"] / ms, list(_layers(run))
+    residual, impact = h.system_residual(run), h.impact_energy(run)
+    with figure(run, file, WIDTH, 5.2) as made:
+        upper, lower = made.subplots(2, sharex=True, height_ratios=(4, 1))
+        upper.stackplot(time, [values for _, _, values in layers], colors=[colour for _, colour, _ in layers],
+                        labels=[name for name, _, _ in layers], edgecolor="white", linewidth=0.3)
+        upper.axhline(sum(float(values[0]) for _, _, values in layers), color=INK, linewidth=0.9, linestyle="--")
+        upper.set(ylabel="energy (J)", xlim=(time[0], time[-1]))
+        handles, labels = upper.get_legend_handles_labels()
+        upper.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
+        if residual is not None and impact:
+            lower.plot(time, 100.0 * residual / impact, color=INK, linewidth=1.0)
+            lower.set_ylabel("error of the\nbalance (%)")
+        lower.axhline(0.0, color=GREY, linewidth=0.7)
+        lower.set_xlabel("time (ms)")
+
+
+def _layers(run: Run) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    """Name, colour and energy (J) of the layers that there are. Gravity counts from its least value, so that it stacks."""
+    role = {key: name for key, name in vars(h.roles(run)).items() if name}
+    found = []
+    for name, colour, members in _PARTS:
+        columns = [run.series[f"{role[r]}.{output}"] for r, output in members if r in role and f"{role[r]}.{output}" in run.series]
+        if columns:
+            parts = [values - values.min() if "gravity" in name else values for values in columns]
+            found.append((name, colour, np.sum(parts, axis=0)))
+    total = max((float(values.max()) for _, _, values in found), default=0.0)
+    yield from (layer for layer in found if layer[2].max() > _SHOWN * total)

@@ -1,0 +1,45 @@
+"""The look of all pictures: sizes, colours, a caption that says what was run, and how a file is written."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..comparison import caption
+from ..core.reading import Run
+
+WIDTH = 7.2
+"""Width (inch) of a picture of curves."""
+INK, GREY, FAINT = "#222222", "#767676", "#d9d9d9"
+TRANSMITTED, ROCK, BEAM, SAND = "#1f5a94", "#c0561a", "#3d7d3f", "#c9a66b"
+_DPI = 160
+_LOOK = {
+    "font.family": "sans-serif", "font.size": 9.0, "axes.titlesize": 9.0, "axes.titlelocation": "left", "axes.labelsize": 9.0,
+    "axes.edgecolor": GREY, "axes.labelcolor": INK, "text.color": INK, "xtick.color": GREY, "ytick.color": GREY,
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK, "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": FAINT, "grid.linewidth": 0.5,
+    "axes.axisbelow": True, "lines.linewidth": 1.4, "legend.frameon": False, "legend.fontsize": 8.5, "figure.facecolor": "white",
+}
+
+
+@contextmanager
+def figure(run: Run, file: Path, width: float, height: float) -> Iterator[Figure]:
+    """A figure (inches) with the run's caption below, written to ``file`` at the end, as a whole or not at all."""
+    with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
+        made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
+        made.supxlabel("\n".join(caption(run)), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3)
+        yield made
+        beside = file.with_name(f".{file.name}")
+        made.savefig(beside, format="png", metadata={"Software": "rockshed"})
+        os.replace(beside, file)
+
+
+def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> None:
+    """A horizontal line at what others found, named at its right end."""
+    axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes)
+    axes.annotate(text, (1.0, value), xycoords=("axes fraction", "data"), xytext=(-2, 2), textcoords="offset points",
+                  ha="right", va="bottom", fontsize=8, color=GREY)
