@@ -9,23 +9,11 @@ from pathlib import Path
 import pytest
 
 import components
-from components import catalogue
+from components.catalogue import NAMES
 from fmus.build import build, build_component
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
-
-
-def available(name):
-    """Whether the component can be imported; those that are still being written are left out."""
-    try:
-        catalogue.component(name).documentation()
-    except (ModuleNotFoundError, FileNotFoundError):
-        return False
-    return True
-
-
-NAMES = [name for name in catalogue.NAMES if available(name)]
 
 
 @pytest.fixture(scope="session")

@@ -11,11 +11,11 @@ import zipfile
 import pytest
 
 import fmus.build as build_module
-from components.catalogue import component
+from components.catalogue import NAMES, component
 from components.component import ComponentError
 from fmus.build import BuildError, build, build_component, build_if_needed, file_name, fmu_files
 
-from .conftest import NAMES, ROOT
+from .conftest import ROOT
 
 BUILD = "import sys, hashlib; from fmus.build import build; print(hashlib.sha256(build(sys.argv[1], destination=sys.argv[2])" \
         ".read_bytes()).hexdigest())"

@@ -6,11 +6,9 @@ import pytest
 from fmpy.model_description import read_model_description
 from fmpy.validation import validate_fmu
 
-from components.catalogue import component
+from components.catalogue import NAMES, component
 from components.ports import Kind
 from fmus.build import build_component
-
-from .conftest import NAMES
 
 
 @pytest.mark.parametrize("name", [*NAMES, "Probe"])

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from components.catalogue import component
+from components.catalogue import NAMES, component
 from fmus.in_process import InProcess
 from orchestrator.core.fmu_slave import FmuFile, read_description
-
-from .conftest import NAMES
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from .conftest import NAMES
+from components.catalogue import NAMES
+
 from .host import DISCARD, ERROR, OK, WARNING, Host
 
 

@@ -5,10 +5,10 @@ import pickle
 import numpy as np
 import pytest
 
+from components.catalogue import NAMES
 from components.component import ComponentError
 from fmus.python_fmu import component_state
 
-from .conftest import NAMES
 from .host import DISCARD, Host
 
 DRIVE = {"RBSMBeam": {"force.y[2]": -1e3}}
