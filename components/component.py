@@ -22,7 +22,8 @@ OK = 0
 """Status of a kernel that did what it was asked for. Every other value is a key of :attr:`Component.faults`."""
 
 Buffer = NDArray[np.float64]
-_HEADER = struct.Struct("<8s16sqqq")
+HEADER = struct.Struct("<8s16sqqq")
+"""Of a serialized state: mark, kind, and the lengths of ``w``, ``x`` and ``k``, which follow."""
 _MAGIC = b"rockshed"
 
 
@@ -204,7 +205,7 @@ class Instance:
 
     def to_bytes(self) -> bytes:
         """The complete state, exact to the bit."""
-        header = _HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
+        header = HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         return header + self.w.tobytes() + self.x.tobytes() + self.k.tobytes()
 
     def from_bytes(self, content: bytes) -> None:
@@ -213,8 +214,8 @@ class Instance:
         Raises:
             ComponentError: not such a state, of another component or size, or cut short.
         """
-        expected = _HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
-        if content[:_HEADER.size] != expected or len(content) != len(expected) + 8 * (self.w.size + self.x.size + self.k.size):
+        expected = HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
+        if content[:HEADER.size] != expected or len(content) != len(expected) + 8 * (self.w.size + self.x.size + self.k.size):
             raise ComponentError(self.component.name, ["this is no serialized state of this component with these sizes"])
         values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
         self.w[:], self.x[:] = values[:self.w.size], values[self.w.size:]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compilation import kernel
-from ..component import Instance
+from ..component import HEADER, ComponentError, Instance
 from ..ports import view
 from . import COMPONENT
 from .contact_search import base_top, beam_count, disc_count
@@ -154,3 +154,16 @@ def list_contacts(w, x, k, table):
             table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, spring[p]
             found += 1
     return found
+
+
+def sizes_of(content: bytes) -> dict[str, int]:
+    """The sizes of the cushion that a state is of, for :func:`read`: the state's table of arrays tells them.
+
+    Raises:
+        ComponentError: not the state of a component, or cut short.
+    """
+    if len(content) < HEADER.size or len(content) != HEADER.size + 8 * sum(HEADER.unpack_from(content)[2:]):
+        raise ComponentError(COMPONENT.name, ["this is no serialized state of a component"])
+    _, _, n_w, n_x, n_k = HEADER.unpack_from(content)
+    table = np.frombuffer(content, np.int64, n_k, HEADER.size + 8 * (n_w + n_x))
+    return {"discs": int(table[A.angle + 1]), "elements": int(table[A.beam_position_x + 1])}
