@@ -12,9 +12,9 @@ import zlib
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import wraps
-from operator import itemgetter
 from typing import Any, ClassVar
 
+import numpy as np
 from numba import typeof
 
 from .foundations import Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
@@ -100,8 +100,8 @@ class ComponentSlave(Fmi2Slave):
         self._table = [(name, variable) for variable in self.component.layout.ordered
                        for name in variable.element_names(self.sizes)]
         self._constants = {len(self._table) + i: value for i, value in enumerate(self.sizes.values())}
-        self._readers: dict[tuple[int, int], tuple[list[int], Callable[[Any], list[float]]]] = {}
-        self._writers: dict[tuple[int, int], tuple[list[int], bool]] = {}
+        self._readers: dict[tuple[int, int], tuple[list[int], Callable[[], list[float]]]] = {}
+        self._writers: dict[tuple[int, int], tuple[list[int], Callable[[list[float]], None]]] = {}
 
     # --- life cycle
 
@@ -201,7 +201,7 @@ class ComponentSlave(Fmi2Slave):
             if vrs and self._stale is _Stale.NOTHING:
                 known = self._readers.get((vrs[0], len(vrs)))
                 if known and known[0] == vrs:
-                    return known[1](self._values)
+                    return known[1]()
             return self._get(Kind.REAL, vrs)
         except BaseException as error:
             self._fail(error)
@@ -213,7 +213,7 @@ class ComponentSlave(Fmi2Slave):
             if vrs and self._phase is _Phase.RUNNING:
                 known = self._writers.get((vrs[0], len(vrs)))
                 if known and known[0] == vrs and math.isfinite(sum(values)):
-                    self._write(vrs, values, known[1])
+                    known[1](values)
                     return
             self._set(Kind.REAL, vrs, values)
         except BaseException as error:
@@ -263,10 +263,9 @@ class ComponentSlave(Fmi2Slave):
         variables = [self._variable(reference, kind)[1] for reference in vrs]
         if self._phase is _Phase.INITIALISING and any(variable.causality is Causality.OUTPUT for variable in variables):
             self._preview()
-        reader = _reader(vrs)
         if kind is Kind.REAL and vrs:
-            self._readers[vrs[0], len(vrs)] = list(vrs), reader
-        return reader(self._values)
+            self._readers[vrs[0], len(vrs)] = list(vrs), _reader(self._instance.w, list(vrs))
+        return [self._values[reference] for reference in vrs]
 
     def _preview(self) -> None:
         """Compute the outputs before the initialization mode ends; what is wrong with the inputs may still be put right."""
@@ -285,12 +284,13 @@ class ComponentSlave(Fmi2Slave):
                        for reason in self._why_not_set(name, variable, float(value))]:
             raise _RefusedError("; ".join(refused))
         changed = [variable.causality for (_, variable), r, value in zip(variables, vrs, values) if self._values[r] != value]
-        self._write(vrs, values, _is_block(vrs))
+        for reference, value in zip(vrs, values):
+            self._values[reference] = value
         if self._phase is not _Phase.RUNNING:
             stale = _Stale.STATE if Causality.PARAMETER in changed else _Stale.OUTPUTS if changed else _Stale.NOTHING
             self._stale, self._previewed = max(self._stale, stale), self._previewed and not changed
         elif vrs and all(variable.minimum is None and variable.maximum is None for _, variable in variables):
-            self._writers[vrs[0], len(vrs)] = list(vrs), _is_block(vrs)
+            self._writers[vrs[0], len(vrs)] = list(vrs), _writer(self._instance.w, list(vrs))
 
     def _why_not_set(self, name: str, variable: Variable, value: float) -> list[str]:
         if variable.causality is Causality.OUTPUT:
@@ -301,13 +301,6 @@ class ComponentSlave(Fmi2Slave):
             return [f"{name} = {value:.6g} is refused: a parameter is fixed after the initialisation; reset the slave to change it"]
         return [f"at t = {self._time:.9g} s: {problem}; correct what sends this value"
                 for problem in value_problems(variable, name, value)]
-
-    def _write(self, vrs: list[int], values: list[Any], block: bool) -> None:
-        if block:
-            self._values[vrs[0]:vrs[0] + len(vrs)] = values
-        else:
-            for reference, value in zip(vrs, values):
-                self._values[reference] = value
 
     # --- complete state
 
@@ -372,8 +365,18 @@ def _is_block(references: list[int]) -> bool:
     return bool(references) and references == list(range(references[0], references[0] + len(references)))
 
 
-def _reader(references: list[int]) -> Callable[[Any], list[float]]:
-    """Function that picks the values of these references from a ctypes array, as a list."""
+def _reader(buffer: Any, references: list[int]) -> Callable[[], list[float]]:
+    """Function that lists the values at these places of the buffer."""
     if _is_block(references):
-        return itemgetter(slice(references[0], references[0] + len(references)))
-    return lambda values: [values[reference] for reference in references]
+        return buffer[references[0]:references[0] + len(references)].tolist
+    places = np.array(references)
+    return lambda: buffer[places].tolist()
+
+
+def _writer(buffer: Any, references: list[int]) -> Callable[[list[float]], None]:
+    """Function that puts a list of values to these places of the buffer. ``pack_into`` is faster than assigning a slice."""
+    if _is_block(references):
+        pack, place = struct.Struct(f"{len(references)}d").pack_into, references[0] * buffer.itemsize
+        return lambda values: pack(buffer, place, *values)
+    places = np.array(references)
+    return lambda values: buffer.put(places, values)

@@ -41,7 +41,7 @@ def discs_at(positions: Pairs, velocities: Pairs | None = None, spins: Sequence[
     if velocities is not None:
         body[:, 2:4] = velocities
     if spins is not None:
-        body[:, 4] = spins
+        body[:, 4] = np.asarray(spins) * body[:, 5]
     instance.evaluate()
     return instance
 
@@ -54,7 +54,7 @@ def stirred(instance: Instance, speed: float, seed: int = 1) -> Instance:
 
 
 def rows(instance: Instance) -> NDArray[np.float64]:
-    """The sand discs' rows of the state, a view: x, y, vx, vy, omega, radius, 1/mass, mass^(1/4)."""
+    """The sand discs' rows of the state, a view: x, y, vx, vy, omega * radius, radius, 1/mass, sqrt(mass) / 2."""
     view: NDArray[np.float64] = instance.state("body").reshape(-1, ROW)[:instance.sizes["discs"]]
     return view
 

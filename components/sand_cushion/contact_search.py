@@ -1,16 +1,17 @@
 """Candidates for contact: a Verlet list made on a grid of cells, whose contact springs survive a rebuild.
 
-Bodies are numbered: discs 0 .. N-1, the rock N, beam discs N+1 .. N+M, then the planes: left wall, right wall, base. The list
-has a row for each disc and one for the rock. Row i names its partners: first discs with a higher number, from ``row[2 i]``,
-then rock, beam discs and planes, from ``row[2 i + 1]``. A pair is listed while its gap is below the skin; the list is made
-anew before two bodies can have closed a gap of one skin.
+Bodies are numbered: discs 0 .. N-1, the rock N, beam discs N+1 .. N+M, then the planes: left wall, right wall, base. There are
+two lists. ``first`` and ``second`` name the pairs of discs, the lower number first and in ascending order; the pairs of disc i
+begin at ``row[i]``. ``edge_body`` and ``edge_partner`` name what discs and rock have near them else: rock, beam discs and
+planes; those of disc i begin at ``edge_row[i]``. A pair is listed while its gap is below the skin; the lists are made anew before
+two bodies can have closed a gap of one skin.
 """
 
 import math
 
 from ..compilation import kernel
 from ..ports import view
-from .declarations import BEAM_DISCS, BEAM_SURFACE, LAYOUT, PLANES, ROW, SUM
+from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PLANES, RADIUS, ROW, SUM
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -68,9 +69,9 @@ def sort_into_cells(body, n, cell_start, cell_disc, disc_cell, left, bottom, siz
 
 
 @kernel
-def disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, partner, at):
+def disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, first, second, at):
     """List the discs near disc i that have a higher number. Returns the end of the list, or -1 where there is no room."""
-    xi, yi, ri = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5]
+    xi, yi, ri = body[ROW * i], body[ROW * i + 1], body[ROW * i + RADIUS]
     line, column = disc_cell[i] // columns, disc_cell[i] % columns
     for near in range(max(0, line - 1), min(rows, line + 2)):
         for c in range(near * columns + max(0, column - 1), near * columns + min(columns, column + 2)):
@@ -80,11 +81,11 @@ def disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, s
                 j = cell_disc[q]
                 if j > i:
                     dx, dy = body[ROW * j] - xi, body[ROW * j + 1] - yi
-                    reach = ri + body[ROW * j + 5] + skin
+                    reach = ri + body[ROW * j + RADIUS] + skin
                     if dx * dx + dy * dy < reach * reach:
-                        if at >= partner.size:
+                        if at + BLOCK >= first.size:
                             return -1
-                        partner[at] = j
+                        first[at], second[at] = i, j
                         at += 1
     return at
 
@@ -94,11 +95,11 @@ def boundary_partners(i, w, body, n, m, skin, partner, at):
     """List rock, beam discs and planes near disc i, or, for i = N, beam discs and planes near the rock."""
     if at + m + 1 + PLANES > partner.size:
         return -1
-    xi, yi, reach = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5] + skin
+    xi, yi, reach = body[ROW * i], body[ROW * i + 1], body[ROW * i + RADIUS] + skin
     for b in range(n if i < n else n + 1, n + m + 1):
         if b > n and w[V.base] != BEAM_DISCS:
             break
-        dx, dy, distance = body[ROW * b] - xi, body[ROW * b + 1] - yi, reach + body[ROW * b + 5]
+        dx, dy, distance = body[ROW * b] - xi, body[ROW * b + 1] - yi, reach + body[ROW * b + RADIUS]
         if dx * dx + dy * dy < distance * distance:
             partner[at] = b
             at += 1
@@ -121,56 +122,62 @@ def base_top(w, body, n, m):
         return w[V.base_y]
     top = -math.inf
     for b in range(n + 1, n + m + 1):
-        top = max(top, body[ROW * b + 1] + body[ROW * b + 5])
+        top = max(top, body[ROW * b + 1] + body[ROW * b + RADIUS])
     return top
 
 
 @kernel
-def inherit(i, row, partner, spring, roll, row_before, partner_before, spring_before, roll_before):
-    """Give the pairs of row i the springs they had in the list before."""
-    for p in range(row[2 * i], row[2 * i + 2]):
-        spring[p] = 0.0
-        roll[p] = 0.0
-        for q in range(row_before[2 * i], row_before[2 * i + 2]):
-            if partner_before[q] == partner[p]:
-                spring[p] = spring_before[q]
-                roll[p] = roll_before[q]
-                break
+def inherit(rows, row, partner, spring, row_before, partner_before, spring_before):
+    """Give the pairs of a list the springs that they had in the list before."""
+    for i in range(rows):
+        for p in range(row[i], row[i + 1]):
+            spring[p] = 0.0
+            for q in range(row_before[i], row_before[i + 1]):
+                if partner_before[q] == partner[p]:
+                    spring[p] = spring_before[q]
+                    break
 
 
 @kernel
 def forget(x, k):
-    """Empty the list, and with it all contact springs."""
-    row = view(k, k, A.row)
+    """Empty the lists, and with them all contact springs."""
+    row, edge_row = view(k, k, A.row), view(k, k, A.edge_row)
     for i in range(row.size):
         row[i] = 0
+    for i in range(edge_row.size):
+        edge_row[i] = 0
+
+
+@kernel
+def set_aside(count, source, target):
+    """Copy the first ``count`` numbers."""
+    for q in range(count):
+        target[q] = source[q]
 
 
 @kernel
 def keep_for_inheritance(x, k):
-    """Set the present list aside."""
+    """Set the present lists aside."""
     n = disc_count(k)
-    row, row_before = view(k, k, A.row), view(k, k, A.row_before)
-    partner, partner_before = view(k, k, A.partner), view(k, k, A.partner_before)
-    spring, spring_before = view(x, k, A.spring), view(x, k, A.spring_before)
-    roll, roll_before = view(x, k, A.roll), view(x, k, A.roll_before)
-    for i in range(2 * (n + 2)):
-        row_before[i] = row[i]
-    for p in range(row[2 * (n + 1)]):
-        partner_before[p] = partner[p]
-        spring_before[p] = spring[p]
-        roll_before[p] = roll[p]
+    row, edge_row = view(k, k, A.row), view(k, k, A.edge_row)
+    pairs, edges = row[n], edge_row[n + 1]
+    set_aside(n + 1, row, view(k, k, A.row_before))
+    set_aside(n + 2, edge_row, view(k, k, A.edge_row_before))
+    set_aside(pairs, view(k, k, A.second), view(k, k, A.second_before))
+    set_aside(edges, view(k, k, A.edge_partner), view(k, k, A.edge_partner_before))
+    set_aside(pairs, view(x, k, A.spring), view(x, k, A.spring_before))
+    set_aside(pairs, view(x, k, A.roll), view(x, k, A.roll_before))
+    set_aside(edges, view(x, k, A.edge_spring), view(x, k, A.edge_spring_before))
 
 
 @kernel
-def rebuild(w, x, k):
-    """Make the list anew. Returns False where the room for it does not suffice."""
+def list_discs(w, x, k):
+    """Make the list of pairs of discs anew. Returns False where the room for it does not suffice."""
     n, m = disc_count(k), beam_count(k)
-    body = view(x, k, A.body)
-    row, partner = view(k, k, A.row), view(k, k, A.partner)
+    body, row = view(x, k, A.body), view(k, k, A.row)
+    first, second = view(k, k, A.first), view(k, k, A.second)
     cell_start, cell_disc, disc_cell = view(k, k, A.cell_start), view(k, k, A.cell_disc), view(k, k, A.disc_cell)
     skin = SKIN * w[V.disc_radius]
-    keep_for_inheritance(x, k)
     size = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) + skin
     bottom = base_top(w, body, n, m) if w[V.base] != BEAM_DISCS else body[ROW * (n + 1) + 1]
     cells = cell_start.size - 1
@@ -179,21 +186,54 @@ def rebuild(w, x, k):
     sort_into_cells(body, n, cell_start, cell_disc, disc_cell, w[V.box_left], bottom, max(size, w[V.box_width] / columns),
                     columns, rows)
     at = 0
-    for i in range(n + 1):
-        row[2 * i] = at
-        if i < n:
-            at = disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, partner, at)
-            if at < 0:
-                return False
-        row[2 * i + 1] = at
-        at = boundary_partners(i, w, body, n, m, skin, partner, at)
+    for i in range(n):
+        row[i] = at
+        at = disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, first, second, at)
         if at < 0:
             return False
-    row[2 * n + 2] = at
+    row[n] = at
+    for p in range(at, at + BLOCK):  # what fills up the last block cannot touch
+        first[p], second[p] = 0, n + m + 1
+    return True
+
+
+@kernel
+def list_edges(w, x, k):
+    """Make the list of all else that discs and rock may touch anew. Returns False where the room for it does not suffice."""
+    n, m = disc_count(k), beam_count(k)
+    body, edge_row = view(x, k, A.body), view(k, k, A.edge_row)
+    owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
+    at = 0
     for i in range(n + 1):
-        inherit(i, row, partner, view(x, k, A.spring), view(x, k, A.roll), view(k, k, A.row_before),
-                view(k, k, A.partner_before), view(x, k, A.spring_before), view(x, k, A.roll_before))
-    reference = view(x, k, A.boundary_reference)
+        edge_row[i] = at
+        end = boundary_partners(i, w, body, n, m, SKIN * w[V.disc_radius], partner, at)
+        if end < 0:
+            return False
+        for p in range(at, end):
+            owner[p] = i
+        at = end
+    edge_row[n + 1] = at
+    return True
+
+
+@kernel
+def rebuild(w, x, k):
+    """Make both lists anew. Returns False where the room for them does not suffice."""
+    n, m = disc_count(k), beam_count(k)
+    keep_for_inheritance(x, k)
+    if not list_discs(w, x, k) or not list_edges(w, x, k):
+        return False
+    row, before = view(k, k, A.row), view(k, k, A.row_before)
+    second, second_before = view(k, k, A.second), view(k, k, A.second_before)
+    inherit(n, row, second, view(x, k, A.spring), before, second_before, view(x, k, A.spring_before))
+    if w[V.rolling_resistance] > 0.0:
+        inherit(n, row, second, view(x, k, A.roll), before, second_before, view(x, k, A.roll_before))
+    inherit(n + 1, view(k, k, A.edge_row), view(k, k, A.edge_partner), view(x, k, A.edge_spring),
+            view(k, k, A.edge_row_before), view(k, k, A.edge_partner_before), view(x, k, A.edge_spring_before))
+    spring = view(x, k, A.spring)
+    for p in range(row[n], row[n] + BLOCK):
+        spring[p] = 0.0
+    body, reference = view(x, k, A.body), view(x, k, A.boundary_reference)
     for b in range(m + 1):
         reference[2 * b], reference[2 * b + 1] = body[ROW * (n + b)], body[ROW * (n + b) + 1]
     view(x, k, A.sums)[SUM.travelled] = 0.0

@@ -28,13 +28,18 @@ _TABLE_3 = "Sonoda et al. 1993, table 3"
 _EQ_1 = "Sonoda et al. 1993, eq. (1)"
 
 ROW = 8
-"""Numbers per body in ``body``: x, y, vx, vy, omega, radius, 1/mass, mass^(1/4)."""
-FORCE_ROW = 3
-"""Numbers per body in ``load``: force to the right, force upwards, torque."""
+"""Numbers per body in ``body``, a cache line: x, y, vx, vy, surface speed omega * radius, radius, 1/mass, sqrt(mass) / 2.
+Rock and beam discs have their angle in the place of 1/mass."""
+SPIN, RADIUS, INVERSE_MASS, ANGLE, HALF_ROOT = 4, 5, 6, 6, 7
+FORCE_ROW = 4
+"""Numbers per body in ``load``: force to the right, force upwards, torque / radius, nothing."""
 PARTNERS = 12
 """Room for contact candidates, per disc on average."""
 INDEX = 0x7FFFFFFF
-"""Larger than any index; see forces.py."""
+"""Larger than any index. A number masked with it is known not to be negative, and numba's handling of negative indices falls
+away; see forces.py."""
+BLOCK = 32
+"""Pairs for which the law of contact is computed together."""
 PLANES = 3
 """Left wall, right wall, base."""
 
@@ -45,6 +50,11 @@ Law = namedtuple("Law", "normal damping tangential tangential_damping friction r
 LAW = Law(*range(6))
 """Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance."""
 
+Column = namedtuple("Column", "x y vx vy spin reach root elastic tangential normal_dashpot tangential_dashpot sliding")
+COLUMN = Column(*range(12))
+"""Columns of the block of pairs: seven that describe the pairs, then energies, which add up over the blocks. The law leaves
+force to the right, force upwards, tangential and normal force in the first four."""
+
 Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling rock beam walls "
                         "force_x force_y torque transmitted travelled beam_key")
 SUM = Sum(*range(14))
@@ -52,11 +62,16 @@ SUM = Sum(*range(14))
 
 
 def _bodies(sizes: Sizes) -> int:
-    return sizes["discs"] + 1 + sizes["elements"]
+    """Discs, rock, beam discs, and one body far away that nothing touches: partner in the pairs that fill up the last block."""
+    return sizes["discs"] + 1 + sizes["elements"] + 1
 
 
-def _capacity(sizes: Sizes) -> int:
-    return PARTNERS * sizes["discs"] + 4 * (sizes["elements"] + PLANES) + 64
+def _pairs(sizes: Sizes) -> int:
+    return PARTNERS * sizes["discs"] + 2 * BLOCK
+
+
+def _edges(sizes: Sizes) -> int:
+    return 4 * sizes["discs"] + 2 * (sizes["elements"] + PLANES) + 8
 
 
 def _cells(sizes: Sizes) -> int:
@@ -158,17 +173,26 @@ LAYOUT = Layout(
         State("body", lambda n: ROW * _bodies(n)),
         State("angle", lambda n: n["discs"]),
         State("load", lambda n: FORCE_ROW * _bodies(n)),
-        State("spring", _capacity),
-        State("spring_before", _capacity),
-        State("roll", _capacity),
-        State("roll_before", _capacity),
+        State("spring", _pairs),
+        State("spring_before", _pairs),
+        State("roll", _pairs),
+        State("roll_before", _pairs),
+        State("edge_spring", _edges),
+        State("edge_spring_before", _edges),
+        State("block", lambda n: BLOCK * len(COLUMN)),
         State("law", lambda n: len(KIND) * len(LAW)),
         State("sums", lambda n: len(SUM)),
         State("boundary_reference", lambda n: 2 * (n["elements"] + 1)),
-        State("row", lambda n: 2 * (n["discs"] + 2), integer=True),
-        State("row_before", lambda n: 2 * (n["discs"] + 2), integer=True),
-        State("partner", _capacity, integer=True),
-        State("partner_before", _capacity, integer=True),
+        State("row", lambda n: n["discs"] + 1, integer=True),
+        State("row_before", lambda n: n["discs"] + 1, integer=True),
+        State("first", _pairs, integer=True),
+        State("second", _pairs, integer=True),
+        State("second_before", _pairs, integer=True),
+        State("edge_row", lambda n: n["discs"] + 2, integer=True),
+        State("edge_row_before", lambda n: n["discs"] + 2, integer=True),
+        State("edge_body", _edges, integer=True),
+        State("edge_partner", _edges, integer=True),
+        State("edge_partner_before", _edges, integer=True),
         State("cell_start", lambda n: _cells(n) + 1, integer=True),
         State("cell_disc", lambda n: n["discs"], integer=True),
         State("disc_cell", lambda n: n["discs"], integer=True),

@@ -7,7 +7,26 @@ from ..component import OK
 from ..ports import view
 from ..stepping import substep_count
 from .contact_search import beam_count, disc_count, forget, is_stale, rebuild
-from .declarations import BEAM_DISCS, FLOOR, FORCE_ROW, FREE, INDEX, KIND, LAW, LAYOUT, LINEAR, MEAN, RANDOM, ROW, SUM
+from .declarations import (
+    ANGLE,
+    BEAM_DISCS,
+    FLOOR,
+    FORCE_ROW,
+    FREE,
+    HALF_ROOT,
+    INDEX,
+    INVERSE_MASS,
+    KIND,
+    LAW,
+    LAYOUT,
+    LINEAR,
+    MEAN,
+    RADIUS,
+    RANDOM,
+    ROW,
+    SPIN,
+    SUM,
+)
 from .forces import ROLLING, contact_forces
 from .packing import pack
 
@@ -113,7 +132,7 @@ def stable_step_of(w):
 def set_boundaries(ahead, w, x, k):
     """Put rock and beam discs where the inputs say, ``ahead`` seconds later; count the work their contact forces do on the sand.
 
-    Body rows of rock and beam discs hold their angle where a sand disc has its inverse mass.
+    Before the first call their radii must be known.
     """
     n, m = disc_count(k), beam_count(k)
     body, load, sums = view(x, k, A.body), view(x, k, A.load), view(x, k, A.sums)
@@ -130,22 +149,24 @@ def place(b, px, py, angle, vx, vy, omega, ahead, body, load):
     """Move boundary b; returns the work (J) that the present contact force on it does along this way."""
     at, force = ROW * b, FORCE_ROW * b
     new_x, new_y, new_angle = px + vx * ahead, py + vy * ahead, angle + omega * ahead
+    radius = body[at + RADIUS]
     work = (load[force] * (new_x - body[at]) + load[force + 1] * (new_y - body[at + 1])
-            + load[force + 2] * (new_angle - body[at + 6]))
-    body[at], body[at + 1], body[at + 6] = new_x, new_y, new_angle
-    body[at + 2], body[at + 3], body[at + 4] = vx, vy, omega
+            + load[force + 2] * radius * (new_angle - body[at + ANGLE]))
+    body[at], body[at + 1], body[at + ANGLE] = new_x, new_y, new_angle
+    body[at + 2], body[at + 3], body[at + SPIN] = vx, vy, omega * radius
     return work
 
 
 @kernel
 def size_boundaries(w, x, k):
-    """Radii of rock and beam discs, and the root of the rock's mass for its dashpots."""
+    """Radii of rock and beam discs, the root of the rock's mass for its dashpots, and the body that is far away."""
     n, m = disc_count(k), beam_count(k)
     body = view(x, k, A.body)
-    body[ROW * n + 5] = w[V.rock_radius]
-    body[ROW * n + 7] = math.sqrt(math.sqrt(w[V.rock_mass]))
+    body[ROW * n + RADIUS] = w[V.rock_radius]
+    body[ROW * n + HALF_ROOT] = 0.5 * math.sqrt(w[V.rock_mass])
     for b in range(n + 1, n + m + 1):
-        body[ROW * b + 5] = w[V.beam_radius]
+        body[ROW * b + RADIUS] = w[V.beam_radius]
+    body[ROW * (n + m + 1)] = _FAR
 
 
 # --- motion of the discs ---
@@ -157,10 +178,10 @@ def move_discs(n, dt, gravity, rotating, body, angle, load, sums):
     Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
     velocities half a step before and after it, m v_before v_after / 2.
     """
-    kinetic, spin, potential, fastest = 0.0, 0.0, 0.0, 0.0
+    kinetic, potential, fastest = 0.0, 0.0, 0.0
     for i in range(n):
         at, force = ROW * i & INDEX, FORCE_ROW * i & INDEX
-        inverse, mass = body[at + 6], body[at + 7] * body[at + 7] * (body[at + 7] * body[at + 7])
+        inverse, mass = body[at + INVERSE_MASS], 4.0 * body[at + HALF_ROOT] * body[at + HALF_ROOT]
         vx, vy = body[at + 2], body[at + 3]
         new_x = vx + load[force] * inverse * dt
         new_y = vy + (load[force + 1] * inverse - gravity) * dt
@@ -173,13 +194,13 @@ def move_discs(n, dt, gravity, rotating, body, angle, load, sums):
         if square > fastest:
             fastest = square
         if rotating:
-            omega, radius = body[at + 4], body[at + 5]
-            new = omega + load[force + 2] * 2.0 * inverse / (radius * radius) * dt  # I = m r^2 / 2
-            spin += mass * radius * radius * omega * new
-            body[at + 4] = new
-            angle[i] += new * dt
+            spin = body[at + SPIN]
+            new = spin + 2.0 * load[force + 2] * inverse * dt  # d(omega r)/dt = torque r / I with I = m r^2 / 2
+            kinetic += 0.5 * mass * spin * new
+            body[at + SPIN] = new
+            angle[i] += new / body[at + RADIUS] * dt
     sums[SUM.travelled] += math.sqrt(fastest) * dt
-    return 0.5 * kinetic + 0.25 * spin, potential * gravity
+    return 0.5 * kinetic, potential * gravity
 
 
 @kernel
@@ -203,7 +224,7 @@ def unrest(w, x, k):
     largest = 0.0
     for i in range(disc_count(k)):
         at, force = ROW * i, FORCE_ROW * i
-        ax, ay = load[force] * body[at + 6], load[force + 1] * body[at + 6] - w[V.gravity]
+        ax, ay = load[force] * body[at + INVERSE_MASS], load[force + 1] * body[at + INVERSE_MASS] - w[V.gravity]
         v2 = body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3]
         largest = max(largest, math.sqrt(ax * ax + ay * ay) / g, math.sqrt(v2 / (g * w[V.disc_radius])))
     return largest
@@ -276,7 +297,7 @@ def surface_under_rock(w, x, k):
     body = view(x, k, A.body)
     near, anywhere = -math.inf, -math.inf
     for i in range(disc_count(k)):
-        top = body[ROW * i + 1] + body[ROW * i + 5]
+        top = body[ROW * i + 1] + body[ROW * i + RADIUS]
         anywhere = max(anywhere, top)
         if abs(body[ROW * i] - w[V.rock_position_x]) < w[V.rock_radius]:
             near = max(near, top)
@@ -298,7 +319,7 @@ def misplaced(w, x, k):
             return BEAM_TOO_NARROW
     for i in range(n):
         dx, dy = body[ROW * n] - body[ROW * i], body[ROW * n + 1] - body[ROW * i + 1]
-        if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + body[ROW * i + 5] - _TOUCHING:
+        if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + body[ROW * i + RADIUS] - _TOUCHING:
             return ROCK_INSIDE
     return OK
 
@@ -337,8 +358,8 @@ def kinetic_energy(x, k):
     total = 0.0
     for i in range(disc_count(k)):
         at = ROW * i
-        total += 0.5 * (body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3]) / body[at + 6]
-        total += 0.25 * body[at + 5] * body[at + 5] * body[at + 4] * body[at + 4] / body[at + 6]
+        speeds = body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3] + 0.5 * body[at + SPIN] * body[at + SPIN]
+        total += 0.5 * speeds / body[at + INVERSE_MASS]
     return total
 
 
@@ -348,7 +369,7 @@ def potential_energy(w, x, k):
     body = view(x, k, A.body)
     total = 0.0
     for i in range(disc_count(k)):
-        total += body[ROW * i + 1] / body[ROW * i + 6]
+        total += body[ROW * i + 1] / body[ROW * i + INVERSE_MASS]
     return total * w[V.gravity]
 
 
@@ -364,12 +385,12 @@ def collect_forces(share, first, w, x, k):
     at = FORCE_ROW * n
     w[V.rock_force_x] = keep * w[V.rock_force_x] + share * load[at]
     w[V.rock_force_y] = keep * w[V.rock_force_y] + share * load[at + 1]
-    w[V.rock_torque] = keep * w[V.rock_torque] + share * load[at + 2]
+    w[V.rock_torque] = keep * w[V.rock_torque] + share * load[at + 2] * w[V.rock_radius]
     for b in range(m):
         at = FORCE_ROW * (n + 1 + b)
         fx[b] = keep * fx[b] + share * load[at]
         fy[b] = keep * fy[b] + share * load[at + 1]
-        torque[b] = keep * torque[b] + share * load[at + 2]
+        torque[b] = keep * torque[b] + share * load[at + 2] * w[V.beam_radius]
     w[V.transmitted_force] = keep * w[V.transmitted_force] + share * sums[SUM.transmitted]
 
 

@@ -6,7 +6,7 @@ from ..compilation import kernel
 from ..counter_random import uniform
 from ..ports import view
 from .contact_search import base_top, beam_count, disc_count
-from .declarations import BEAM_DISCS, HEXAGONAL, LAYOUT, RANDOM, ROW
+from .declarations import BEAM_DISCS, HALF_ROOT, HEXAGONAL, INVERSE_MASS, LAYOUT, RADIUS, RANDOM, ROW, SPIN
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -21,9 +21,8 @@ def set_disc(body, i, x, y, radius, w):
     """Place disc i at rest; its mass is that of a cylinder of the cushion's depth."""
     mass = w[V.unit_weight] * math.pi * radius * radius * w[V.depth]
     body[ROW * i], body[ROW * i + 1] = x, y
-    body[ROW * i + 2], body[ROW * i + 3], body[ROW * i + 4] = 0.0, 0.0, 0.0
-    body[ROW * i + 5], body[ROW * i + 6] = radius, 1.0 / mass
-    body[ROW * i + 7] = math.sqrt(math.sqrt(mass))
+    body[ROW * i + 2], body[ROW * i + 3], body[ROW * i + SPIN] = 0.0, 0.0, 0.0
+    body[ROW * i + RADIUS], body[ROW * i + INVERSE_MASS], body[ROW * i + HALF_ROOT] = radius, 1.0 / mass, 0.5 * math.sqrt(mass)
 
 
 @kernel
@@ -38,7 +37,7 @@ def foundation(w, body, n, m):
     if w[V.base] == BEAM_DISCS:
         top = -math.inf
         for b in range(n + 1, n + m + 1):
-            top = max(top, body[ROW * b + 1] + body[ROW * b + 5])
+            top = max(top, body[ROW * b + 1] + body[ROW * b + RADIUS])
         return top
     return base_top(w, body, n, m)
 

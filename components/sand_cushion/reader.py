@@ -14,7 +14,7 @@ from ..component import HEADER, ComponentError, Instance
 from ..ports import view
 from . import COMPONENT
 from .contact_search import base_top, beam_count, disc_count
-from .declarations import BEAM_DISCS, LAW, LAYOUT, ROW
+from .declarations import ANGLE, BEAM_DISCS, KIND, LAW, LAYOUT, RADIUS, ROW
 from .forces import kind_of, touch
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -96,8 +96,8 @@ def snapshot(instance: Instance) -> SandState:
     """The present state of a cushion. The arrays are copies."""
     discs = instance.sizes["discs"]
     body = instance.state("body").reshape(-1, ROW)
-    others = body[discs:, 6]  # rock and beam discs keep their angle where a sand disc has its inverse mass
-    angle = np.concatenate((instance.state("angle"), others))
+    body = body[:discs + 1 + instance.sizes["elements"]]
+    angle = np.concatenate((instance.state("angle"), body[discs:, ANGLE]))
     return SandState(_discs(body, angle, slice(0, discs)), _discs(body, angle, slice(discs, discs + 1)),
                      _discs(body, angle, slice(discs + 1, None)), _box(instance), _contacts(instance))
 
@@ -112,7 +112,7 @@ def _box(instance: Instance) -> Box:
 
 
 def _contacts(instance: Instance) -> Contacts:
-    table = np.empty((instance.state("partner").size, _COLUMNS))
+    table = np.empty((instance.state("second").size + instance.state("edge_partner").size, _COLUMNS))
     table = table[:list_contacts(instance.w, instance.x, instance.k, table)]
     bodies = table[:, :2].astype(np.int64)
     return Contacts(bodies[:, 0], bodies[:, 1], *(np.copy(column) for column in table.T[2:]))
@@ -133,26 +133,32 @@ def _base(w, x, k):
 
 @kernel
 def list_contacts(w, x, k, table):
-    """Write a row of ``table`` for each contact that touches; returns their number. The list of candidates has room for all."""
+    """Write a row of ``table`` for each contact that touches; returns their number. The lists of candidates have room for all."""
+    n = disc_count(k)
+    found = _list(0, view(k, k, A.row)[n], view(k, k, A.first), view(k, k, A.second), view(x, k, A.spring), w, x, k, table)
+    return _list(found, view(k, k, A.edge_row)[n + 1], view(k, k, A.edge_body), view(k, k, A.edge_partner),
+                 view(x, k, A.edge_spring), w, x, k, table)
+
+
+@kernel
+def _list(found, pairs, first, second, spring, w, x, k, table):
+    """Write those of the pairs that touch behind the rows found before."""
     n, m = disc_count(k), beam_count(k)
-    body, law, spring = view(x, k, A.body), view(x, k, A.law), view(x, k, A.spring)
-    row, partner = view(k, k, A.row), view(k, k, A.partner)
-    found = 0
-    for i in range(n + 1):
-        for p in range(row[2 * i], row[2 * i + 2]):
-            j = partner[p]
-            nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
-            if gap >= 0.0:
-                continue
-            xi, yi, reach = body[ROW * i], body[ROW * i + 1], body[ROW * i + 5] + gap
-            if j <= n + m:
-                reach += body[ROW * j + 5]
-            stiffness = law[(0 if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
-            table[found, 0], table[found, 1] = i, j
-            table[found, 2], table[found, 3] = xi, yi
-            table[found, 4], table[found, 5] = xi + nx * reach, yi + ny * reach
-            table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, spring[p]
-            found += 1
+    body, law = view(x, k, A.body), view(x, k, A.law)
+    for p in range(pairs):
+        i, j = first[p], second[p]
+        nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
+        if gap >= 0.0:
+            continue
+        reach = body[ROW * i + RADIUS] + gap
+        if j <= n + m:
+            reach += body[ROW * j + RADIUS]
+        stiffness = law[(KIND.sand if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
+        table[found, 0], table[found, 1] = i, j
+        table[found, 2], table[found, 3] = body[ROW * i], body[ROW * i + 1]
+        table[found, 4], table[found, 5] = body[ROW * i] + nx * reach, body[ROW * i + 1] + ny * reach
+        table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, spring[p]
+        found += 1
     return found
 
 

@@ -28,8 +28,8 @@ def momentum(instance):
 
 def angular_momentum(instance):
     """Sum of x cross m v + I omega, and of its parts' sizes."""
-    (x, y, vx, vy, omega, radius), mass = rows(instance)[:, :6].T, masses(instance)
-    orbit, spin = mass * (x * vy - y * vx), 0.5 * mass * radius ** 2 * omega
+    (x, y, vx, vy, surface, radius), mass = rows(instance)[:, :6].T, masses(instance)
+    orbit, spin = mass * (x * vy - y * vx), 0.5 * mass * radius * surface
     return (orbit + spin).sum(), (abs(orbit) + abs(spin)).sum()
 
 

@@ -41,14 +41,14 @@ def test_a_sliding_disc_ends_rolling_at_two_thirds_of_its_speed():
     rolling_from = 1.0 / (3.0 * MU * G)
     run(disc, 0.5 * rolling_from)
     assert rows(disc)[0, 2] == pytest.approx(5.0 / 6.0, rel=1e-3)
-    assert rows(disc)[0, 4] * RADIUS == pytest.approx(-1.0 / 3.0, rel=1e-3)
+    assert rows(disc)[0, 4] == pytest.approx(-1.0 / 3.0, rel=1e-3)
     run(disc, 0.49 * rolling_from)
-    assert rows(disc)[0, 2] + rows(disc)[0, 4] * RADIUS > 5e-3
+    assert rows(disc)[0, 2] + rows(disc)[0, 4] > 5e-3
     run(disc, 0.03 * rolling_from)
-    assert rows(disc)[0, 2] + rows(disc)[0, 4] * RADIUS == pytest.approx(0.0, abs=3e-3)
+    assert rows(disc)[0, 2] + rows(disc)[0, 4] == pytest.approx(0.0, abs=3e-3)
     run(disc, rolling_from)
     assert rows(disc)[0, 2] == pytest.approx(2.0 / 3.0, rel=1e-9)
-    assert rows(disc)[0, 4] == pytest.approx(-2.0 / 3.0 / RADIUS, rel=1e-9)
+    assert rows(disc)[0, 4] == pytest.approx(-2.0 / 3.0, rel=1e-9)
     assert disc["energy.sliding"] == pytest.approx(masses(disc)[0] / 6.0, rel=1e-2)
 
 
@@ -65,7 +65,7 @@ def test_rolling_resistance_slows_at_its_limit():
     run(discs, 2e-3)
     before = rows(discs)[:, 4].copy()
     run(discs, 4e-3)
-    assert before - rows(discs)[:, 4] == pytest.approx(np.array((1.0, -1.0)) * 0.3 * G / RADIUS * 4e-3, rel=1e-6)
+    assert before - rows(discs)[:, 4] == pytest.approx(np.array((1.0, -1.0)) * 0.3 * G * 4e-3, rel=1e-6)
     assert discs["energy.rolling"] > 0.9 * (discs["energy.start"] - discs["energy.kinetic"] - discs["energy.gravity"]) > 0.0
 
 

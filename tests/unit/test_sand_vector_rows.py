@@ -1,0 +1,62 @@
+"""Rows and columns of the block of pairs: the vector form against its plain twin, bit for bit."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.compilation import kernel
+from components.sand_cushion import vector_rows
+from components.sand_cushion.declarations import BLOCK
+
+BODIES = 40
+
+
+@kernel
+def to_columns(body, first, second, block):
+    for lane in range(0, BLOCK, vector_rows.LANES):
+        vector_rows.pairs_to_columns(body, first, second, lane, block, lane, BLOCK)
+
+
+@kernel
+def to_rows(load, first, second, block):
+    for lane in range(0, BLOCK, vector_rows.LANES):
+        vector_rows.columns_to_pairs(load, first, second, lane, block, lane, BLOCK)
+
+
+def pairs(seed):
+    """A block of pairs of which many share a disc, also next to each other."""
+    random = np.random.default_rng(seed)
+    first = np.sort(random.integers(0, BODIES - 1, BLOCK))
+    return random, first, random.integers(first + 1, BODIES)
+
+
+@settings(deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_columns_are_those_of_the_plain_loop(seed):
+    random, first, second = pairs(seed)
+    body = random.normal(0.0, 1.0, 8 * BODIES)
+    vector, plain = np.zeros(7 * BLOCK), np.zeros(7 * BLOCK)
+    to_columns(body, first, second, vector)
+    for lane in range(0, BLOCK, vector_rows.LANES):
+        vector_rows.plain_pairs_to_columns(body, first, second, lane, plain, lane, BLOCK)
+    np.testing.assert_array_equal(vector, plain)
+    rows = body.reshape(-1, 8)
+    assert plain[:BLOCK] == pytest.approx(rows[second, 0] - rows[first, 0])
+    assert plain[5 * BLOCK:6 * BLOCK] == pytest.approx(rows[second, 5] + rows[first, 5])
+    assert plain[6 * BLOCK:] == pytest.approx(rows[second, 7] + rows[first, 7])
+
+
+@settings(deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_loads_add_up_in_the_order_of_the_plain_loop(seed):
+    random, first, second = pairs(seed)
+    block, start = random.normal(0.0, 1.0, 4 * BLOCK), random.normal(0.0, 1.0, 4 * BODIES)
+    vector, plain = start.copy(), start.copy()
+    to_rows(vector, first, second, block)
+    for lane in range(0, BLOCK, vector_rows.LANES):
+        vector_rows.plain_columns_to_pairs(plain, first, second, lane, block, lane, BLOCK)
+    np.testing.assert_array_equal(vector, plain)
+    gained = (plain - start).reshape(-1, 4).sum(axis=0)
+    assert gained[:2] == pytest.approx(0.0, abs=1e-12)  # action and reaction
+    assert gained[2] == pytest.approx(2.0 * block[2 * BLOCK:3 * BLOCK].sum())
