@@ -217,9 +217,16 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
          quiet: Quiet = False) -> None:
     """Draw all pictures of a run again, also of one that failed, was interrupted or was killed."""
     with _screen(quiet) as screen:
+        from .core.errors import InputRefused, Problem
         from .core.reading import read_run
+        from .core.results import running_folder
 
         found = read_run(run)
+        if found.folder.absolute() == run.absolute() and running_folder(run.absolute()).exists():
+            screen.warn(f"there is a newer run that has not ended, in {running_folder(run)}")
+        if not found.series["time"].size:
+            raise InputRefused([Problem(str(found.folder), "the run was ended before its first row was written",
+                                        "run it again")])
         if found.status != "complete":
             screen.warn(f"this run is not complete ({found.status}): pictures show what was computed until "
                         f"t = {1e3 * found.series['time'][-1]:g} ms")

@@ -123,7 +123,8 @@ def caption(run: Run) -> list[str]:
     """What was run, in three short lines: case and how it was changed; model of the sand; exchange and steps."""
     facts = run.provenance
     changed = ", ".join(f"{name} = {value}" for name, value in facts.get("changed", {}).items())
-    return [str(facts["name"]) + (f" with {changed}" if changed else ""), *filter(None, [model(run)]), scheme(run)]
+    return [f"{facts['name']}{' with ' if changed else ''}{changed}: {facts['system']['description']}".removesuffix(": "),
+            *filter(None, [model(run)]), scheme(run)]
 
 
 def model(run: Run) -> str:

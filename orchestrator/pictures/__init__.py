@@ -1,13 +1,33 @@
 """Pictures of a run, from its results alone: the same at the end of a run and later."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+
+from components.component import ComponentError
 
 from ..cases.registry import known_of
 from ..core.errors import InputRefused, Problem
 from ..core.reading import Run
 from ..headlines import roles
+
+
+@dataclass(frozen=True)
+class _Picture:
+    """A picture and what it needs: columns of the results, recorded states of a component."""
+
+    name: str
+    draw: Callable[[Path], None]
+    columns: Sequence[str]
+    states_of: str | None = None
+
+    def missing(self, run: Run) -> list[str]:
+        """What the results do not have."""
+        absent = [column for column in self.columns if column not in run.series]
+        if self.states_of and next(run.states(self.states_of), None) is None:
+            absent.append(f"recorded states of {self.states_of}")
+        return absent
 
 
 def draw_all(run: Run, folder: Path, note: Callable[[str], None] = lambda text: None) -> list[Path]:
@@ -16,24 +36,35 @@ def draw_all(run: Run, folder: Path, note: Callable[[str], None] = lambda text: 
     Raises:
         InputRefused: the folder cannot be written.
     """
-    from . import curves
-
-    known, who = known_of(run.provenance), roles(run)
-    wanted: list[tuple[str, list[str], Callable[[Path], None]]] = [
-        ("forces", [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], partial(curves.forces, run, known)),
-        ("penetration", [f"{who.sand}.penetration"], partial(curves.penetration, run, known)),
-        ("beam", [f"{who.beam}.midspan.deflection"], partial(curves.beam, run, known)),
-        ("energy", [f"{who.rock}.energy.kinetic"], partial(curves.energy, run)),
-    ]
     drawn = []
     _make(folder)
-    for name, columns, draw in wanted:
-        if missing := [column for column in columns if column not in run.series]:
-            note(f"no picture {name}: the results have no {', '.join(missing)}")
-        else:
-            draw(folder / f"{name}.png")
-            drawn.append(folder / f"{name}.png")
+    for picture in _pictures(run):
+        file = folder / f"{picture.name}.png"
+        if missing := picture.missing(run):
+            note(f"no picture {picture.name}: the results have no {', '.join(missing)}")
+            continue
+        try:
+            picture.draw(file)
+        except ComponentError as error:
+            note(f"no picture {picture.name}: the states were recorded by another version of the FMU ({error})")
+            continue
+        drawn.append(file)
     return drawn
+
+
+def _pictures(run: Run) -> list[_Picture]:
+    from . import curves, sand
+
+    known, who = known_of(run.provenance), roles(run)
+    force, depth = [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], [f"{who.sand}.penetration"]
+    return [
+        _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),
+        _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
+        _Picture("forces", partial(curves.forces, run, known), force),
+        _Picture("penetration", partial(curves.penetration, run, known), depth),
+        _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"]),
+        _Picture("energy", partial(curves.energy, run), [f"{who.rock}.energy.kinetic"]),
+    ]
 
 
 def _make(folder: Path) -> None:

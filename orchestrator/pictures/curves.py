@@ -11,7 +11,7 @@ from components.units import cm, kgf, kN, mm, ms
 
 from .. import headlines as h
 from ..core.reading import Run
-from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, reference_line
+from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, reference_line, second_scale
 
 Known = Mapping[str, h.Known]
 
@@ -30,20 +30,23 @@ def force_axes(run: Run, known: Known, axes: Axes) -> None:
         peak, at = h.extreme(run, column)
         axes.plot(time, run.series[column] / kN, color=colour, label=f"{name}, peak {peak / kN:.2f} kN at {at / ms:.1f} ms")
         axes.plot(at / ms, peak / kN, "o", color=colour, markersize=3.5)
-    _references(axes, known.get(h.PEAK_TRANSMITTED, h.Known()), kN, "peak transmitted force, {}")
+    _references(axes, known.get(h.PEAK_TRANSMITTED, h.Known()), kN, "kN", "peak transmitted force")
     axes.set(xlabel="time (ms)", ylabel="force (kN)", xlim=(time[0], time[-1]))
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.12 * axes.get_ylim()[1])
-    other = axes.secondary_yaxis("right", functions=(lambda y: y * kN / kgf, lambda y: y * kgf / kN))
-    other.set_ylabel("(kgf)")
+    second_scale(axes, kN / kgf, "(kgf)")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
-def _references(axes: Axes, known: h.Known, unit: float, text: str) -> None:
+def _references(axes: Axes, known: h.Known, scale: float, unit: str, what: str) -> None:
+    """Lines at what others found."""
     if known.experiment:
-        reference_line(axes, known.experiment.value / unit, text.format("measured"))
+        about = "≈ " if known.experiment.note else ""
+        value = known.experiment.value / scale
+        reference_line(axes, value, f"{what} measured, {about}{value:.2f} {unit}")
     if known.paper:
-        about = "paper's analysis, about" if known.paper.note else "paper's analysis"
-        reference_line(axes, known.paper.value / unit, text.format(about), ":")
+        about = "≈ " if known.paper.note else ""
+        value = known.paper.value / scale
+        reference_line(axes, value, f"{what} in the paper's analysis, {about}{value:.2f} {unit}", ":")
 
 
 def penetration(run: Run, known: Known, file: Path) -> None:
@@ -59,7 +62,7 @@ def penetration(run: Run, known: Known, file: Path) -> None:
         clearance = next((float(f.value) for f in h.headlines(run) if f.name == h.CLEARANCE), None)
         if clearance is not None:
             reference_line(axes, (most + clearance) / cm, "base", "-")
-        _references(axes, known.get(h.PENETRATION, h.Known()), cm, "largest, {}")
+        _references(axes, known.get(h.PENETRATION, h.Known()), cm, "cm", "largest")
         axes.axhline(0.0, color=GREY, linewidth=0.7)
         axes.set(xlabel="time (ms)", ylabel="penetration (cm)", xlim=(time[0], time[-1]))
         axes.invert_yaxis()
@@ -68,8 +71,10 @@ def penetration(run: Run, known: Known, file: Path) -> None:
 def beam(run: Run, known: Known, file: Path) -> None:
     """Deflection and energy of the beam."""
     name, time = h.roles(run).beam, run.series["time"] / ms
-    energies = (("energy.elastic", "U = U_N + U_M, eq. (5)", INK, "-"), ("energy.bending", "U_M, bending", BEAM, "--"),
-                ("energy.axial", "U_N, axial", ROCK, "-"), ("energy.strain_estimate", "eq. (7), from the midspan strain", TRANSMITTED, "-"))
+    energies = (("energy.elastic", "$U = U_N + U_M$, eqs (5), (6)", INK, "-"),
+                ("energy.bending", "$U_M$, bending", "#8cc28a", (0, (3, 3))),
+                ("energy.axial", "$U_N$, axial", ROCK, "-"),
+                ("energy.strain_estimate", "eq. (7), from the midspan strain", TRANSMITTED, "-"))
     with figure(run, file, WIDTH, 4.8) as made:
         upper, lower = made.subplots(2, sharex=True, height_ratios=(2, 3))
         deflection = run.series[f"{name}.midspan.deflection"] / mm
@@ -80,11 +85,11 @@ def beam(run: Run, known: Known, file: Path) -> None:
         for output, label, colour, dashes in energies:
             if f"{name}.{output}" in run.series:
                 lower.plot(time, run.series[f"{name}.{output}"], color=colour, linestyle=dashes, label=label, linewidth=1.2)
-        _references(lower, known.get(h.BEAM_ENERGY_FROM_STRAIN, h.Known()), 1.0, "peak by eq. (7), {}")
+        _references(lower, known.get(h.BEAM_ENERGY_FROM_STRAIN, h.Known()), 1.0, "J", "peak by eq. (7),")
         lower.set(xlabel="time (ms)", ylabel="energy of the beam (J)", xlim=(time[0], time[-1]))
         lower.set_ylim(bottom=0.0)
-        lower.secondary_yaxis("right", functions=(lambda y: y / (kgf * cm), lambda y: y * kgf * cm)).set_ylabel("(kgf cm)")
-        lower.legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+        second_scale(lower, 1.0 / (kgf * cm), "(kgf cm)")
+        lower.legend(loc="center right")
 
 
 # ------------------------------------------------------------------ energy balance

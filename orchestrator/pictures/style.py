@@ -4,10 +4,13 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import wrap
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from ..comparison import caption
 from ..core.reading import Run
@@ -16,7 +19,9 @@ WIDTH = 7.2
 """Width (inch) of a picture of curves."""
 INK, GREY, FAINT = "#222222", "#767676", "#d9d9d9"
 TRANSMITTED, ROCK, BEAM, SAND = "#1f5a94", "#c0561a", "#3d7d3f", "#c9a66b"
-_DPI = 160
+_DPI = 140
+_LETTERS = 20
+"""Letters of the caption in an inch."""
 _LOOK = {
     "font.family": "sans-serif", "font.size": 9.0, "axes.titlesize": 9.0, "axes.titlelocation": "left", "axes.labelsize": 9.0,
     "axes.edgecolor": GREY, "axes.labelcolor": INK, "text.color": INK, "xtick.color": GREY, "ytick.color": GREY,
@@ -30,8 +35,9 @@ _LOOK = {
 def figure(run: Run, file: Path, width: float, height: float) -> Iterator[Figure]:
     """A figure (inches) with the run's caption below, written to ``file`` at the end, as a whole or not at all."""
     with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
+        wrapped = [line for text in caption(run) for line in wrap(text, int(_LETTERS * width))]
         made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
-        made.supxlabel("\n".join(caption(run)), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3)
+        made.supxlabel("\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3)
         yield made
         beside = file.with_name(f".{file.name}")
         made.savefig(beside, format="png", metadata={"Software": "rockshed"})
@@ -43,3 +49,14 @@ def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> N
     axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes)
     axes.annotate(text, (1.0, value), xycoords=("axes fraction", "data"), xytext=(-2, 2), textcoords="offset points",
                   ha="right", va="bottom", fontsize=8, color=GREY)
+
+
+def second_scale(axes: Axes, factor: float, label: str) -> None:
+    """The same values in another unit at the right: ``factor`` * value."""
+    def there(y: NDArray[np.float64]) -> NDArray[np.float64]:
+        return y * factor
+
+    def back(y: NDArray[np.float64]) -> NDArray[np.float64]:
+        return y / factor
+
+    axes.secondary_yaxis("right", functions=(there, back)).set_ylabel(label)  # type: ignore[arg-type]  # the stubs know no arrays
