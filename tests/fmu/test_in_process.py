@@ -1,10 +1,12 @@
 """A component in this process behaves like its FMU."""
 
+import timeit
+
 import numpy as np
 import pytest
 
 from components.catalogue import NAMES, component
-from fmus.in_process import InProcess
+from fmus.in_process import InProcess, slave_class
 from orchestrator.core.fmu_slave import FmuFile, read_description
 
 
@@ -57,7 +59,7 @@ def test_what_is_wrong_is_the_status_of_the_call_itself(tank):
 
 DEBUGGING = """
 from components.catalogue import component
-from fmus.in_process import InProcess
+from fmus.in_process import InProcess, slave_class
 slave = InProcess(component("FallingRock")).instantiate("rock")
 statuses = slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation(), slave.step(0.0, 1e-5)
 assert statuses == (0, 0, 0, 0)
@@ -67,3 +69,25 @@ print(type(component("FallingRock").step).__name__)
 
 def test_the_code_runs_uncompiled_for_a_debugger(python):
     assert python(DEBUGGING, NUMBA_DISABLE_JIT="1").strip() == "function"
+
+
+def test_references_in_any_order_are_nearly_as_fast_as_a_block(probe):
+    slave = slave_class(probe, {"tanks": 50})(instance_name="tank")
+    slave.setup_experiment(0.0, None, None)
+    slave.enter_initialization_mode()
+    slave.exit_initialization_mode()
+    first = slave._instance.references["extra[1]"]
+    block = list(range(first, first + 50))
+    scattered = [*block[25:], *block[:25]]
+
+    values = [0.5 * i for i in range(50)]
+
+    def exchange(references):
+        slave.set_real(references, values)
+        assert slave.get_real(references) == values
+
+    times = {True: [], False: []}
+    for _ in range(20):
+        for ordered, references in ((True, block), (False, scattered)):
+            times[ordered].append(timeit.timeit(lambda references=references: exchange(references), number=50))
+    assert min(times[False]) < 10 * min(times[True])
