@@ -52,6 +52,39 @@ def test_a_sliding_disc_ends_rolling_at_two_thirds_of_its_speed():
     assert disc["energy.sliding"] == pytest.approx(masses(disc)[0] / 6.0, rel=1e-2)
 
 
+CARRIERS = {
+    "rock": ((0.0, 0.02), 0.02, {"rock.position.y": 0.0, "rock.radius": 0.02}),
+    "beam": ((0.025, 0.0), 0.025, {"base": "beam_discs", "box.left": 0.0, "box.width": 0.2}),
+    "beam surface": ((0.06, 0.0), 0.025, {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2}),
+}
+
+
+def on_top(carrier, velocity, spin):
+    """A disc that falls on the top of rock or beam, which turns with ``spin``; the carrier's force to the right and torque."""
+    (x, y), radius, parameters = CARRIERS[carrier]
+    disc = discs_at([(x, y + RADIUS)], [velocity], parameters=parameters)
+    name = "rock" if carrier == "rock" else "beam"
+    disc[f"{name}.angular_velocity"] = spin
+    run(disc, 1e-5, 1e-6)
+    return disc, np.sum(disc[f"{name}.force.x"]), np.sum(disc[f"{name}.torque"]), radius
+
+
+@pytest.mark.parametrize("carrier", CARRIERS)
+def test_friction_on_the_top_of_rock_or_beam_turns_it_clockwise(carrier):
+    disc, force, torque, radius = on_top(carrier, (3.0, -1.0), 0.0)
+    assert force == pytest.approx(MU * (disc["transmitted_force"] - disc["rock.force.y"]), rel=1e-2)
+    assert torque == pytest.approx(-radius * force, rel=1e-2)
+    assert rows(disc)[0, 2] < 3.0
+
+
+@pytest.mark.parametrize("carrier", CARRIERS)
+def test_a_turning_rock_or_beam_carries_the_disc_along_and_is_braked(carrier):
+    """Counter-clockwise: the top moves to the left."""
+    disc, force, torque, radius = on_top(carrier, (0.0, -1.0), 50.0)
+    assert rows(disc)[0, 2] < 0.0 < force
+    assert torque == pytest.approx(-radius * force, rel=1e-2)
+
+
 def column(spin, rolling_resistance):
     """Two smooth discs, one upon the other, that turn against each other with +-spin (rad/s)."""
     lower = resting_height(2)
