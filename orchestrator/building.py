@@ -40,21 +40,37 @@ def _value(text: str) -> Value:
 def case_sizes(chosen: Case, numbers: Mapping[str, Value], problems: list[Problem]) -> dict[str, dict[str, int]]:
     """The sizes of all components of a case, with what was asked for in them."""
     sizes = {name: dict(component(model).with_sizes(chosen.sizes.get(name))) for name, model in chosen.models.items()}
-    for name, value in numbers.items():
+    known = [f"{owner}.{size}" for owner, its in sizes.items() for size in its]
+    asked = _with_one_size(chosen, numbers, problems)
+    for name, value in asked.items():
         owner, _, size = name.partition(".")
-        if size not in sizes.get(owner, {}):
-            known = ", ".join(f"{c}.{s}" for c, its in sizes.items() for s in its)
-            problems.append(Problem(f"--size {name}", "there is no such size", f"sizes of this case are {known}"))
+        if name not in known:
+            problems.append(Problem(f"--size {name}", "there is no such size", nearest(name, known)))
         elif not isinstance(value, int):
             problems.append(Problem(f"--size {name}", f"{value!r} is no whole number", "give a whole number"))
         else:
             sizes[owner][size] = value
     for owner, model in chosen.models.items():
-        try:
-            component(model).with_sizes(sizes[owner])
-        except ComponentError as error:
-            problems += [Problem(f"--size {owner}", text) for text in error.problems]
+        problems += range_problems(f"--size, {owner}", model, sizes[owner])
     return sizes
+
+
+def _with_one_size(chosen: Case, numbers: Mapping[str, Value], problems: list[Problem]) -> dict[str, Value]:
+    """The sizes that were asked for, and those that are the same number as one of them."""
+    given = {name: value for name, value in numbers.items() if name in chosen.one_size}
+    if len(set(given.values())) > 1:
+        problems.append(Problem("--size", f"{', '.join(f'{n} = {v}' for n, v in given.items())}, and they are one number",
+                                "give one of them"))
+    return {**numbers, **dict.fromkeys(chosen.one_size if given else (), next(iter(given.values()), 0))}
+
+
+def range_problems(where: str, model: str, sizes: Mapping[str, int]) -> list[Problem]:
+    """Sizes that are out of range."""
+    try:
+        component(model).with_sizes(sizes)
+    except ComponentError as error:
+        return [Problem(where, text, "choose a number in this range") for text in error.problems]
+    return []
 
 
 def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note) -> dict[str, str]:
@@ -112,10 +128,7 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, Value]) -> list[Pro
     problems += [Problem(f"--size {size}", f"{value!r} is no whole number", "give a whole number")
                  for size, value in sizes.items() if not isinstance(value, int)]
     for name in names if not problems else []:
-        try:
-            component(name).with_sizes({s: int(n) for s, n in sizes.items() if s in component(name).sizes})
-        except ComponentError as error:
-            problems += [Problem(f"--size, {name}", text) for text in error.problems]
+        problems += range_problems(f"--size, {name}", name, {s: int(n) for s, n in sizes.items() if s in component(name).sizes})
     return problems
 
 

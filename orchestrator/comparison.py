@@ -43,6 +43,7 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.BEAM_SHARE: ("peak beam energy / E0", (Scale("%", 0.01, 2),)),
     h.RESIDUAL_SHARE: ("energy residual / E0", _SHARE),
 }
+_TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compared"
 _STILL = "the force on the rock has not ended: impulse and duration would be larger with a later stop time"
 
 
@@ -61,6 +62,8 @@ class Row:
 
 def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
     """The rows of the table, in the order in which a designer asks for them."""
+    if h.still_sinking(run):
+        known = {}
     computed = {figure.name: float(figure.value) for figure in h.headlines(run)}
     found = [row for name, (label, scales) in _ROWS.items() if name in computed
              for row in _rows(label, scales, computed[name], known.get(name, h.Known()))]
@@ -101,6 +104,8 @@ def _couplings(run: Run) -> Iterator[Row]:
 
 def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
     """What a reader has to know of the figures: where references that are only about right (≈) come from, what is cut off."""
+    if h.still_sinking(run):
+        return [_TOO_SHORT]
     found = [f"≈ {who}: {reference.note}" for entry in known.values()
              for who, reference in (("paper", entry.paper), ("experiment", entry.experiment)) if reference and reference.note]
     return list(dict.fromkeys(found)) + ([_STILL] if h.still_in_contact(run) else [])

@@ -136,6 +136,12 @@ def still_in_contact(run: "Run") -> bool:
     return column in run.series and bool(run.series[column][-1] > CONTACT_SHARE * extreme(run, column)[0])
 
 
+def still_sinking(run: "Run") -> bool:
+    """Whether the rock had not come to a stop when the run ended."""
+    depth = run.series.get(f"{roles(run).sand}.penetration")
+    return depth is not None and (int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0)
+
+
 def _integral(values: "NDArray[np.float64]", time: "NDArray[np.float64]") -> float:
     return float((0.5 * (values[1:] + values[:-1]) * (time[1:] - time[:-1])).sum())
 

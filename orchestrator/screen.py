@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -66,6 +66,8 @@ class Screen:
 
     def refuse(self, problems: "Sequence[Problem]") -> None:
         """Say what has to be changed before it can be tried again."""
+        if self.as_json:
+            self.dump({"status": "refused", "problems": [asdict(problem) for problem in problems]})
         count = "" if len(problems) == 1 else f"{len(problems)} problems"
         self.err.print(f"[bold red]refused:[/] {count}" if count else "[bold red]refused:[/]")
         for problem in problems:

@@ -20,7 +20,7 @@ class Case:
     """A ready-made system.
 
     models: component of the system -> component of the catalogue that its FMU is built from.
-    sizes: what the FMUs are built with.
+    sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
     couplings: schemes of exchange by name, the default first, with a description.
     make(fmus, sizes, coupling): the system; ``fmus`` are the files of the FMUs by component.
     known: what others found, by the name of the figure.
@@ -32,6 +32,7 @@ class Case:
     sizes: Sizes
     couplings: Mapping[str, str]
     make: Callable[[Mapping[str, str], Sizes, str], System]
+    one_size: tuple[str, ...] = ()
     known: Mapping[str, Known] = field(default_factory=dict)
 
 
@@ -79,4 +80,4 @@ def _laboratory(test: sonoda1993.Test) -> Case:
         couplings={"paper": "sand first, inputs held, exchange every 0.01 ms",
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
                    "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
-        make=make, known=sonoda1993.known_of(test))
+        make=make, one_size=("sand.elements", "beam.elements"), known=sonoda1993.known_of(test))

@@ -195,9 +195,8 @@ def with_values(system: System, values: Mapping[str, Value]) -> System:
         elif component in parameters and parameter:
             parameters[component][parameter] = value
         else:
-            problems.append(Problem(name, "no parameter is called so", "write component.parameter; the components are "
-                                    f"{', '.join(system.components)}" + (f"; shared values are {', '.join(system.shared)}"
-                                                                        if system.shared else "")))
+            problems.append(Problem(name, "is neither component.parameter nor a shared value",
+                                    nearest(component, [*system.components, *system.shared])))
     problems += [Problem(key, "is one value for all its targets, and is given several: "
                          + ", ".join(f"{n} = {v}" for n, v in given.items()), "give one of them")
                  for key, given in shared.items() if len(set(map(str, given.values()))) > 1]

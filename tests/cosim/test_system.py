@@ -107,7 +107,7 @@ def test_overrides_that_cannot_be_meant():
         with_values(system, {"b.mass": 1.0, "mass": 1.0, "a.r": 2.0, "a.s": 3.0})
     text = str(refusal.value)
     assert len(refusal.value.problems) == 3
-    assert "b.mass: no parameter is called so; write component.parameter; the components are a; shared values are r" in text
+    assert "b.mass: is neither component.parameter nor a shared value; there are a, r" in text
     assert "r: is one value for all its targets, and is given several: a.r = 2.0, a.s = 3.0" in text
 
 
