@@ -236,6 +236,38 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
             screen.say(str(file))
 
 
+@app.command()
+def bench(part: Annotated[list[str] | None, typer.Argument(metavar="[discs|coupling|start]...", help="All of them by "
+                                                           "default.")] = None,
+          rounds: Annotated[int, typer.Option(min=3, help="Rounds in which everything takes its turn.")] = 7,
+          as_json: Json = False, quiet: Quiet = False) -> None:
+    """Measure speed and price of the coupling, in ratios within interleaved rounds. Takes about two minutes."""
+    with _screen(quiet, as_json) as screen:
+        from dataclasses import asdict
+
+        from .bench.table import PARTS
+        from .core.errors import InputRefused, Problem
+        from .screen import CHECK_FAILED, plain_table
+
+        wanted = part or list(PARTS)
+        if unknown := [name for name in wanted if name not in PARTS]:
+            raise InputRefused([Problem(name, "is no part of the benchmark", f"choose of {', '.join(PARTS)}") for name in unknown])
+        rows = []
+        for name in wanted:
+            with screen.busy(f"measuring: {name}"):
+                rows += list(PARTS[name](rounds))
+        if as_json:
+            screen.dump([asdict(row) for row in rows])
+        else:
+            table = plain_table("figure", "measured", "unit", "as a multiple of", "goal", right=("measured",))
+            for row in rows:
+                goal = "" if row.goal is None else f"at most {row.goal:.3g}"
+                table.add_row(row.name, f"{row.value:.3g}", row.unit, row.compared_with, goal)
+            screen.show(table)
+        if any(row.goal is not None and row.value > row.goal for row in rows):
+            raise typer.Exit(CHECK_FAILED)
+
+
 def main() -> None:
     """The entry point of the command ``rockshed``."""
     app()

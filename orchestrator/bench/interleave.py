@@ -23,7 +23,7 @@ class Times:
         return statistics.median(a / b for a, b in zip(self.seconds[name], self.seconds[reference]))
 
 
-def interleave(contestants: Mapping[str, Contestant], rounds: int, progress: Callable[[], None] = lambda: None) -> Times:
+def interleave(contestants: Mapping[str, Contestant], rounds: int) -> Times:
     """Let each contestant work once in every round, after one round that does not count."""
     seconds: dict[str, list[float]] = {name: [] for name in contestants}
     for number in range(rounds + 1):
@@ -31,5 +31,4 @@ def interleave(contestants: Mapping[str, Contestant], rounds: int, progress: Cal
             took = work()
             if number:
                 seconds[name].append(took)
-        progress()
     return Times(seconds)

@@ -33,7 +33,8 @@ def prepare(lmp, discs: int, width: float) -> None:
     columns = round(width / (2 * RADIUS))
     law = f"hooke/history {STIFFNESS} {0.25 * STIFFNESS} {DAMPING} {0.5 * DAMPING} 0.577 1"
     lmp.commands_list(["clear", "units si", "dimension 2", "boundary f f p", "atom_style sphere", "newton off",
-                       "comm_modify vel yes", f"region box block -0.01 {width + 0.01} -0.01 {discs // columns * 2 * RADIUS + 0.5} -0.01 0.01",
+                       "comm_modify vel yes",
+                       f"region box block -0.01 {width + 0.01} -0.01 {discs // columns * 2 * RADIUS + 0.5} -0.01 0.01",
                        "create_box 1 box", f"neighbor {0.6 * RADIUS} bin", "neigh_modify delay 0 every 1 check yes",
                        f"pair_style gran/{law}", "pair_coeff * *", "timestep 1e-5", "fix 1 all nve/sphere disc",
                        "fix 2 all enforce2d", "fix 3 all gravity 9.81 vector 0 -1 0",
