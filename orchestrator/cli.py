@@ -141,7 +141,7 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
         as_json: Json = False, quiet: Quiet = False) -> None:
     """Run a case or a system file, compare, draw. FMUs that are missing are built."""
     from .job import Request
-    from .screen import INTERRUPTED
+    from .screen import INTERRUPTED, RUN_FAILED
 
     options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
                "state_interval": state_interval, "master": master}
@@ -153,9 +153,7 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
             screen.warn(f"interrupted at t = {1e3 * done.series['time'][-1]:g} ms; the results until then are kept")
             raise typer.Exit(INTERRUPTED)
         if done.status == "failed":
-            from .screen import RUN_FAILED
-
-            screen.fail(f"{done.provenance['error']}; the results until then are in {done.folder}")
+            screen.fail(str(done.provenance["error"]))
             raise typer.Exit(RUN_FAILED)
 
 
@@ -181,34 +179,45 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
 
 
 def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
-    """Draw the figures, then show the table or its JSON."""
+    """Draw the figures, then show the table or its JSON; of a run that failed, only where its results are."""
     from . import comparison
     from .cases.registry import known_of
 
-    figures: list[Path] = []
-    if with_figures:
-        with screen.busy("drawing"):
-            figures = _draw(done, done.folder / "figures", screen)
-    known = known_of(done.provenance)
-    for text in comparison.warnings(done):
+    figures = _draw(done, done.folder / "figures", screen) if with_figures else []
+    known, warnings = known_of(done.provenance), comparison.warnings(done)
+    for text in warnings:
         screen.warn(text)
     if screen.as_json:
         screen.dump({"status": done.status, "folder": str(done.folder), "error": done.provenance.get("error"),
-                     "warnings": comparison.warnings(done), "caption": comparison.caption(done),
+                     "warnings": warnings, "caption": comparison.caption(done),
                      "figures": comparison.figures_with(done, known), "pictures": [str(file) for file in figures]})
         return
+    if done.status != "failed":
+        _show_table(done, screen)
+    screen.say(f"results in {done.folder}" + (f", {len(figures)} pictures in {figures[0].parent}" if figures else ""))
+
+
+def _show_table(done: "Run", screen: "Screen") -> None:
+    from . import comparison
+    from .cases.registry import known_of
+
+    known = known_of(done.provenance)
     for line in comparison.caption(done):
         screen.say(line)
     screen.show("", comparison.table(done, known), "")
     for line in comparison.notes(done, known):
         screen.say(line)
-    screen.say(f"results in {done.folder}" + (f", {len(figures)} pictures in {figures[0].parent}" if figures else ""))
 
 
 def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
-    from .pictures import draw_all
+    with screen.busy("drawing"):
+        from .pictures import draw_all
 
-    return draw_all(done, folder, screen.note)
+        try:
+            return draw_all(done, folder, screen.note)
+        except KeyboardInterrupt:
+            screen.note(f"the results are complete; `rockshed plot {done.folder}` draws the pictures")
+            raise
 
 
 @app.command()
@@ -230,9 +239,7 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
         if found.status != "complete":
             screen.warn(f"this run is not complete ({found.status}): pictures show what was computed until "
                         f"t = {1e3 * found.series['time'][-1]:g} ms")
-        with screen.busy("drawing"):
-            files = _draw(found, output_dir or found.folder / "figures", screen)
-        for file in files:
+        for file in _draw(found, output_dir or found.folder / "figures", screen):
             screen.say(str(file))
 
 

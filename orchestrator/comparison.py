@@ -119,8 +119,9 @@ def warnings(run: Run) -> list[str]:
     if clearance is not None and sand is not None:
         disc = 2.0 * float(run.provenance["components"][sand]["parameters"]["disc.radius"]["value"])
         if clearance < disc:
-            found.append(f"the rock bottoms out: it comes within {clearance / mm:.1f} mm of the base, less than one sand disc "
-                         f"({disc / mm:.0f} mm); the cushion is too thin for this impact")
+            where = f"comes within {clearance / mm:.1f} mm of" if clearance > 0.0 else f"presses {-clearance / mm:.1f} mm into"
+            found.append(f"the rock bottoms out: it {where} the base, and a sand disc is {disc / mm:g} mm thick; the cushion is "
+                         "too thin for this impact")
     return found
 
 
