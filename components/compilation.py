@@ -70,11 +70,11 @@ class _PackageLocator:
         return hashlib.sha256(f"{self._function.__module__}:{self._function.__code__.co_firstlineno}".encode()).hexdigest()[:12]
 
 
-class _PackageCacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
+class _PackageCacheImpl(CompileResultCacheImpl):
     _locator_classes = (_PackageLocator,)
 
 
-class _PackageCache(FunctionCache):  # type: ignore[misc]
+class _PackageCache(FunctionCache):
     _impl_class = _PackageCacheImpl
 
 
@@ -96,4 +96,4 @@ def _compiled(function: F, inline: str) -> F:
     dispatcher = njit(error_model="numpy", inline=inline, _nrt=False)(function)
     if cache_directory() is not None:
         dispatcher._cache = _PackageCache(function)
-    return dispatcher  # type: ignore[no-any-return]
+    return dispatcher

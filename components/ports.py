@@ -176,7 +176,7 @@ class Layout:
 
 def _constants(title: str, names: list[str], stride: int) -> Any:
     fields = [name.replace(".", "_") for name in names]
-    return namedtuple(title, fields)(*range(0, stride * len(fields), stride))  # type: ignore[misc]
+    return namedtuple(title, fields)(*range(0, stride * len(fields), stride))
 
 
 @inlined

@@ -6,13 +6,13 @@ import pytest
 from components.sand_cushion import COMPONENT as SAND
 from components.sand_cushion.declarations import ROW
 from fmus.build import build_if_needed
+from orchestrator.bench.monolithic import Monolith, from_system
 from orchestrator.cases.sonoda1993 import lab_system
 from orchestrator.cases.sonoda1993 import tests as laboratory_tests
 from orchestrator.core.errors import InputRefused, RunFailed
 from orchestrator.core.reading import Run, read_run
 from orchestrator.core.run import simulate
 from orchestrator.core.system import System, with_values
-from orchestrator.bench.monolithic import Monolith, from_system
 
 END = 0.02
 IMPACT_ENERGY = 0.5 * 4.0 * 8.0**2
