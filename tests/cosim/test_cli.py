@@ -1,0 +1,369 @@
+"""The command line as a user meets it: exit codes, messages, files."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from orchestrator.cli import app
+from orchestrator.core.reading import read_run
+from orchestrator.core.system import load_system
+
+PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
+SHORT = ["--stop-time", "0.001", "--no-figures"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def fmu_folder(tmp_path_factory):
+    """FMUs of these tests, apart from those of the user."""
+    folder = tmp_path_factory.mktemp("dist")
+    before = os.environ.get("ROCKSHED_FMU_DIR")
+    os.environ["ROCKSHED_FMU_DIR"] = str(folder)
+    yield folder
+    del os.environ["ROCKSHED_FMU_DIR"]
+    if before is not None:
+        os.environ["ROCKSHED_FMU_DIR"] = before
+
+
+@pytest.fixture
+def rockshed(tmp_path, monkeypatch):
+    """Run a command in an empty folder; the result has exit_code, stdout and stderr in one line each."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "500")
+    return lambda *arguments: CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+def in_one_line(text):
+    return " ".join(text.split())
+
+
+@pytest.fixture(scope="module")
+def finished(fmu_folder, tmp_path_factory):
+    """A short run with pictures, and what it printed."""
+    folder = tmp_path_factory.mktemp("finished") / "run"
+    result = CliRunner().invoke(app, ["run", "lab-impact", "--stop-time", "0.004", "--output-dir", str(folder)])
+    assert result.exit_code == 0, result.output
+    return folder, result
+
+
+# ------------------------------------------------------------------ help and information
+
+
+def test_help_is_there_without_the_heavy_libraries():
+    script = ("import sys; from orchestrator.cli import app; from typer.testing import CliRunner\n"
+              "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
+              "print({'numba', 'numpy', 'fmpy', 'matplotlib', 'pydantic'} & set(sys.modules))")
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+def test_list_names_every_case_and_component(rockshed):
+    text = rockshed("list").stdout
+    for number in (*range(1, 4), *range(5, 17)):
+        assert f"lab-impact-{number} " in text
+    assert all(name in text for name in ("lab-impact ", "FallingRock", "SandCushion", "RBSMBeam", "discs = 370"))
+
+
+def test_version(rockshed):
+    result = rockshed("--version")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("rockshed 0.")
+
+
+def test_build_in_another_size_and_look_into_it(rockshed, tmp_path):
+    built = rockshed("build", "SandCushion", "--size", "discs=20", "--size", "elements=3", "--output-dir", tmp_path / "here")
+    assert built.exit_code == 0
+    file = Path(built.stdout.split()[0])
+    assert file.parent == tmp_path / "here"
+    seen = in_one_line(rockshed("info", file).stdout)
+    assert "beam.force.y[1..3] N" in seen
+    assert "modulus Pa 2.98122e+06 1e-06 .." in seen
+    assert "rotation locked free | locked" in seen
+    assert "canGetAndSetFMUstate" in seen
+    assert "GUID {" in seen
+
+
+def test_info_of_a_case(rockshed):
+    seen = in_one_line(rockshed("info", "lab-impact").stdout)
+    assert "order sand, rock, beam; exchange every 1e-05 s" in seen
+    assert "rock.position0.y 0.15 m 1 position of the centre" in seen
+    assert "rock_mass 4 rock.mass, sand.rock.mass" in seen
+
+
+def test_test_4_is_found_under_its_number_too(rockshed):
+    assert rockshed("info", "lab-impact-4").stdout == rockshed("info", "lab-impact").stdout
+
+
+# ------------------------------------------------------------------ runs
+
+
+def test_a_run_leaves_results_and_pictures(finished):
+    folder, result = finished
+    assert {path.name for path in folder.iterdir()} == {"run.json", "summary.json", "timeseries.parquet", "timeseries.csv",
+                                                        "columns.csv", "states.h5", "figures"}
+    assert {path.name for path in (folder / "figures").iterdir()} == PICTURES
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in (folder / "figures").iterdir())
+    assert "peak transmitted force" in result.stdout
+    assert "calibrated sand: rotation locked" in result.stdout
+
+
+def test_the_table_compares_with_paper_and_experiment_when_the_impact_is_over(rockshed):
+    result = rockshed("run", "lab-impact-10", "--coupling", "impulse", "--no-figures")
+    rows = [line.split() for line in result.stdout.splitlines()]
+    peak = next(row for row in rows if row[:3] == ["peak", "transmitted", "force"])
+    assert peak[3] == "kN"
+    assert peak[-3] == "6.60"  # 673.2 kgf
+    assert peak[5] == "≈"
+    assert float(peak[-2]) == pytest.approx(100 * (float(peak[4]) / 6.60 - 1), abs=1.0)
+    assert "extrapolated to E_bar = 70.3" in result.stdout
+    assert result.stderr.count("built") == 0  # test_info has built them
+
+
+def test_box_2_has_its_own_number_of_discs(rockshed, tmp_path):
+    assert rockshed("run", "lab-impact-13", *SHORT).exit_code == 0
+    facts = read_run(tmp_path / "results" / "lab-impact-13").provenance
+    assert facts["sizes"]["sand"]["discs"] == 450
+    assert facts["components"]["sand"]["parameters"]["box.width"]["value"] == pytest.approx(0.45)
+
+
+def test_json_is_the_summary_with_references(rockshed, tmp_path):
+    result = rockshed("run", "lab-impact", "--json", "--quiet", *SHORT)
+    content = json.loads(result.stdout)
+    assert content["status"] == "complete"
+    by_name = {figure["name"]: figure for figure in content["figures"]}
+    assert by_name["peak transmitted force"]["experiment"] == pytest.approx(519.1 * 9.80665)
+    stored = {f["name"]: f["value"] for f in json.loads((tmp_path / "results/lab-impact/summary.json").read_text())}
+    assert stored == {name: figure["value"] for name, figure in by_name.items()}
+    assert result.stderr == ""
+
+
+def test_a_value_that_is_shared_reaches_all_its_targets(rockshed, tmp_path):
+    assert rockshed("run", "lab-impact", "--set", "rock.mass=8", "--set", "sand.rotation=free", *SHORT).exit_code == 0
+    parts = read_run(tmp_path / "results/lab-impact").provenance["components"]
+    assert parts["rock"]["parameters"]["mass"]["value"] == 8.0
+    assert parts["sand"]["parameters"]["rock.mass"]["value"] == 8.0
+    assert parts["sand"]["parameters"]["rotation"]["value"] == "free"
+
+
+def test_in_process_gives_the_same_as_fmus(rockshed, tmp_path):
+    for folder, *options in (("fmu",), ("here", "--in-process")):
+        assert rockshed("run", "lab-impact", "--output-dir", folder, *SHORT, *options).exit_code == 0
+    one, other = (read_run(tmp_path / folder).series for folder in ("fmu", "here"))
+    assert all((one[name] == other[name]).all() for name in one)
+
+
+def test_an_exported_system_runs_elsewhere_with_the_same_result(rockshed, tmp_path):
+    assert rockshed("export", "lab-impact", tmp_path / "away", "--set", "sand.damping=0.3").exit_code == 0
+    assert load_system(tmp_path / "away/system.toml").components["sand"].parameters["damping"] == 0.3
+    assert rockshed("run", tmp_path / "away/system.toml", *SHORT).exit_code == 0
+    assert rockshed("run", "lab-impact", "--set", "sand.damping=0.3", *SHORT).exit_code == 0
+    one, other = (read_run(tmp_path / "results" / name).series for name in ("system", "lab-impact"))
+    assert all((one[name] == other[name]).all() for name in one)
+
+
+def test_toml_of_a_case_is_the_system_of_the_case(rockshed, tmp_path):
+    (tmp_path / "lab.toml").write_text(rockshed("info", "lab-impact", "--toml").stdout)
+    assert rockshed("info", "lab.toml").stdout == rockshed("info", "lab-impact").stdout
+
+
+# ------------------------------------------------------------------ refused
+
+REFUSED = [
+    (["lab-inpact"], ["no case of this name", "did you mean lab-impact"]),
+    (["lab-impact", "--set", "rock.mass=-4"], ["rock.mass: -4", "sand.rock.mass: -4", "1e-06", "kg"]),
+    (["lab-impact", "--set", "rock.radius=-0.1"], ["rock.radius: -0.1", "1e-06", " m"]),
+    (["lab-impact", "--set", "sand.modulus=nan", "--set", "rock.mass=-1", "--set", "rock.velocity0=3"],
+     ["sand.modulus: nan: must be a finite number", "rock.mass: -1", "did you mean velocity0."]),
+    (["lab-impact", "--set", "rok.mass=3", "--set", "sand.modulus=-1"],
+     ["rok.mass", "did you mean rock", "sand.modulus: -1", "1e-06"]),
+    (["lab-impact", "--set", "sand.rotation=loose"], ["choose one of free, locked"]),
+    (["lab-impact", "--set", "rock.mass"], ["'rock.mass' is no assignment", "--set component.name=value"]),
+    (["lab-impact", "--set", "rock.mass=3", "--set", "sand.rock.mass=4"], ["rock_mass", "give one of them"]),
+    (["lab-impact", "--size", "sand.discs=0"], ["discs = 0: allowed is 1 to"]),
+    (["lab-impact", "--size", "sand.disks=9"], ["--size sand.disks", "did you mean sand.discs"]),
+    (["lab-impact", "--size", "sand.elements=12", "--size", "beam.elements=24"], ["one number", "give one of them"]),
+    (["lab-impact", "--set", "rock.position0.y=0.1"], ["inside the sand", "raise the rock's position0.y"]),
+    (["lab-impact", "--set", "beam.span=0.3"], ["narrower than the cushion", "make the beam longer"]),
+    (["lab-impact", "--set", "beam.internal_step=1e-5"], ["1e-05 s", "stable_step = 6.14", "beam.internal_step"]),
+    (["lab-impact", "--exchange-step", "3e-5"],
+     ["output_interval: 0.0001 s is no whole number of steps of 3e-05 s", "nearest are 9e-05 s"]),
+    (["lab-impact", "--stop-time", "-1"], ["stop_time", "is not after start_time"]),
+    (["lab-impact", "--stop-time", "nan"], ["stop_time", "finite"]),
+    (["lab-impact", "--coupling", "magic"], ["'magic' is unknown", "paper, impulse, jacobi"]),
+    (["lab-impact", "--master", "boss"], ["'sequential' or 'jacobi'"]),
+    (["missing.toml"], ["missing.toml", "cannot be read"]),
+]
+
+
+@pytest.mark.parametrize(("arguments", "said"), REFUSED, ids=lambda value: " ".join(value)[:60])
+def test_refused_with_reason_and_remedy_and_nothing_left_behind(rockshed, tmp_path, arguments, said):
+    result = rockshed("run", *arguments, "--no-figures")
+    assert result.exit_code == 2
+    text = in_one_line(result.stderr)
+    assert all(part in text for part in said), text
+    assert result.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_refusal_as_json(rockshed):
+    result = rockshed("run", "lab-impact", "--set", "rock.mass=-4", "--json")
+    content = json.loads(result.stdout)
+    assert content["status"] == "refused"
+    assert {problem["where"] for problem in content["problems"]} == {"rock.mass", "sand.rock.mass"}
+
+
+@pytest.mark.parametrize(("name", "content", "said"), [
+    ("RBSMBeam.fmu", None, "there is no such file"), ("RBSMBeam.fmu", b"not a zip", "is not an FMU")])
+def test_missing_and_broken_fmus(rockshed, tmp_path, name, content, said):
+    rockshed("export", "lab-impact", tmp_path / "away")
+    (tmp_path / "away" / name).unlink()
+    if content is not None:
+        (tmp_path / "away" / name).write_bytes(content)
+    result = rockshed("run", tmp_path / "away/system.toml", *SHORT)
+    assert result.exit_code == 2
+    assert f"beam: {tmp_path / 'away' / name}" in result.stderr
+    assert said in result.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_strangers_fmu_in_the_place_of_the_beam(rockshed, tmp_path, foreign):
+    rockshed("export", "lab-impact", tmp_path / "away")
+    (tmp_path / "away/RBSMBeam.fmu").write_bytes(foreign.read_bytes())
+    result = rockshed("run", tmp_path / "away/system.toml", *SHORT)
+    assert result.exit_code == 2
+    assert "beam has no variable" in result.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_arrays_of_different_length_in_a_system_file(rockshed, tmp_path):
+    rockshed("export", "lab-impact", tmp_path / "away")
+    built = rockshed("build", "RBSMBeam", "--size", "elements=12", "--output-dir", tmp_path / "other").stdout.split()[0]
+    Path(built).replace(tmp_path / "away/RBSMBeam.fmu")
+    result = rockshed("run", tmp_path / "away/system.toml", *SHORT)
+    assert result.exit_code == 2
+    assert "connects 12 outputs with 24 inputs" in in_one_line(result.stderr)
+
+
+@pytest.mark.parametrize("place", ["file/results", "file", "others"])
+def test_output_that_cannot_be_written(rockshed, tmp_path, place):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "others").mkdir()
+    (tmp_path / "others/thesis.txt").write_text("mine too")
+    result = rockshed("run", "lab-impact", "--output-dir", place, *SHORT)
+    assert result.exit_code == 2
+    assert "choose another folder" in result.stderr
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["file", "others", "thesis.txt"]
+
+
+@pytest.mark.parametrize(("arguments", "said"), [
+    (["build", "SandCushun"], "did you mean SandCushion"),
+    (["build", "SandCushion", "--size", "discs=0"], "allowed is 1 to"),
+    (["build", "FallingRock", "--size", "discs=9"], "FallingRock has no such size"),
+    (["build", "FallingRock", "--output-dir", "file/x"], "cannot write"),
+    (["info", "nothing.fmu"], "there is no such file"),
+    (["info", "file.fmu"], "is not an FMU"),
+    (["export", "lab-impact", "full"], "is not empty"),
+    (["plot", "full"], "no folder of a run"),
+    (["run"], "Missing argument"),
+])
+def test_other_commands_refuse_too(rockshed, tmp_path, arguments, said):
+    for name in ("file", "file.fmu"):
+        (tmp_path / name).write_text("text")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full/file").write_text("text")
+    result = rockshed(*arguments)
+    assert result.exit_code == 2
+    assert said in in_one_line(result.stderr)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "file.fmu", "full"]
+
+
+# ------------------------------------------------------------------ ended before the end
+
+
+def test_an_unstable_run_fails_with_component_and_time(rockshed, tmp_path):
+    result = rockshed("run", "lab-impact", "--allow-unstable", "--set", "beam.internal_step=1e-5")
+    assert result.exit_code == 1
+    assert "failed: beam at t = 0.0" in in_one_line(result.stderr)
+    assert "peak transmitted force" not in result.stdout
+    assert read_run(tmp_path / "results/lab-impact").status == "failed"
+    assert (tmp_path / "results/lab-impact/figures/energy.png").is_file()
+
+
+def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
+    folder, _ = finished
+    result = rockshed("plot", folder, "--output-dir", tmp_path / "again", "--quiet")
+    assert result.exit_code == 0
+    assert {Path(line).name for line in result.stdout.splitlines()} == PICTURES
+    for name in PICTURES:
+        assert (tmp_path / "again" / name).read_bytes() == (folder / "figures" / name).read_bytes()
+
+
+def test_plot_into_a_folder_that_cannot_be_written(rockshed, finished, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    result = rockshed("plot", finished[0], "--output-dir", tmp_path / "file/x")
+    assert result.exit_code == 2
+    assert "cannot be written" in in_one_line(result.stderr)
+
+
+@pytest.fixture
+def long_run(tmp_path):
+    """Start a run that would take minutes, in a process of its own; returns it when it has written rows."""
+    processes = []
+
+    def start(folder):
+        command = ["run", "lab-impact", "--stop-time", "100", "--output-dir", str(folder), "--no-figures"]
+        process = subprocess.Popen([sys.executable, "-m", "orchestrator.cli", *command], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
+        processes.append(process)
+        stream, until = folder.with_name(f"{folder.name}.running") / "timeseries.arrows", time.monotonic() + 120
+        header = None
+        while process.poll() is None and time.monotonic() < until:
+            size = stream.stat().st_size if stream.is_file() else None
+            header = size if header is None else header
+            if header is not None and size is not None and size > header:
+                return process
+            time.sleep(0.1)
+        raise AssertionError(process.communicate(timeout=10))
+
+    yield start
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
+
+
+def test_ctrl_c_keeps_what_was_computed(rockshed, long_run, tmp_path):
+    process = long_run(tmp_path / "run")
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert "interrupted at t = " in err
+    assert "peak transmitted force" in out
+    run = read_run(tmp_path / "run")
+    assert run.status == "interrupted"
+    assert run.series["time"][-1] == pytest.approx(run.figure("simulated time").value)
+    assert not (tmp_path / "run.running").exists()
+    assert rockshed("plot", tmp_path / "run").exit_code == 0
+
+
+def test_a_killed_run_can_be_drawn_and_a_second_run_waits_for_nobody(rockshed, long_run, tmp_path):
+    process = long_run(tmp_path / "run")
+    beside = rockshed("run", "lab-impact", "--output-dir", tmp_path / "run", *SHORT)
+    assert beside.exit_code == 2
+    assert "another run is writing there" in in_one_line(beside.stderr)
+    assert rockshed("run", "lab-impact", "--output-dir", tmp_path / "elsewhere", *SHORT).exit_code == 0
+    process.kill()
+    process.wait()
+    result = rockshed("plot", tmp_path / "run")
+    assert result.exit_code == 0
+    assert "not complete (running)" in in_one_line(result.stderr)
+    assert {Path(line).name for line in result.stdout.splitlines()} == PICTURES
+    assert rockshed("run", "lab-impact", "--output-dir", tmp_path / "run", *SHORT).exit_code == 0
+    assert read_run(tmp_path / "run").status == "complete"
+    assert not (tmp_path / "run.running").exists()

@@ -1,0 +1,134 @@
+"""Headline figures and the table, from made-up results whose figures are known."""
+
+import numpy as np
+import pytest
+
+from orchestrator import comparison
+from orchestrator import headlines as h
+from orchestrator.cases import sonoda1993
+from orchestrator.cases.registry import cases, known_of
+from orchestrator.core.reading import Run
+from orchestrator.core.results import Figure
+
+KGF = 9.80665
+
+
+def made_up(length=0.02, summary=(), **columns):
+    """A run of rock, sand and beam: a half sine of 1 kN on the rock over 10 ms, twice that transmitted 2 ms later."""
+    time = np.linspace(0.0, length, 401)
+    rock = np.where(time < 0.01, 1e3 * np.sin(np.pi * time / 0.01), 0.0)
+    late = np.clip(time - 0.002, 0.0, 0.01)
+    zero = np.zeros_like(time)
+    series = {
+        "time": time, "sand.rock.force.y": rock, "sand.transmitted_force": 50.0 + 2e3 * np.sin(np.pi * late / 0.01),
+        "sand.penetration": 0.06 * np.sin(np.pi * time / 0.02), "sand.surface_height": zero + 0.1,
+        "rock.energy.kinetic": 100.0 - 4e3 * time, "rock.energy.residual": 2e2 * time, "rock.energy.work.contact": -4e3 * time,
+        "sand.energy.residual": -5.0 * time, "sand.energy.work.rock": 3.9e3 * time, "sand.energy.work.beam": zero - 1.0,
+        "beam.energy.residual": zero, "beam.energy.work.contact": zero, "beam.position.y[1]": zero - 0.025,
+        "coupling.sand_rock.energy": -1e2 * time, **columns}
+    sand = {"base": "beam_discs", "base.y": 0.0, "beam.radius": 0.025, "disc.radius": 0.005, "rotation": "locked",
+            "stiffness_factor": 0.42, "modulus": 30.0 * KGF / 1e-4, "internal_step": 1e-5}
+    provenance = {
+        "status": "complete", "name": "made-up", "system": {"description": "", "master": "sequential", "exchange_step": 1e-5},
+        "components": {name: {"model": model, "parameters": {key: {"value": value} for key, value in parameters.items()}}
+                       for name, model, parameters in (("rock", "FallingRock", {}), ("sand", "SandCushion", sand),
+                                                       ("beam", "RBSMBeam", {"internal_step": 1e-6}))}}
+    return Run(None, provenance, list(summary), [], series)
+
+
+def figure(run, name):
+    return next(f.value for f in h.headlines(run) if f.name == name)
+
+
+def test_peaks_impulse_and_duration_of_a_half_sine():
+    run = made_up()
+    assert figure(run, h.PEAK_ROCK) == pytest.approx(1e3, rel=1e-3)
+    assert figure(run, h.PEAK_ROCK_AT) == pytest.approx(0.005, abs=1e-4)
+    assert figure(run, h.PEAK_TRANSMITTED) == pytest.approx(2050.0, rel=1e-3)
+    assert figure(run, h.PEAK_TRANSMITTED_AT) == pytest.approx(0.007, abs=1e-4)
+    assert figure(run, h.IMPULSE_ROCK) == pytest.approx(1e3 * 0.01 * 2 / np.pi, rel=1e-3)
+    assert figure(run, h.IMPULSE_TRANSMITTED) == pytest.approx(2e3 * 0.01 * 2 / np.pi, rel=1e-3)
+    assert figure(run, h.DURATION) == pytest.approx(0.01, rel=0.02)
+
+
+def test_extremes_over_all_exchanges_go_before_those_of_the_rows():
+    run = made_up(summary=[Figure("sand.rock.force.y maximum", 1234.0, "N"), Figure("sand.rock.force.y maximum at", 0.0049, "s")])
+    assert figure(run, h.PEAK_ROCK) == 1234.0
+    assert figure(run, h.PEAK_ROCK_AT) == 0.0049
+
+
+def test_the_systems_residual_takes_what_the_works_leave():
+    """Residuals 195 W, works -100 W: 95 W over 20 ms; the constant work at the start does not count."""
+    run = made_up()
+    np.testing.assert_allclose(h.system_residual(run), 95.0 * run.series["time"], atol=1e-9)
+    assert figure(run, h.RESIDUAL_SHARE) == pytest.approx(95.0 * 0.02 / 100.0)
+
+
+def test_without_a_balance_of_every_component_there_is_none():
+    run = made_up()
+    del run.series["beam.energy.residual"]
+    assert h.system_residual(run) is None
+    assert h.RESIDUAL not in [f.name for f in h.headlines(run)]
+
+
+def test_a_rock_near_the_base_is_warned_of():
+    assert comparison.warnings(made_up()) == []
+    depth = made_up().series["time"] * 0.0
+    near = comparison.warnings(made_up(**{"sand.penetration": depth + 0.096}))
+    assert "within 4.0 mm of the base" in near[0]
+    through = comparison.warnings(made_up(**{"sand.penetration": depth + 0.103}))
+    assert "presses 3.0 mm into the base" in through[0]
+
+
+def test_models_of_the_sand_have_their_names():
+    run = made_up()
+    sand = run.provenance["components"]["sand"]["parameters"]
+    assert comparison.model(run) == "calibrated sand: rotation locked, stiffness factor 0.42, E_bar 30.0 kgf/cm²"
+    sand["rotation"]["value"], sand["stiffness_factor"]["value"] = "free", 1.0
+    assert comparison.model(run).startswith("literal sand: rotation free")
+    sand["rotation"]["value"] = "locked"
+    assert comparison.model(run).startswith("modified sand")
+
+
+def test_deviations_stand_beside_the_references():
+    known = {h.PEAK_TRANSMITTED: h.Known(h.Reference(2500.0, "a guess"), h.Reference(1640.0))}
+    row = comparison.rows(made_up(), known)[0]
+    assert (row.computed, row.paper, row.experiment) == ("2.05", "≈ 2.50", "1.64")
+    assert row.paper_deviation == pytest.approx(-0.18, abs=1e-3)
+    assert row.experiment_deviation == pytest.approx(0.25, abs=1e-3)
+    assert comparison.notes(made_up(), known) == ["≈ paper: a guess"]
+
+
+def test_a_run_that_ends_too_soon_is_not_compared():
+    known = {h.PEAK_TRANSMITTED: h.Known(experiment=h.Reference(1640.0))}
+    short = made_up(length=0.008)
+    assert comparison.rows(short, known)[0].experiment == ""
+    assert "nothing is compared" in comparison.notes(short, known)[0]
+
+
+def test_a_force_that_has_not_ended_is_told():
+    depth = {"sand.penetration": 0.06 * np.sin(np.pi * np.linspace(0.0, 1.5, 401) / 1.6)}
+    assert any("has not ended" in note for note in comparison.notes(made_up(length=0.009, **depth), {}))
+    assert not any("has not ended" in note for note in comparison.notes(made_up(length=0.012, **depth), {}))
+
+
+def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
+    known = {n: sonoda1993.known_of(test) for n, test in sonoda1993.tests().items()}
+    for number, entry in known.items():
+        assert entry[h.PEAK_TRANSMITTED].experiment.value == sonoda1993.tests()[number].peak_force
+    by_modulus = sorted(known, key=lambda n: sonoda1993.tests()[n].modulus)
+    peaks = [known[n][h.PEAK_TRANSMITTED].paper.value for n in by_modulus]
+    depths = [known[n][h.PENETRATION].paper.value for n in by_modulus]
+    assert peaks == sorted(peaks)
+    assert depths == sorted(depths, reverse=True)
+    between = known[4][h.PEAK_TRANSMITTED].paper  # E_bar = 30.4 lies between 20 and 40
+    assert 351.2 < between.value / KGF < 449.5
+    assert "interpolated" in between.note
+    assert "extrapolated" in known[10][h.PEAK_TRANSMITTED].paper.note
+
+
+def test_every_test_of_the_paper_is_a_case_and_finds_its_references_again():
+    assert len(cases()) == 16
+    assert next(iter(cases())) == "lab-impact"
+    assert known_of({"case": "lab-impact-10"})[h.PEAK_TRANSMITTED].experiment.value == pytest.approx(673.2 * KGF)
+    assert known_of({}) == {}
