@@ -4,6 +4,7 @@ import ctypes
 import hashlib
 import io
 import itertools
+import sys
 import tempfile
 import weakref
 import zipfile
@@ -14,6 +15,7 @@ from xml.etree import ElementTree
 
 import fmpy
 import numpy as np
+import pythonfmu  # noqa: F401 (FMUs bring parts of it; the first import serves the whole process, and must be the complete one)
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
     FMU2Slave,
@@ -29,7 +31,7 @@ from fmpy.model_description import ModelDescription, ModelVariable, ValidationEr
 
 from .description import Description, Port, Unit
 from .errors import InputRefused, Problem
-from .slave import BOOLEAN, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
+from .slave import BOOLEAN, FATAL, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
 
 _DESCRIPTION_FILE = "modelDescription.xml"
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
@@ -175,6 +177,14 @@ def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
     return callbacks
 
 
+def _release_python(library: ctypes.CDLL) -> None:
+    """Let go what pythonfmu's binary would let go a second time when the process ends, which may abort it there."""
+    release = getattr(library, "finalizePythonInterpreter", None)
+    if release is not None:
+        release.restype = None
+        release()
+
+
 _MOVE = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
 _STEP = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
 
@@ -187,6 +197,7 @@ class FmuSlave:
         self.messages: list[tuple[int, str]] = []
         self._folder = tempfile.TemporaryDirectory(prefix="rockshed_", ignore_cleanup_errors=True)
         description = read_description(file.model_description())
+        self._fmu: Any = None
         key = next(_keys)
         _slaves[key] = self
         try:
@@ -195,7 +206,7 @@ class FmuSlave:
                                   unzipDirectory=self._folder.name)
             self._fmu.instantiate(callbacks=_callbacks(key, description.generation_tool), loggingOn=True)
         except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
-            self._folder.cleanup()
+            self._unload()
             said = "; ".join(text for _, text in self.messages)
             raise InputRefused([Problem(name, f"no instance of {file.path} can be made: {error} {said}".rstrip(),
                                         "see whether the FMU runs in another tool")]) from error
@@ -286,9 +297,17 @@ class FmuSlave:
         return self._status(self._fmu.terminate)
 
     def free(self) -> None:
-        """Free the instance, unload the library and remove the unpacked files."""
-        self._fmu.freeInstance()
+        """Free the instance unless it failed beyond repair, unload the library and remove the unpacked files."""
+        if all(status != FATAL for status, _ in self.messages):
+            self._fmu.fmi2FreeInstance(self._fmu.component)
+        self._unload()
+
+    def _unload(self) -> None:
+        if self._fmu is not None:
+            _release_python(self._fmu.dll)
+            self._fmu.freeLibrary()
         self._folder.cleanup()
+        sys.path[:] = [path for path in sys.path if not path.startswith(self._folder.name)]  # where an FMU's Python code was
 
     def _status(self, call: Callable[..., Any], *arguments: Any) -> int:
         """Status of a call of fmpy, which raises an exception for a bad one; the exception is noted where the FMU is silent."""

@@ -92,7 +92,7 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
         table = pyarrow.parquet.read_table(folder / PARQUET)
     else:
-        table = pa.Table.frombatches(batches(folder / ROWS_STREAM), schema(columns))
+        table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
     return {column.name: table[column.name].to_numpy() for column in columns}
 
 

@@ -102,7 +102,7 @@ class _Session:
 
     def close(self) -> None:
         """End and free all slaves; one that has failed beyond repair may not be called any more."""
-        usable = [slave for slave in self.slaves.values() if all(status != FATAL for status, _ in slave.messages)]
-        for slave in usable if self.initialised else []:
-            slave.terminate()
-        free(usable)
+        for slave in self.slaves.values():
+            if self.initialised and all(status != FATAL for status, _ in slave.messages):
+                slave.terminate()
+        free(self.slaves.values())

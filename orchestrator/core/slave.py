@@ -92,7 +92,7 @@ class Slave(Protocol):
         """End the run."""
 
     def free(self) -> None:
-        """Give back everything the slave holds. Nothing may be called afterwards."""
+        """Give back everything the slave holds, in whatever state it is. Nothing may be called afterwards."""
 
 
 class Source(Protocol):
