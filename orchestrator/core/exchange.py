@@ -17,7 +17,8 @@ from .loop import (
     Moves,
     Program,
     Steps,
-    advance,
+    advance_listed,
+    directory_of,
     first_not_finite,
     post,
     widen,
@@ -168,11 +169,12 @@ class CompiledDriver:
                         _moves(plan, slaves, state.setters, state.buses.inputs.size, "set"),
                         _moves(plan, slaves, state.getters, state.buses.outputs.size, "get"),
                         state.buses, state.ledger, state.extremes)
-        advance(0, 0, *self._tables)  # compiles, or loads what was compiled before
+        self._directory = directory_of(*self._tables)
+        advance_listed(0, 0, self._directory)  # compiles, or loads what was compiled before
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
-        done, operation, status = advance(first, count, *self._tables)
+        done, operation, status = advance_listed(first, count, self._directory)
         return None if status != NOT_FINITE and status <= WARNING else Fault(first + done, self._operations[operation], status)
 
 

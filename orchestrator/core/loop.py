@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import carray, njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
@@ -30,15 +30,22 @@ _WARNING = WARNING
 _TICKS_PER_SECOND = float(TICKS_PER_SECOND)
 
 
-def compiled(function: Callable[..., Any]) -> Any:
-    """Compile with numba and keep the result; without a place to keep it, compile anew in each process.
-
-    Nothing is allocated, so arrays need no counted references; counting them would cost 7 us an exchange.
-    """
+def _compile(function: Callable[..., Any], **options: Any) -> Any:
+    """Compile with numba and keep the result; without a place to keep it, compile anew in each process."""
     try:
-        return njit(cache=True, error_model="numpy", _nrt=False)(function)
+        return njit(cache=True, error_model="numpy", **options)(function)
     except RuntimeError:
-        return njit(error_model="numpy", _nrt=False)(function)
+        return njit(error_model="numpy", **options)(function)
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """Compile a function that makes no arrays: references to them need not be counted, which would cost 7 us an exchange."""
+    return _compile(function, _nrt=False)
+
+
+def compiled_with_references(function: Callable[..., Any]) -> Any:
+    """Compile a function that returns arrays."""
+    return _compile(function)
 
 
 class Program(NamedTuple):
@@ -245,3 +252,57 @@ def advance(first, count, program, steps, setters, getters, buses, ledger, extre
         post(ledger, buses.inputs, buses.outputs)
         widen(extremes, buses.outputs, n + 1)
     return count, 0, 0
+
+
+# --- one argument instead of forty-two: taking the tables apart would cost 10 us a call
+
+def _as_pointer(kind: Any) -> Any:
+    """Function that takes an address for a pointer to numbers of a kind."""
+    @_intrinsic
+    def pointer(_context, address):  # type: ignore[no-untyped-def]
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.inttoptr(arguments[0], target.get_value_type(signature.return_type))
+        return types.CPointer(kind)(types.int64), generate
+    return pointer
+
+
+_to_reals, _to_integers, _to_words = _as_pointer(types.float64), _as_pointer(types.int64), _as_pointer(types.int32)
+
+
+@compiled_with_references
+def _reals(directory, entry):  # type: ignore[no-untyped-def]
+    return carray(_to_reals(directory[2 * entry]), (directory[2 * entry + 1],))
+
+
+@compiled_with_references
+def _integers(directory, entry):  # type: ignore[no-untyped-def]
+    return carray(_to_integers(directory[2 * entry]), (directory[2 * entry + 1],))
+
+
+@compiled_with_references
+def _words(directory, entry):  # type: ignore[no-untyped-def]
+    return carray(_to_words(directory[2 * entry]), (directory[2 * entry + 1],))
+
+
+@compiled_with_references
+def _listed_moves(d, at):  # type: ignore[no-untyped-def]
+    return Moves(_integers(d, at), _integers(d, at + 1), _integers(d, at + 2), _integers(d, at + 3), _integers(d, at + 4),
+                 _integers(d, at + 5), _integers(d, at + 6), _words(d, at + 7))
+
+
+def directory_of(*tables: NamedTuple) -> Table:
+    """Address and length of every array of the tables, one after the other; a number stands for itself. The tables must be kept."""
+    return np.array([entry for table in tables for value in table
+                     for entry in ((value.ctypes.data, value.size) if isinstance(value, np.ndarray) else (value, 0))], np.int64)
+
+
+@compiled_with_references
+def advance_listed(first, count, d):  # type: ignore[no-untyped-def]
+    """:func:`advance` with the tables that :func:`directory_of` has listed in ``d``, in the order of its arguments."""
+    program = Program(_integers(d, 0), _integers(d, 1), _integers(d, 2), _integers(d, 3), _integers(d, 4), d[10], d[12])
+    steps = Steps(_integers(d, 7), _integers(d, 8))
+    buses = Buses(_reals(d, 25), _reals(d, 26), _integers(d, 27))
+    ledger = Ledger(_integers(d, 28), _integers(d, 29), _integers(d, 30), _integers(d, 31), _reals(d, 32), _reals(d, 33),
+                    _reals(d, 34), _reals(d, 35), _reals(d, 36))
+    extremes = Extremes(_integers(d, 37), _reals(d, 38), _reals(d, 39), _integers(d, 40), _integers(d, 41))
+    return advance(first, count, program, steps, _listed_moves(d, 9), _listed_moves(d, 17), buses, ledger, extremes)
