@@ -53,18 +53,22 @@ def draw_all(run: Run, folder: Path, note: Callable[[str], None] = lambda text: 
 
 
 def _pictures(run: Run) -> list[_Picture]:
+    """The pictures of the components that take part."""
     from . import curves, sand
 
     known, who = known_of(run.provenance), roles(run)
     force, depth = [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], [f"{who.sand}.penetration"]
-    return [
+    of_sand = [] if who.sand is None else [
         _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),
         _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
         _Picture("forces", partial(curves.forces, run, known), force),
         _Picture("penetration", partial(curves.penetration, run, known), depth),
-        _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"]),
-        _Picture("energy", partial(curves.energy, run), [f"{who.rock}.energy.kinetic"]),
     ]
+    of_beam = [] if who.beam is None else [
+        _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"])]
+    of_rock = [] if who.rock is None else [
+        _Picture("energy", partial(curves.energy, run), [f"{who.rock}.energy.kinetic"])]
+    return of_sand + of_beam + of_rock
 
 
 def _make(folder: Path) -> None:

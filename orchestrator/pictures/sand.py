@@ -105,12 +105,17 @@ def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes])
     window = _window(shown)
     for frame, axes in zip(shown, panels):
         _panel(run, frame, axes, largest / kN, window)
-    panels[0].annotate(f"beam axis, deflections × {DEFLECTION_SCALE:g}", (0.0, 0.0), xycoords="axes fraction", xytext=(2, 1),
-                       textcoords="offset points", fontsize=6.5, color=BEAM, zorder=5,
-                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75})
+    if h.roles(run).beam:
+        _name_axis(panels[0])
     bar = made.colorbar(ScalarMappable(Normalize(0.0, largest / kN), _CHAINS), ax=list(panels), shrink=0.8, aspect=25, pad=0.01)
     bar.set_label("elastic force in a contact (kN)", fontsize=8)
     bar.outline.set_linewidth(0.5)
+
+
+def _name_axis(axes: Axes) -> None:
+    axes.annotate(f"beam axis, deflections × {DEFLECTION_SCALE:g}", (0.0, 0.0), xycoords="axes fraction", xytext=(2, 1),
+                  textcoords="offset points", fontsize=6.5, color=BEAM, zorder=5,
+                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75})
 
 
 def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
@@ -130,7 +135,8 @@ def _panel(run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[flo
     axes.spines[:].set_visible(False)
     _discs(axes, state.discs, _SAND_FACE, _SAND_EDGE, 1)
     _chains(axes, state, largest)
-    _discs(axes, state.beam, _BEAM_FACE, BEAM, 3)
+    if not _on_floor(run):
+        _discs(axes, state.beam, _BEAM_FACE, BEAM, 3)
     _discs(axes, state.rock, _ROCK_FACE, INK, 3)
     for wall in (state.box.left, state.box.left + state.box.width):
         axes.plot([wall / cm, wall / cm], [state.box.base / cm, top], color=GREY, linewidth=1.0, zorder=2)
@@ -138,6 +144,11 @@ def _panel(run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[flo
     _axis_of_beam(run, frame, axes)
     axes.set_title(f"{frame.time / ms:g} ms")
     axes.set_title(_words(run, frame), loc="right", fontsize=8, color=GREY)
+
+
+def _on_floor(run: Run) -> bool:
+    """Whether the sand lies on a rigid floor; the places of beam discs then mean nothing."""
+    return str(run.provenance["components"][h.roles(run).sand]["parameters"]["base"]["value"]) == "floor"
 
 
 def _discs(axes: Axes, discs: Discs, face: str, edge: str, order: int) -> None:

@@ -172,6 +172,17 @@ def test_toml_of_a_case_is_the_system_of_the_case(rockshed, tmp_path):
     assert rockshed("info", "lab.toml").stdout == rockshed("info", "lab-impact").stdout
 
 
+def test_the_example_of_a_system_file_runs_and_is_drawn_without_a_beam(rockshed, tmp_path):
+    example = Path(__file__).parents[2] / "orchestrator/examples/rigid_floor.toml"
+    (tmp_path / "a/b").mkdir(parents=True)
+    copy = tmp_path / "a/b/rigid_floor.toml"
+    copy.write_bytes(example.read_bytes())
+    assert rockshed("build", "--output-dir", tmp_path / "fmus/dist").exit_code == 0
+    result = rockshed("run", copy, "--stop-time", "0.004")
+    assert result.exit_code == 0, result.stderr
+    assert {path.name for path in (tmp_path / "results/rigid_floor/figures").iterdir()} == PICTURES - {"beam.png"}
+
+
 # ------------------------------------------------------------------ refused
 
 REFUSED = [
