@@ -101,6 +101,23 @@ def test_energy_balance_with_all_losses_closes_to_first_order(changes):
     assert all(1.6 < coarse / fine < 2.5 for coarse, fine in pairwise(errors))
 
 
+@pytest.mark.parametrize(("rise", "turn"), [(0.2, 0.0), (0.0, 20.0)], ids=["lifted", "turned"])
+@pytest.mark.parametrize("base", ["beam_discs", "beam_surface"])
+def test_work_of_a_beam_that_lifts_or_rubs_the_sand(base, rise, turn):
+    """The beam starts to move at once, and does work by its force or its torque."""
+    residuals = []
+    for step in (2e-5, 1e-5, 5e-6):
+        sand = cushion({**SMALL_BOX, "base": base, "packing": "hexagonal", "internal_step": step})
+        sand["beam.velocity.y"], sand["beam.angular_velocity"] = rise, turn
+        for i in range(round(4e-3 / step)):
+            sand["beam.position.y"], sand["beam.angle"] = -0.025 + rise * i * step, turn * i * step
+            sand.step(i * step, step)
+        assert sand["energy.work.beam"] > 1e-3
+        residuals.append(abs(sand["energy.residual"]) / sand["energy.work.beam"])
+    assert residuals[1] < 0.05
+    assert residuals[0] / residuals[2] == pytest.approx(4.0, rel=0.5)
+
+
 @pytest.mark.parametrize("rotation", ["free", "locked"])
 def test_energy_balance_of_an_impact_halves_with_the_step(rotation):
     """The rock strikes a small cushion: the sand's balance, and the work that either side counts at their interface."""

@@ -18,12 +18,24 @@ def resting_height(number=1):
     return RADIUS - number * masses(disc)[0] * G / sand_stiffness(disc)
 
 
-def test_a_disc_comes_to_rest_with_the_overlap_that_carries_it():
-    disc = discs_at([(0.0, RADIUS)], parameters={**ON_FLOOR, "damping": 0.5})
-    run(disc, 0.05)
-    overlap = RADIUS - rows(disc)[0, 1]
-    assert overlap == pytest.approx(masses(disc)[0] * G / sand_stiffness(disc), rel=1e-9)
-    assert disc["transmitted_force"] == pytest.approx(masses(disc)[0] * G, rel=1e-12)
+CARRIERS = {
+    "floor": ((0.0, 0.0), None, {"base.y": 0.0}),
+    "rock": ((0.0, 0.02), 0.02, {"rock.position.y": 0.0, "rock.radius": 0.02}),
+    "beam": ((0.025, 0.0), 0.025, {"base": "beam_discs", "box.left": 0.0, "box.width": 0.2}),
+    "beam surface": ((0.06, 0.0), 0.025, {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2}),
+}
+"""What a disc can lie on: the point, the carrier's radius, the parameters."""
+
+
+@pytest.mark.parametrize(("carrier", "ratio"), [("floor", 1.0), ("beam surface", 1.0), ("beam", 1 / 3), ("rock", 2 / 5)])
+def test_a_disc_comes_to_rest_with_the_overlap_that_carries_it(carrier, ratio):
+    """Eq. (1) with dD = 2 r and R_ij0 = r + R: k_n = E_bar dL 2 r / (r + R); a plane counts as the disc's mirror image."""
+    (x, y), _, parameters = CARRIERS[carrier]
+    disc = discs_at([(x, y + RADIUS)], parameters={"gravity": G, "damping": 0.5, **parameters})
+    run(disc, 0.1)
+    overlap = y + RADIUS - rows(disc)[0, 1]
+    assert overlap == pytest.approx(masses(disc)[0] * G / (ratio * sand_stiffness(disc)), rel=1e-9)
+    assert disc["transmitted_force"] - disc["rock.force.y"] == pytest.approx(masses(disc)[0] * G, rel=1e-12)
 
 
 def test_a_locked_disc_slides_with_the_deceleration_mu_g():
@@ -52,11 +64,7 @@ def test_a_sliding_disc_ends_rolling_at_two_thirds_of_its_speed():
     assert disc["energy.sliding"] == pytest.approx(masses(disc)[0] / 6.0, rel=1e-2)
 
 
-CARRIERS = {
-    "rock": ((0.0, 0.02), 0.02, {"rock.position.y": 0.0, "rock.radius": 0.02}),
-    "beam": ((0.025, 0.0), 0.025, {"base": "beam_discs", "box.left": 0.0, "box.width": 0.2}),
-    "beam surface": ((0.06, 0.0), 0.025, {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2}),
-}
+TURNING = ["rock", "beam", "beam surface"]
 
 
 def on_top(carrier, velocity, spin):
@@ -69,7 +77,7 @@ def on_top(carrier, velocity, spin):
     return disc, np.sum(disc[f"{name}.force.x"]), np.sum(disc[f"{name}.torque"]), radius
 
 
-@pytest.mark.parametrize("carrier", CARRIERS)
+@pytest.mark.parametrize("carrier", TURNING)
 def test_friction_on_the_top_of_rock_or_beam_turns_it_clockwise(carrier):
     disc, force, torque, radius = on_top(carrier, (3.0, -1.0), 0.0)
     assert force == pytest.approx(MU * (disc["transmitted_force"] - disc["rock.force.y"]), rel=1e-2)
@@ -77,7 +85,7 @@ def test_friction_on_the_top_of_rock_or_beam_turns_it_clockwise(carrier):
     assert rows(disc)[0, 2] < 3.0
 
 
-@pytest.mark.parametrize("carrier", CARRIERS)
+@pytest.mark.parametrize("carrier", TURNING)
 def test_a_turning_rock_or_beam_carries_the_disc_along_and_is_braked(carrier):
     """Counter-clockwise: the top moves to the left."""
     disc, force, torque, radius = on_top(carrier, (0.0, -1.0), 50.0)

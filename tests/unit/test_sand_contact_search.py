@@ -67,6 +67,22 @@ def test_a_sheared_contact_holds_the_disc_across_rebuilds():
     assert furthest == pytest.approx(amplitude, rel=0.05)
 
 
+def test_a_newcomer_in_the_list_leaves_the_others_their_springs():
+    """A disc with a lower number comes down on the floor far away, and two more meet in the air."""
+    on_floor = {"base.y": 0.0, "rotation": "locked", "damping": 0.0}
+    sheared, pressed = (0.0, RADIUS - 1e-5), (1.0, RADIUS - 2e-5)
+    others = [(-1.0, 2.2 * RADIUS), (-2.0, 0.5), (-2.0 + 2.4 * RADIUS, 0.5)]
+    alone = discs_at([sheared, pressed], [(1e-3, 0.0), (0.01, 0.0)], parameters=on_floor)
+    crowd = discs_at([*others, sheared, pressed], [(0.0, -1.0), (1.0, 0.0), (0.0, 0.0), (1e-3, 0.0), (0.01, 0.0)],
+                     parameters=on_floor)
+    for _ in range(1000):
+        run(alone, 1e-5)
+        run(crowd, 1e-5)
+    assert rows(crowd)[0, 3] > 0.0
+    assert rows(crowd)[2, 2] > 0.0
+    np.testing.assert_array_equal(rows(crowd)[3:], rows(alone))
+
+
 def test_a_contact_that_opens_forgets():
     """The second touch of a disc that has rubbed the floor begins with a slack spring: no push back where it did not come from."""
     disc = discs_at([(0.0, RADIUS)], [(0.2, -0.2)], parameters={"base.y": 0.0, "rotation": "locked", "damping": 0.0})
