@@ -42,6 +42,8 @@ class _Phase(IntEnum):
     FAILED = 5
 
 
+_RUNNING = _Phase.RUNNING
+
 _REMEDIES = {
     _Phase.INSTANTIATED: "the slave is not initialised: set up the experiment, then enter and exit the initialization mode",
     _Phase.INITIALISING: "the initialization mode is not finished: exit it first",
@@ -141,7 +143,8 @@ class ComponentSlave(Fmi2Slave):
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Advance by ``step_size`` (s) with the present inputs. False if that is refused or fails; the log tells why."""
         try:
-            if reason := self._why_not(current_time, step_size):
+            due = self._phase is _RUNNING and current_time == self._time and 0.0 < step_size < self._stop_time - current_time
+            if not due and (reason := self._why_not(current_time, step_size)):
                 self._log(f"the step of {step_size:.6g} s from t = {current_time:.9g} s is refused: {reason}", Fmi2Status.error)
                 return False
             self._instance.step(current_time, step_size)
