@@ -1,9 +1,11 @@
 """FMU files behind the interface of :mod:`orchestrator.core.slave`. The only module that imports fmpy."""
 
+import contextlib
 import ctypes
 import hashlib
 import io
 import itertools
+import os
 import sys
 import tempfile
 import weakref
@@ -202,8 +204,9 @@ class FmuSlave:
         _slaves[key] = self
         try:
             fmpy.extract(file.path, self._folder.name)
-            self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
-                                  unzipDirectory=self._folder.name)
+            with contextlib.chdir(os.getcwd()):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
+                self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
+                                      unzipDirectory=self._folder.name)
             self._fmu.instantiate(callbacks=_callbacks(key, description.generation_tool), loggingOn=True)
         except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
             self._unload()

@@ -185,6 +185,7 @@ def test_a_library_that_cannot_be_loaded(foreign, tmp_path):
     with pytest.raises(InputRefused, match=r"a: no instance of .*Broken\.fmu can be made"):
         simulate(strangers(broken), tmp_path / "run")
     assert not (tmp_path / "run").exists()
+    assert Path.cwd().is_dir()
 
 
 def test_values_of_integers_and_enumerations_reach_an_fmu(rock_fmu, tmp_path):
