@@ -1,7 +1,8 @@
 """The command line ``rockshed``. Commands import what they need when they run, so that help is there at once."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -63,7 +64,7 @@ def _screen(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
 
 @app.command("list")
 def list_() -> None:
-    """The cases that can be run, and the components that can be built."""
+    """Cases and components."""
     from components.catalogue import NAMES, component
 
     from .cases.registry import cases
@@ -97,7 +98,7 @@ def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPO
 def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
          toml: Annotated[bool, typer.Option("--toml", help="Print the system as a file that `rockshed run` takes.")] = False,
          ) -> None:
-    """What is in an FMU, or in a system: ports and steps, components, values and connections."""
+    """What is in an FMU or in a system: ports, steps, values, connections."""
     from .export import system_text
     from .inspection import show_fmu, show_system
     from .job import Request, prepare
@@ -115,7 +116,7 @@ def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
 def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
            folder: Annotated[Path, typer.Argument(help="A new or empty folder.")],
            set_: Set = None, size: RunSize = None, coupling: Annotated[str | None, typer.Option()] = None) -> None:
-    """Write a system and its FMUs into a folder: system.toml, which `rockshed run` takes, and the files it names."""
+    """Write a system as TOML, with its FMUs, to change and run it."""
     from .export import export_system
     from .job import Request, prepare
 
@@ -128,18 +129,19 @@ def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
 def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")],
         set_: Set = None, size: RunSize = None,
         output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")] = None,
-        stop_time: Annotated[float | None, typer.Option(metavar="SECONDS")] = None,
-        exchange_step: Annotated[float | None, typer.Option(metavar="SECONDS")] = None,
-        output_interval: Annotated[float | None, typer.Option(metavar="SECONDS")] = None,
+        stop_time: Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")] = None,
+        exchange_step: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time between two exchanges.")] = None,
+        output_interval: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time between two rows.")] = None,
         state_interval: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time between two recorded states of the "
                                                              "sand.")] = None,
-        master: Annotated[str | None, typer.Option(metavar="sequential|jacobi")] = None,
+        master: Annotated[str | None, typer.Option(metavar="sequential|jacobi", help="One component after the other, or "
+                                                     "all at once.")] = None,
         coupling: Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case.")] = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
-    """Run a case or a system file, compare, draw. FMUs that are missing are built."""
+    """Run a case or a system file, compare, draw; build what is missing."""
     from .job import Request
     from .screen import INTERRUPTED, RUN_FAILED
 
@@ -172,10 +174,14 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         folder = output_dir or RESULTS / job.name
         if is_cold():
             progress.describe(COLD_START)
-        with suppress(RunFailed):  # status and reason are in the results
-            simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress, facts=job.facts)
-    add_figures(folder, headlines(read_run(folder)))
-    return read_run(folder)
+        try:
+            done = simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress,
+                            facts=job.facts)
+        except RunFailed:
+            done = read_run(folder)  # status and reason are in it
+    figures = headlines(done)
+    add_figures(folder, figures)
+    return replace(done, summary=[*done.summary, *figures])
 
 
 def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
@@ -224,7 +230,7 @@ def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
 def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run, finished or not.")],
          output_dir: Annotated[Path | None, typer.Option(help="Folder of the pictures; default RUN/figures.")] = None,
          quiet: Quiet = False) -> None:
-    """Draw all pictures of a run again, also of one that failed, was interrupted or was killed."""
+    """Draw a run again, also one that failed or was interrupted or killed."""
     with _screen(quiet) as screen:
         from .core.errors import InputRefused, Problem
         from .core.reading import read_run
@@ -250,8 +256,6 @@ def bench(part: Annotated[list[str] | None, typer.Argument(metavar="[discs|coupl
           as_json: Json = False, quiet: Quiet = False) -> None:
     """Measure speed and price of the coupling, in ratios within interleaved rounds. Takes about two minutes."""
     with _screen(quiet, as_json) as screen:
-        from dataclasses import asdict
-
         from .bench.table import PARTS
         from .core.errors import InputRefused, Problem
         from .screen import CHECK_FAILED, plain_table
