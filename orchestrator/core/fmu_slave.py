@@ -10,9 +10,10 @@ import sys
 import tempfile
 import weakref
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import fmpy
@@ -26,6 +27,7 @@ from fmpy.fmi2 import (
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
     free,
 )
 from fmpy.logging import addLoggerProxy
@@ -33,7 +35,7 @@ from fmpy.model_description import ModelDescription, ModelVariable, ValidationEr
 
 from .description import Description, Port, Unit
 from .errors import InputRefused, Problem
-from .slave import BOOLEAN, FATAL, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
+from .slave import BOOLEAN, ERROR, FATAL, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
 
 _DESCRIPTION_FILE = "modelDescription.xml"
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
@@ -167,6 +169,10 @@ def _log(environment: int, _instance: bytes, status: int, _category: bytes, mess
 _LOGGER = fmi2CallbackLoggerTYPE(_log)
 
 
+def _made_by_pythonfmu(generation_tool: str) -> bool:
+    return "PythonFMU" in generation_tool
+
+
 def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
     """Callbacks for one instance. pythonfmu logs plain text where FMI asks for a format: a percent sign in it must not be read."""
     callbacks = fmi2CallbackFunctions()
@@ -174,7 +180,7 @@ def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
     callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
     callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
     callbacks.componentEnvironment = environment
-    if "PythonFMU" not in generation_tool:
+    if not _made_by_pythonfmu(generation_tool):
         addLoggerProxy(ctypes.byref(callbacks))
     return callbacks
 
@@ -207,7 +213,7 @@ class FmuSlave:
             with contextlib.chdir(os.getcwd()):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
                 self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
                                       unzipDirectory=self._folder.name)
-            self._fmu.instantiate(callbacks=_callbacks(key, description.generation_tool), loggingOn=True)
+            self._instantiate(_callbacks(key, description.generation_tool), _made_by_pythonfmu(description.generation_tool))
         except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
             self._unload()
             said = "; ".join(text for _, text in self.messages)
@@ -217,6 +223,20 @@ class FmuSlave:
         self._step = _STEP(self.addresses.do_step)
         self._setters = {kind: _MOVE(address) for kind, address in self.addresses.set.items()}
         self._getters = {kind: _MOVE(address) for kind, address in self.addresses.get.items()}
+
+    def _instantiate(self, callbacks: fmi2CallbackFunctions, by_pythonfmu: bool) -> None:
+        """Make the instance, as fmpy does but for the location of the resources: of all that is escaped in the URI of a path,
+        pythonfmu's binary knows spaces only, and ends the process where it does not find its files."""
+        location = Path(self._folder.name, "resources").absolute().as_uri()
+        if by_pythonfmu:
+            location = unquote(location)
+            if "%20" in location:  # the binary would read a space
+                raise ValueError(f"the temporary folder {self._folder.name} has %20 in its name: set TMPDIR to another one")
+        self._fmu.callbacks = callbacks
+        self._fmu.component = self._fmu.fmi2Instantiate(
+            self.name.encode(), fmi2CoSimulation, self._fmu.guid.encode(), location.encode(), ctypes.byref(callbacks), 0, 1)
+        if self._fmu.component is None:
+            raise ValueError("fmi2Instantiate returned no instance")
 
     def _find_addresses(self) -> Addresses:
         def address(function: str) -> int:
@@ -267,29 +287,40 @@ class FmuSlave:
         Raises:
             RuntimeError: a call failed.
         """
-        try:
+        with self._refusals_raised("the state cannot be read"):
             state = self._fmu.getFMUState()
             try:
                 return bytes(self._fmu.serializeFMUState(state))
             finally:
                 self._fmu.freeFMUState(state)
-        except FMICallException as error:
-            raise RuntimeError(f"{self.name}: the state cannot be read: {error}") from error
 
     def restore(self, content: bytes) -> None:
         """Take over a state of :meth:`state`.
 
         Raises:
-            RuntimeError: a call failed.
+            RuntimeError: a call failed, or the slave says that this is no state of its own.
         """
-        try:
+        with self._refusals_raised("the state cannot be restored"):
             state = self._fmu.deserializeFMUState(content)
             try:
                 self._fmu.setFMUState(state)
             finally:
                 self._fmu.freeFMUState(state)
+
+    @contextlib.contextmanager
+    def _refusals_raised(self, what: str) -> Iterator[None]:
+        """Raise a RuntimeError for a bad status, or for an error that is logged: pythonfmu's binary returns OK for both."""
+        earlier, self.messages = self.messages, []
+        reasons: list[str] = []
+        try:
+            yield
         except FMICallException as error:
-            raise RuntimeError(f"{self.name}: the state cannot be restored: {error}") from error
+            reasons.append(str(error))
+        finally:
+            reasons += [text for status, text in self.messages if status >= ERROR]
+            self.messages = earlier + self.messages
+        if reasons:
+            raise RuntimeError(f"{self.name}: {what}: {'; '.join(reasons)}")
 
     def reset(self) -> int:
         """Back to the state after instantiation."""

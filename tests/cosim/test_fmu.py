@@ -1,6 +1,9 @@
 """FMU files: a stranger's and our own, in both ways to carry out exchanges."""
 
 import gc
+import os
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -11,7 +14,7 @@ from orchestrator.core.errors import InputRefused, RunFailed
 from orchestrator.core.fmu_slave import FmuFile, read_description
 from orchestrator.core.reading import read_run
 from orchestrator.core.run import simulate
-from orchestrator.core.slave import BOOLEAN, INTEGER
+from orchestrator.core.slave import BOOLEAN, DISCARD, ERROR, INTEGER, OK
 from orchestrator.core.system import system_from
 from tests.cosim.mocks import Mock, inp, mass, out
 
@@ -123,6 +126,20 @@ def test_rollback_of_a_stranger(foreign):
     slave.free()
 
 
+def test_a_damaged_state_is_refused_and_a_sound_one_still_taken(rock_fmu):
+    """pythonfmu's binary returns OK for both; the FMU logs an error."""
+    slave = FmuFile(rock_fmu).instantiate("rock")
+    assert max(slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation()) == OK
+    state = slave.state()
+    with pytest.raises(RuntimeError, match=r"rock: the state cannot be restored: .*damaged"):
+        slave.restore(state[:-1] + bytes([state[-1] ^ 1]))
+    assert [status for status, _ in slave.messages] == [ERROR]
+    assert slave.step(0.0, 1e-3) == DISCARD
+    slave.restore(state)
+    assert slave.step(0.0, 1e-3) == OK
+    slave.free()
+
+
 @pytest.mark.parametrize("plain", [True, False])
 def test_a_strangers_failure_is_told_in_its_own_words(foreign, tmp_path, plain):
     with pytest.raises(RunFailed, match=r"b at t = 0\.5 s: the step by 0\.1 s failed \(Discard\): the damper is broken"):
@@ -163,6 +180,37 @@ def test_unpacked_files_are_removed(foreign, tmp_path, monkeypatch):
         simulate(strangers(foreign, parameters={"a": {"refuses": True}}), tmp_path / "run")
     gc.collect()
     assert list((tmp_path / "temporary").iterdir()) == []
+
+
+STEP = """
+import sys
+from pathlib import Path
+from orchestrator.core.fmu_slave import FmuFile
+slave = FmuFile(Path(sys.argv[1])).instantiate("one")
+print(max(slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation(), slave.step(0.0, 0.1)))
+slave.free()
+"""
+
+
+def test_any_name_of_the_temporary_folder_will_do(foreign, rock_fmu, tmp_path):
+    """pythonfmu's binary ends the process where it gets an escaped path, as URIs have."""
+    folder = tmp_path / "Müller #1 %41"
+    folder.mkdir()
+    for fmu in (foreign, rock_fmu):
+        done = subprocess.run([sys.executable, "-c", STEP, fmu], env=os.environ | {"TMPDIR": str(folder), "TEMP": str(folder)},
+                              capture_output=True, text=True, timeout=60, check=False)
+        assert (done.returncode, done.stdout) == (0, "0\n"), done.stderr
+    assert list(folder.iterdir()) == []
+
+
+def test_but_for_one_that_is_refused(rock_fmu, tmp_path, monkeypatch):
+    """Spaces are the only escaped characters that pythonfmu's binary knows: it takes this name for another."""
+    folder = tmp_path / "a%20b"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    with pytest.raises(InputRefused, match=r"a%20b.* has %20 in its name: set TMPDIR to another one"):
+        FmuFile(rock_fmu).instantiate("rock")
+    assert list(folder.iterdir()) == []
 
 
 def test_the_provenance_names_the_files(foreign, tmp_path):
