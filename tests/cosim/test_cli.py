@@ -122,7 +122,16 @@ def test_the_table_compares_with_paper_and_experiment_when_the_impact_is_over(ro
     assert peak[5] == "≈"
     assert float(peak[-2]) == pytest.approx(100 * (float(peak[4]) / 6.60 - 1), abs=1.0)
     assert "extrapolated to E_bar = 70.3" in result.stdout
-    assert result.stderr.count("built") == 0  # test_info has built them
+
+
+def test_fmus_that_are_missing_are_built_and_others_left_alone(rockshed, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKSHED_FMU_DIR", str(tmp_path / "dist"))
+    built = ["SandCushion.fmu", "FallingRock.fmu", "RBSMBeam.fmu"]
+    first = rockshed("run", "lab-impact", *SHORT)
+    assert [Path(line.split()[1]).name for line in first.stderr.splitlines() if line.startswith("built ")] == built
+    assert "built" not in rockshed("run", "lab-impact", *SHORT).stderr
+    (tmp_path / "dist/RBSMBeam.fmu").write_bytes(b"something old")
+    assert f"built {tmp_path / 'dist/RBSMBeam.fmu'}\n" in rockshed("run", "lab-impact", *SHORT).stderr
 
 
 def test_box_2_has_its_own_number_of_discs(rockshed, tmp_path):
