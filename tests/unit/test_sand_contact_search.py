@@ -69,8 +69,8 @@ def test_a_sheared_contact_holds_the_disc_across_rebuilds():
 
 def test_a_newcomer_in_the_list_leaves_the_others_their_springs():
     """A disc with a lower number comes down on the floor far away, and two more meet in the air."""
-    on_floor = {"base.y": 0.0, "rotation": "locked", "damping": 0.0}
-    sheared, pressed = (0.0, RADIUS - 1e-5), (1.0, RADIUS - 2e-5)
+    on_floor = {"base.y": 0.0, "gravity": 20.0, "rotation": "locked", "damping": 0.0}
+    sheared, pressed = (0.0, RADIUS - 1e-6), (1.0, RADIUS - 1e-6)
     others = [(-1.0, 2.2 * RADIUS), (-2.0, 0.5), (-2.0 + 2.4 * RADIUS, 0.5)]
     alone = discs_at([sheared, pressed], [(1e-3, 0.0), (0.01, 0.0)], parameters=on_floor)
     crowd = discs_at([*others, sheared, pressed], [(0.0, -1.0), (1.0, 0.0), (0.0, 0.0), (1e-3, 0.0), (0.01, 0.0)],
