@@ -6,20 +6,19 @@ from itertools import groupby, pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .clock import to_seconds
 from .loop import (
+    CHANNEL,
+    EXTREME,
+    MOVE,
     NOT_FINITE,
-    Buses,
-    Extremes,
-    Ledger,
-    Moves,
-    Program,
-    Steps,
-    advance_listed,
-    directory_of,
+    OPERATION,
+    Records,
+    Tables,
+    advance,
     first_not_finite,
+    is_bad,
     post,
     widen,
 )
@@ -68,42 +67,41 @@ def make_blocks(ends: Sequence[End]) -> dict[str, list[Block]]:
     return blocks
 
 
-def make_ledger(plan: Plan) -> Ledger:
-    """A ledger of all bonds, before its first entry."""
-    def joined(places: list[NDArray[np.int64]]) -> NDArray[np.int64]:
-        return np.concatenate([*places, np.zeros(0, np.int64)])
-
-    given = joined([bond.given for bond in plan.bonds])
-    return Ledger(given, joined([bond.seen for bond in plan.bonds]), joined([bond.force for bond in plan.bonds]),
-                  joined([bond.position for bond in plan.bonds]), *(np.zeros(given.size) for _ in range(5)))
+def make_channels(plan: Plan) -> Records:
+    """The channels of all bonds, before the first entry."""
+    channels = np.zeros(sum(bond.force.size for bond in plan.bonds), CHANNEL)
+    for name in ("given", "seen", "force", "position"):
+        channels[name] = np.concatenate([getattr(bond, name) for bond in plan.bonds] or [np.zeros(0, np.int64)])
+    return channels
 
 
-def make_extremes(plan: Plan) -> Extremes:
+def make_extremes(plan: Plan) -> Records:
     """Extremes of the watched outputs, before the first value."""
-    n = plan.watched.size
-    return Extremes(plan.watched, np.full(n, np.inf), np.full(n, -np.inf), np.zeros(n, np.int64), np.zeros(n, np.int64))
+    extremes = np.zeros(plan.watched.size, EXTREME)
+    extremes["place"], extremes["low"], extremes["high"] = plan.watched, np.inf, -np.inf
+    return extremes
 
 
 class State:
-    """What a run carries from exchange to exchange: both buses, the ledger, the extremes."""
+    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, the extremes."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
-        self.buses = Buses(np.zeros(len(plan.inputs)), np.zeros(len(plan.outputs)), plan.source)
+        self.inputs, self.outputs = np.zeros(len(plan.inputs)), np.zeros(len(plan.outputs))
         self.setters, self.getters = make_blocks(plan.inputs), make_blocks(plan.outputs)
-        self.ledger, self.extremes = make_ledger(plan), make_extremes(plan)
+        self.channels, self.extremes = make_channels(plan), make_extremes(plan)
 
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values. Returns the worst status."""
         worst = 0
         for block in self.setters.get(slave.name, []):
-            self.buses.inputs[block.places] = self.buses.outputs[self.buses.source[block.places]]
-            worst = max(worst, slave.set(block.references, self.buses.inputs[block.places], block.kind))
+            self.inputs[block.places] = self.outputs[self.plan.source[block.places]]
+            worst = max(worst, slave.set(block.references, self.inputs[block.places], block.kind))
         return worst
 
     def take(self, slave: Slave) -> int:
         """Get all exchanged outputs of a slave. Returns the worst status."""
-        return max((slave.get(block.references, self.buses.outputs[block.places], block.kind)
+        return max((slave.get(block.references, self.outputs[block.places], block.kind)
                     for block in self.getters.get(slave.name, [])), default=0)
 
     def not_finite(self, component: str) -> End | None:
@@ -111,16 +109,16 @@ class State:
         blocks = self.getters.get(component)
         if not blocks:
             return None
-        place = first_not_finite(self.buses.outputs, blocks[0].places.start, blocks[-1].places.stop)
+        place = first_not_finite(self.outputs, blocks[0].places.start, blocks[-1].places.stop)
         return self.plan.outputs[place] if place >= 0 else None
 
-    def open_ledger(self) -> None:
+    def open_accounts(self) -> None:
         """Take the values at the start as those from which work and extremes are counted."""
-        inputs, outputs, ledger = self.buses.inputs, self.buses.outputs, self.ledger
-        shown = ledger.seen >= 0
-        ledger.last_seen[shown] = inputs[ledger.seen[shown]]
-        ledger.last_force[:], ledger.last_position[:] = outputs[ledger.force], outputs[ledger.position]
-        widen(self.extremes, outputs, 0)
+        channels = self.channels
+        shown = channels["seen"] >= 0
+        channels["last_seen"][shown] = self.inputs[channels["seen"][shown]]
+        channels["last_force"], channels["last_position"] = self.outputs[channels["force"]], self.outputs[channels["position"]]
+        widen(self.extremes, self.outputs, 0)
 
 
 class Driver(Protocol):
@@ -143,10 +141,10 @@ class PlainDriver:
             origin = timing.start + n // schedule.period * schedule.period * schedule.exchange
             for operation in schedule.operations[n % schedule.period]:
                 status = self._operate(operation, origin)
-                if status > WARNING or status == NOT_FINITE:
+                if is_bad(status):
                     return Fault(n, operation, status)
-            post(state.ledger, state.buses.inputs, state.buses.outputs)
-            widen(state.extremes, state.buses.outputs, n + 1)
+            post(state.channels, state.inputs, state.outputs)
+            widen(state.extremes, state.outputs, n + 1)
         return None
 
     def _operate(self, operation: Operation, origin: int) -> int:
@@ -165,43 +163,34 @@ class CompiledDriver:
     def __init__(self, state: State, slaves: Mapping[str, Slave]) -> None:
         plan = state.plan
         self._operations = [operation for exchange in plan.schedule.operations for operation in exchange]
-        self._tables = (_program(plan), _steps(plan, slaves),
-                        _moves(plan, slaves, state.setters, state.buses.inputs.size, "set"),
-                        _moves(plan, slaves, state.getters, state.buses.outputs.size, "get"),
-                        state.buses, state.ledger, state.extremes)
-        self._directory = directory_of(*self._tables)
-        advance_listed(0, 0, self._directory)  # compiles, or loads what was compiled before
+        operations, moves = _calls(self._operations, state, slaves)
+        self._tables = Tables(
+            plan.timing.start, plan.schedule.exchange, np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
+            operations, moves, state.inputs, state.outputs, plan.source,
+            np.zeros(max(len(plan.inputs), len(plan.outputs)), np.int32), state.channels, state.extremes)
+        advance(self._tables, 0, 0)  # compiles, or loads what was compiled before
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
-        done, operation, status = advance_listed(first, count, self._directory)
-        return None if status != NOT_FINITE and status <= WARNING else Fault(first + done, self._operations[operation], status)
+        done, operation, status = advance(self._tables, first, count)
+        return Fault(first + done, self._operations[operation], status) if is_bad(status) else None
 
 
-def _table(values: Sequence[int]) -> NDArray[np.int64]:
-    return np.array(values, np.int64)
-
-
-def _program(plan: Plan) -> Program:
-    operations = [operation for exchange in plan.schedule.operations for operation in exchange]
-    first = np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64)
-    return Program(first, _table([int(o.action) for o in operations]), _table([plan.order.index(o.component) for o in operations]),
-                   _table([o.begin for o in operations]), _table([o.length for o in operations]),
-                   plan.timing.start, plan.schedule.exchange)
-
-
-def _steps(plan: Plan, slaves: Mapping[str, Slave]) -> Steps:
-    addresses = [slaves[name].addresses for name in plan.order]
-    return Steps(_table([a.do_step for a in addresses if a]), _table([a.instance for a in addresses if a]))
-
-
-def _moves(plan: Plan, slaves: Mapping[str, Slave], blocks: Mapping[str, list[Block]], size: int, direction: str) -> Moves:
-    owned = [(slaves[name].addresses, block) for name in plan.order for block in blocks.get(name, [])]
-    first = np.cumsum([0, *(len(blocks.get(name, [])) for name in plan.order)]).astype(np.int64)
-    return Moves(first, _table([getattr(a, direction)[block.kind] for a, block in owned]),
-                 _table([a.instance for a, _ in owned if a]), _table([block.references.ctypes.data for _, block in owned]),
-                 _table([block.references.size for _, block in owned]), _table([block.begin for _, block in owned]),
-                 _table([block.kind != REAL for _, block in owned]), np.zeros(size, np.int32))
+def _calls(planned: Sequence[Operation], state: State, slaves: Mapping[str, Slave]) -> tuple[Records, Records]:
+    """The tables of operations and of moves. The arrays of references that the moves point to belong to ``state``."""
+    operations, moves = [], list[tuple[int, ...]]()
+    for operation in planned:
+        addresses = slaves[operation.component].addresses
+        assert addresses is not None
+        first = len(moves)
+        if operation.action is not Action.STEP:
+            setting = operation.action is Action.SET
+            functions, blocks = (addresses.set, state.setters) if setting else (addresses.get, state.getters)
+            moves += [(functions[block.kind], addresses.instance, block.references.ctypes.data, block.references.size, block.begin,
+                       block.kind != REAL) for block in blocks.get(operation.component, [])]
+        operations.append((operation.action, addresses.instance, addresses.do_step, operation.begin, operation.length, first,
+                           len(moves)))
+    return np.array(operations, OPERATION), np.array(moves, MOVE)
 
 
 def make_driver(state: State, slaves: Mapping[str, Slave], plain: bool = False) -> Driver:

@@ -86,7 +86,7 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int]) -> None:
 
 def _settle(state: State, slaves: Mapping[str, Slave]) -> str:
     """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing."""
-    outputs = state.buses.outputs
+    outputs = state.outputs
     before = np.full_like(outputs, np.nan)
     for _ in range(_ROUNDS):
         _phase(slaves, state.take)

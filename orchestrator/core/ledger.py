@@ -22,7 +22,7 @@ class Accounts:
     """Work and coupling energy of each bond since the start (J)."""
 
     def __init__(self, plan: Plan, slaves: Mapping[str, Slave], state: State) -> None:
-        self._plan, self._slaves, self._ledger = plan, slaves, state.ledger
+        self._plan, self._slaves, self._book = plan, slaves, state.channels
         ends = np.cumsum([0, *(bond.force.size for bond in plan.bonds)])
         self._channels = [slice(a, b) for a, b in pairwise(ends)]
         self._at_start = [self._own_work(bond.work, plan.timing.seconds(0)) for bond in plan.bonds]
@@ -47,8 +47,8 @@ class Accounts:
     def values(self, at: float) -> NDArray[np.float64]:
         """Works and coupling energy of all bonds at a time (s), which is needed for messages only."""
         for i, (bond, channels) in enumerate(zip(self._plan.bonds, self._channels)):
-            taken = float(self._ledger.taken[channels].sum())
-            given_back = (float(self._ledger.given_back[channels].sum()) if bond.work is None
+            taken = float(self._book["taken"][channels].sum())
+            given_back = (float(self._book["given_back"][channels].sum()) if bond.work is None
                           else self._own_work(bond.work, at) - self._at_start[i])
             self._newest[3 * i:3 * i + 3] = taken, given_back, taken + given_back
             self._watch(bond.name, taken + given_back, at)

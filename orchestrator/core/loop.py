@@ -1,8 +1,7 @@
 """The exchange loop, compiled: calls the C functions of FMUs by their addresses, whatever the FMUs are.
 
 Everything that is compiled is in this file, because numba's cache notices changes of the file a function is in, and no others.
-All tables are flat arrays of int64 (addresses, places, ticks), values are float64. The global interpreter lock is kept: FMUs with
-Python inside need it.
+Addresses, places and ticks are int64, values are float64. The global interpreter lock is kept: FMUs with Python inside need it.
 """
 
 import math
@@ -11,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import carray, njit, types
+from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
@@ -19,133 +18,107 @@ from .clock import TICKS_PER_SECOND
 from .schedule import Action
 from .slave import WARNING
 
-Table = NDArray[np.int64]
+Records = NDArray[np.void]
 Floats = NDArray[np.float64]
 
 NOT_FINITE = -1
 """Outcome of an operation that brought a value that is no finite number."""
 
-_SET, _STEP, _GET = int(Action.SET), int(Action.STEP), int(Action.GET)
+_SET, _STEP = int(Action.SET), int(Action.STEP)
 _WARNING = WARNING
 _TICKS_PER_SECOND = float(TICKS_PER_SECOND)
 
 
-def _compile(function: Callable[..., Any], **options: Any) -> Any:
-    """Compile with numba and keep the result; without a place to keep it, compile anew in each process."""
-    try:
-        return njit(cache=True, error_model="numpy", **options)(function)
-    except RuntimeError:
-        return njit(error_model="numpy", **options)(function)
-
-
 def compiled(function: Callable[..., Any]) -> Any:
-    """Compile a function that makes no arrays: references to them need not be counted, which would cost 7 us an exchange."""
-    return _compile(function, _nrt=False)
+    """Compile with numba and keep the result; without a place to keep it, compile anew in each process.
+
+    Nothing is allocated, so arrays need no counted references; counting them would cost 7 us an exchange.
+    """
+    try:
+        return njit(cache=True, error_model="numpy", _nrt=False)(function)
+    except RuntimeError:
+        return njit(error_model="numpy", _nrt=False)(function)
 
 
-def compiled_with_references(function: Callable[..., Any]) -> Any:
-    """Compile a function that returns arrays."""
-    return _compile(function)
+def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
+    return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in reals.split()])
 
 
-class Program(NamedTuple):
-    """The schedule as tables: operations ``first[i]`` to ``first[i + 1]`` happen in exchange i of a period. Times in ticks."""
+OPERATION = _record("action instance do_step begin length first_move end_move")
+"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks, from the beginning of the period.
+first_move, end_move: rows in the table of moves, for any other action."""
 
-    first: Table
-    action: Table
-    component: Table
-    begin: Table
-    length: Table
+MOVE = _record("function instance references number begin whole")
+"""A bulk call that moves ``number`` values from place ``begin`` of a bus on. function, instance, references: addresses. whole: the
+values travel as 32-bit integers."""
+
+CHANNEL = _record("given seen force position", "last_seen last_force last_position taken given_back")
+"""A force of a power bond. Places as in :class:`orchestrator.core.plan.Bond`. taken, given_back: work (J) on the taker, and on the
+giver by what it was shown."""
+
+EXTREME = _record("place low_at high_at", "low high")
+"""Smallest and largest value of a watched output, and the exchanges after which they were reached."""
+
+
+class Tables(NamedTuple):
+    """Everything that the loop works on. Few arrays with many fields: taking an argument apart costs 0.25 us an array.
+
+    first: operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period. start, exchange: ticks.
+    inputs, outputs: the two buses. source: for each input, the place of the output that feeds it.
+    integers: buffer for values on their way as integers, as long as the longer bus.
+    """
+
     start: int
     exchange: int
-
-
-class Moves(NamedTuple):
-    """Bulk calls that move values: those of component c are ``first[c]`` to ``first[c + 1]``.
-
-    function, instance, references: addresses. ``number`` values from place ``begin`` of the bus on; ``whole`` where they travel as
-    32-bit integers, by way of the buffer ``integers``.
-    """
-
-    first: Table
-    function: Table
-    instance: Table
-    references: Table
-    number: Table
-    begin: Table
-    whole: Table
-    integers: NDArray[np.int32]
-
-
-class Steps(NamedTuple):
-    """Addresses of each component's doStep and of its instance."""
-
-    function: Table
-    instance: Table
-
-
-class Buses(NamedTuple):
-    """Values on their way: inputs, outputs, and for each input the place of the output that feeds it."""
-
+    first: NDArray[np.int64]
+    operations: Records
+    moves: Records
     inputs: Floats
     outputs: Floats
-    source: Table
-
-
-class Ledger(NamedTuple):
-    """Work through power bonds, one channel for each force. Places as in :class:`orchestrator.core.plan.Bond`.
-
-    taken, given_back: work (J) on the taker, and on the giver by what it was shown.
-    """
-
-    given: Table
-    seen: Table
-    force: Table
-    position: Table
-    last_seen: Floats
-    last_force: Floats
-    last_position: Floats
-    taken: Floats
-    given_back: Floats
-
-
-class Extremes(NamedTuple):
-    """Smallest and largest value of watched outputs, and the exchanges after which they were reached."""
-
-    place: Table
-    low: Floats
-    high: Floats
-    low_at: Table
-    high_at: Table
+    source: NDArray[np.int64]
+    integers: NDArray[np.int32]
+    channels: Records
+    extremes: Records
 
 
 @compiled
-def post(ledger: Ledger, inputs: Floats, outputs: Floats) -> None:
+def post(channels: Records, inputs: Floats, outputs: Floats) -> None:
     """Enter the work of one exchange.
 
     The taker moves under the force that it was given at the exchange: force times its own displacement. The giver sees the
     position jump from one value to the next while its force changes: the mean of both forces times the jump, which is exact
     for a spring.
     """
-    for i in range(ledger.given.size):
-        position = outputs[ledger.position[i]]
-        ledger.taken[i] += inputs[ledger.given[i]] * (position - ledger.last_position[i])
-        ledger.last_position[i] = position
-        if ledger.seen[i] >= 0:
-            seen, force = inputs[ledger.seen[i]], outputs[ledger.force[i]]
-            ledger.given_back[i] -= 0.5 * (force + ledger.last_force[i]) * (seen - ledger.last_seen[i])
-            ledger.last_seen[i], ledger.last_force[i] = seen, force
+    for i in range(channels.size):
+        channel = channels[i]
+        position = outputs[channel["position"]]
+        channel["taken"] += inputs[channel["given"]] * (position - channel["last_position"])
+        channel["last_position"] = position
+        if channel["seen"] >= 0:
+            seen, force = inputs[channel["seen"]], outputs[channel["force"]]
+            channel["given_back"] -= 0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
+            channel["last_seen"] = seen
+            channel["last_force"] = force
 
 
 @compiled
-def widen(extremes: Extremes, outputs: Floats, exchange: int) -> None:
+def widen(extremes: Records, outputs: Floats, exchange: int) -> None:
     """Enter the values after ``exchange`` exchanges into the extremes."""
-    for i in range(extremes.place.size):
-        value = outputs[extremes.place[i]]
-        if value > extremes.high[i]:
-            extremes.high[i], extremes.high_at[i] = value, exchange
-        if value < extremes.low[i]:
-            extremes.low[i], extremes.low_at[i] = value, exchange
+    for i in range(extremes.size):
+        extreme = extremes[i]
+        value = outputs[extreme["place"]]
+        if value > extreme["high"]:
+            extreme["high"] = value
+            extreme["high_at"] = exchange
+        if value < extreme["low"]:
+            extreme["low"] = value
+            extreme["low_at"] = exchange
+
+
+@compiled
+def is_bad(status: int) -> bool:
+    """Whether a run has to end at this status."""
+    return status > _WARNING or status == NOT_FINITE
 
 
 @compiled
@@ -188,121 +161,59 @@ def _call_step(_context, function, instance, time, step):  # type: ignore[no-unt
 
 
 @compiled
-def _give(buses: Buses, moves: Moves, component: int) -> int:
-    """Set all connected inputs of a component. Returns the worst status."""
-    worst = 0
-    for b in range(moves.first[component], moves.first[component + 1]):
-        begin, count = moves.begin[b], moves.number[b]
-        for i in range(begin, begin + count):
-            buses.inputs[i] = buses.outputs[buses.source[i]]
-        address = buses.inputs.ctypes.data + 8 * begin
-        if moves.whole[b]:
-            for i in range(begin, begin + count):
-                moves.integers[i] = int(buses.inputs[i])
-            address = moves.integers.ctypes.data + 4 * begin
-        worst = max(worst, _call_move(moves.function[b], moves.instance[b], moves.references[b], count, address))
-    return worst
+def _give(tables, move):  # type: ignore[no-untyped-def]
+    """Set connected inputs of a component to the newest values. Returns the status."""
+    begin, end = move["begin"], move["begin"] + move["number"]
+    for i in range(begin, end):
+        tables.inputs[i] = tables.outputs[tables.source[i]]
+    address = tables.inputs.ctypes.data + 8 * begin
+    if move["whole"]:
+        for i in range(begin, end):
+            tables.integers[i] = int(tables.inputs[i])
+        address = tables.integers.ctypes.data + 4 * begin
+    return _call_move(move["function"], move["instance"], move["references"], move["number"], address)
 
 
 @compiled
-def _take(buses: Buses, moves: Moves, component: int) -> int:
-    """Get all exchanged outputs of a component. Returns the worst status."""
-    worst = 0
-    for b in range(moves.first[component], moves.first[component + 1]):
-        begin, count = moves.begin[b], moves.number[b]
-        address = (moves.integers.ctypes.data + 4 * begin) if moves.whole[b] else (buses.outputs.ctypes.data + 8 * begin)
-        worst = max(worst, _call_move(moves.function[b], moves.instance[b], moves.references[b], count, address))
-        if moves.whole[b]:
-            for i in range(begin, begin + count):
-                buses.outputs[i] = float(moves.integers[i])
-    return worst
+def _take(tables, move):  # type: ignore[no-untyped-def]
+    """Get exchanged outputs of a component. Returns the status, or :data:`NOT_FINITE`."""
+    begin, end = move["begin"], move["begin"] + move["number"]
+    address = (tables.integers.ctypes.data + 4 * begin) if move["whole"] else (tables.outputs.ctypes.data + 8 * begin)
+    status = _call_move(move["function"], move["instance"], move["references"], move["number"], address)
+    if move["whole"]:
+        for i in range(begin, end):
+            tables.outputs[i] = float(tables.integers[i])
+    if status <= _WARNING and first_not_finite(tables.outputs, begin, end) >= 0:
+        return NOT_FINITE
+    return status
 
 
 @compiled
-def _operate(o, origin, program, steps, setters, getters, buses):  # type: ignore[no-untyped-def]
-    """Carry out operation ``o`` of a period that began at the tick ``origin``. Returns the FMI status."""
-    component = program.component[o]
-    if program.action[o] == _SET:
-        return _give(buses, setters, component)
-    if program.action[o] == _GET:
-        return _take(buses, getters, component)
-    time = float(origin + program.begin[o]) / _TICKS_PER_SECOND
-    return _call_step(steps.function[component], steps.instance[component], time, float(program.length[o]) / _TICKS_PER_SECOND)
+def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
+    """Carry out an operation of a period that began at the tick ``origin``. Returns the first bad status, or OK."""
+    if operation["action"] == _STEP:
+        time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
+        return _call_step(operation["do_step"], operation["instance"], time, float(operation["length"]) / _TICKS_PER_SECOND)
+    for m in range(operation["first_move"], operation["end_move"]):
+        status = _give(tables, tables.moves[m]) if operation["action"] == _SET else _take(tables, tables.moves[m])
+        if is_bad(status):
+            return status
+    return 0
 
 
 @compiled
-def advance(first, count, program, steps, setters, getters, buses, ledger, extremes):  # type: ignore[no-untyped-def]
+def advance(tables, first, count):  # type: ignore[no-untyped-def]
     """Carry out ``count`` exchanges from exchange number ``first`` on.
 
-    Returns (exchanges carried out, operation, status): the operation that ended the run early and its status, WARNING or less
-    if none did. :data:`NOT_FINITE` stands for a status of its own.
+    Returns (exchanges carried out, operation, status): the operation that ended the run early and its status, OK if none did.
     """
-    period = program.first.size - 1
+    period = tables.first.size - 1
     for n in range(first, first + count):
-        origin = program.start + n // period * period * program.exchange
-        for o in range(program.first[n % period], program.first[n % period + 1]):
-            status = _operate(o, origin, program, steps, setters, getters, buses)
-            if status > _WARNING:
+        origin = tables.start + n // period * period * tables.exchange
+        for o in range(tables.first[n % period], tables.first[n % period + 1]):
+            status = _operate(tables, tables.operations[o], origin)
+            if is_bad(status):
                 return n - first, o, status
-            if program.action[o] == _GET:
-                begin, end = getters.first[program.component[o]], getters.first[program.component[o] + 1]
-                if begin < end and first_not_finite(buses.outputs, getters.begin[begin],
-                                                    getters.begin[end - 1] + getters.number[end - 1]) >= 0:
-                    return n - first, o, NOT_FINITE
-        post(ledger, buses.inputs, buses.outputs)
-        widen(extremes, buses.outputs, n + 1)
+        post(tables.channels, tables.inputs, tables.outputs)
+        widen(tables.extremes, tables.outputs, n + 1)
     return count, 0, 0
-
-
-# --- one argument instead of forty-two: taking the tables apart would cost 10 us a call
-
-def _as_pointer(kind: Any) -> Any:
-    """Function that takes an address for a pointer to numbers of a kind."""
-    @_intrinsic
-    def pointer(_context, address):  # type: ignore[no-untyped-def]
-        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return builder.inttoptr(arguments[0], target.get_value_type(signature.return_type))
-        return types.CPointer(kind)(types.int64), generate
-    return pointer
-
-
-_to_reals, _to_integers, _to_words = _as_pointer(types.float64), _as_pointer(types.int64), _as_pointer(types.int32)
-
-
-@compiled_with_references
-def _reals(directory, entry):  # type: ignore[no-untyped-def]
-    return carray(_to_reals(directory[2 * entry]), (directory[2 * entry + 1],))
-
-
-@compiled_with_references
-def _integers(directory, entry):  # type: ignore[no-untyped-def]
-    return carray(_to_integers(directory[2 * entry]), (directory[2 * entry + 1],))
-
-
-@compiled_with_references
-def _words(directory, entry):  # type: ignore[no-untyped-def]
-    return carray(_to_words(directory[2 * entry]), (directory[2 * entry + 1],))
-
-
-@compiled_with_references
-def _listed_moves(d, at):  # type: ignore[no-untyped-def]
-    return Moves(_integers(d, at), _integers(d, at + 1), _integers(d, at + 2), _integers(d, at + 3), _integers(d, at + 4),
-                 _integers(d, at + 5), _integers(d, at + 6), _words(d, at + 7))
-
-
-def directory_of(*tables: NamedTuple) -> Table:
-    """Address and length of every array of the tables, one after the other; a number stands for itself. The tables must be kept."""
-    return np.array([entry for table in tables for value in table
-                     for entry in ((value.ctypes.data, value.size) if isinstance(value, np.ndarray) else (value, 0))], np.int64)
-
-
-@compiled_with_references
-def advance_listed(first, count, d):  # type: ignore[no-untyped-def]
-    """:func:`advance` with the tables that :func:`directory_of` has listed in ``d``, in the order of its arguments."""
-    program = Program(_integers(d, 0), _integers(d, 1), _integers(d, 2), _integers(d, 3), _integers(d, 4), d[10], d[12])
-    steps = Steps(_integers(d, 7), _integers(d, 8))
-    buses = Buses(_reals(d, 25), _reals(d, 26), _integers(d, 27))
-    ledger = Ledger(_integers(d, 28), _integers(d, 29), _integers(d, 30), _integers(d, 31), _reals(d, 32), _reals(d, 33),
-                    _reals(d, 34), _reals(d, 35), _reals(d, 36))
-    extremes = Extremes(_integers(d, 37), _reals(d, 38), _reals(d, 39), _integers(d, 40), _integers(d, 41))
-    return advance(first, count, program, steps, _listed_moves(d, 9), _listed_moves(d, 17), buses, ledger, extremes)

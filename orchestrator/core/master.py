@@ -66,7 +66,7 @@ class Master:
             RunFailed: a slave failed, or gave a value that is no finite number.
         """
         timing, stop = self._plan.timing, self._plan.timing.seconds(self._plan.timing.exchanges)
-        self._state.open_ledger()
+        self._state.open_accounts()
         self._recorder.record(0)
         while self.exchanges < timing.exchanges and not interruption.requested:
             due = min(self._recorder.next_after(self.exchanges), timing.exchanges)

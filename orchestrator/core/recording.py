@@ -70,7 +70,7 @@ class Recorder:
 
     def _values(self, at: float) -> NDArray[np.float64]:
         n = len(self._plan.recorded)
-        self._row[self._on_bus] = self._state.buses.outputs[self._places]
+        self._row[self._on_bus] = self._state.outputs[self._places]
         for name, blocks in self._blocks.items():
             slave = self._slaves[name]
             if max(slave.get(block.references, self._read[block.places], block.kind) for block in blocks) > WARNING:

@@ -90,12 +90,11 @@ class _Session:
 
     def _figures(self) -> list[Figure]:
         timing, extremes, figures = self.plan.timing, self.extremes, []
-        for i, place in enumerate(extremes.place):
-            end = self.plan.outputs[place]
-            for which, values, reached in (("maximum", extremes.high, extremes.high_at),
-                                           ("minimum", extremes.low, extremes.low_at)):
-                figures += [Figure(f"{end.name} {which}", float(values[i]), end.port.unit_name),
-                            Figure(f"{end.name} {which} at", timing.seconds(int(reached[i])), "s")]
+        for extreme in extremes:
+            end = self.plan.outputs[extreme["place"]]
+            for which, bound in (("maximum", "high"), ("minimum", "low")):
+                figures += [Figure(f"{end.name} {which}", float(extreme[bound]), end.port.unit_name),
+                            Figure(f"{end.name} {which} at", timing.seconds(int(extreme[bound + "_at"])), "s")]
         simulated = to_seconds(self.master.exchanges * timing.exchange)
         return [*figures, *self.accounts.figures(), Figure("simulated time", simulated, "s"),
                 Figure("exchanges", self.master.exchanges), Figure("wall time of the exchanges", self.master.wall_time, "s")]
