@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby, pairwise
 from typing import NamedTuple, Protocol
 
@@ -39,7 +40,7 @@ class Block:
     references: References
     begin: int
 
-    @property
+    @cached_property
     def places(self) -> slice:
         """Where the values lie."""
         return slice(self.begin, self.begin + self.references.size)

@@ -186,7 +186,10 @@ def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
 
 
 def _release_python(library: ctypes.CDLL) -> None:
-    """Let go what pythonfmu's binary would let go a second time when the process ends, which may abort it there."""
+    """Let go what pythonfmu's binary would let go a second time when the process ends, which may abort it there.
+
+    Runs when a slave is freed, or else when Python ends, which is before the library's own end.
+    """
     release = getattr(library, "finalizePythonInterpreter", None)
     if release is not None:
         release.restype = None
@@ -213,6 +216,7 @@ class FmuSlave:
             with contextlib.chdir(os.getcwd()):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
                 self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
                                       unzipDirectory=self._folder.name)
+            self._release = weakref.finalize(self, _release_python, self._fmu.dll)
             self._instantiate(_callbacks(key, description.generation_tool), _made_by_pythonfmu(description.generation_tool))
         except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
             self._unload()
@@ -338,7 +342,7 @@ class FmuSlave:
 
     def _unload(self) -> None:
         if self._fmu is not None:
-            _release_python(self._fmu.dll)
+            self._release()
             self._fmu.freeLibrary()
         self._folder.cleanup()
         sys.path[:] = [path for path in sys.path if not path.startswith(self._folder.name)]  # where an FMU's Python code was

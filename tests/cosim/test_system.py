@@ -114,3 +114,11 @@ def test_overrides_that_cannot_be_meant():
 def test_paths_stay_absolute(tmp_path):
     (tmp_path / "s.toml").write_text('name="x"\nexchange_step=1.0\nstop_time=1.0\ncomponents.a.fmu="/opt/a.fmu"')
     assert Path(load_system(tmp_path / "s.toml").components["a"].fmu) == Path("/opt/a.fmu")
+
+
+def test_the_example_in_the_documentation_is_a_system(tmp_path):
+    import orchestrator
+
+    text = (Path(orchestrator.__file__).parent / "README.md").read_text(encoding="utf-8")
+    (tmp_path / "example.toml").write_text(text.split("```toml\n")[1].split("```")[0])
+    assert load_system(tmp_path / "example.toml").bonds["rock"].work == "energy.work.rock"
