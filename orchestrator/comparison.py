@@ -61,12 +61,15 @@ class Row:
 
 
 def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
-    """The rows of the table, in the order in which a designer asks for them."""
+    """The rows of the table, in the order in which a designer asks for them; of a system without an impact, its summary."""
     if h.still_sinking(run):
         known = {}
     computed = {figure.name: float(figure.value) for figure in h.headlines(run)}
     found = [row for name, (label, scales) in _ROWS.items() if name in computed
              for row in _rows(label, scales, computed[name], known.get(name, h.Known()))]
+    if not found:
+        return [Row(figure.name, "" if figure.unit == "1" else figure.unit, figure.value if isinstance(figure.value, str)
+                    else f"{figure.value:.6g}") for figure in run.summary]
     return found + list(_couplings(run))
 
 

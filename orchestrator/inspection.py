@@ -14,6 +14,7 @@ from .core.errors import InputRefused, Problem
 from .core.fmu_slave import FmuFile, read_description
 from .core.plan import make_plan
 from .core.run import sources_of
+from .core.slave import REAL
 from .core.values import written
 from .job import Job
 from .screen import plain_table
@@ -88,7 +89,7 @@ def _range(port: Port) -> str:
     if port.items:
         return " | ".join(port.items)
     if port.minimum is None and port.maximum is None:
-        return ""
+        return "" if port.kind == REAL else port.kind
     low, high = ("" if bound is None else f"{bound:g}" for bound in (port.minimum, port.maximum))
     return f"{low} .. {high}"
 

@@ -37,12 +37,12 @@ def draw_all(run: Run, folder: Path, note: Callable[[str], None] = lambda text: 
         InputRefused: the folder cannot be written.
     """
     drawn = []
-    _make(folder)
     for picture in _pictures(run):
         file = folder / f"{picture.name}.png"
         if missing := picture.missing(run):
             note(f"no picture {picture.name}: the results have no {', '.join(missing)}")
             continue
+        _make(folder)
         try:
             picture.draw(file)
         except ComponentError as error:
