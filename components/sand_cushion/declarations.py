@@ -55,9 +55,8 @@ COLUMN = Column(*range(12))
 """Columns of the block of pairs: seven that describe the pairs, then energies, which add up over the blocks. The law leaves
 force to the right, force upwards, tangential and normal force in the first four."""
 
-Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling rock beam walls "
-                        "force_x force_y torque transmitted travelled beam_key")
-SUM = Sum(*range(14))
+Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling rock beam transmitted travelled beam_key")
+SUM = Sum(*range(10))
 """Running sums that a kernel keeps between two steps in ``sums``."""
 
 
@@ -156,6 +155,8 @@ LAYOUT = Layout(
             source="Sonoda et al. 1993, eq. (4)"),
         out("penetration", "depth of the rock's lowest point under the sand's surface at the start; negative above it", "m"),
         out("surface_height", "height of the sand's surface at the start, under the rock", "m"),
+        out("unrest", "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if that "
+            "is more; settling ends at 1e-6, or when settling.time is over"),
         stable_step(),
         out("energy.kinetic", "kinetic energy of the discs", "J"),
         out("energy.elastic", "elastic energy of all contacts, normal, tangential and rolling", "J"),

@@ -250,6 +250,8 @@ def settle(w, x, k):
         if s % _CHECK_EVERY == 0 and unrest(w, x, k) < _AT_REST:
             break
         slow_down(1.0 - _SETTLING_RATE * dt, w, x, k)
+    contact_forces(_INSTANT * dt, w, x, k)
+    w[V.unrest] = unrest(w, x, k)
     slow_down(0.0, w, x, k)
     return OK
 
