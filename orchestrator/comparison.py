@@ -142,10 +142,12 @@ def model(run: Run) -> str:
     if name is None:
         return ""
     values = {key: entry["value"] for key, entry in run.provenance["components"][name]["parameters"].items()}
-    rotation, factor = values["rotation"], float(values["stiffness_factor"])
-    kind = {("locked", False): "calibrated", ("free", True): "literal"}.get((rotation, factor == 1.0), "modified")
+    rotation, factor, rolling = values["rotation"], float(values["stiffness_factor"]), float(values["rolling_resistance"])
+    kind = {("locked", False, True): "calibrated", ("free", True, True): "literal"}.get((rotation, factor == 1.0, rolling == 0.0))
     modulus = float(values["modulus"]) / kgf * cm**2
-    return f"{kind} sand: rotation {rotation}, stiffness factor {factor:g}, E_bar {modulus:.1f} kgf/cm²"
+    resisted = f"rolling resistance {rolling:g}, " if rolling else ""
+    return (f"{kind or 'modified'} sand: rotation {rotation}, stiffness factor {factor:g}, {resisted}{values['packing']} packing, "
+            f"E_bar {modulus:.1f} kgf/cm²")
 
 
 def scheme(run: Run) -> str:

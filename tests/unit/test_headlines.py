@@ -27,7 +27,8 @@ def made_up(length=0.02, summary=(), **columns):
         "beam.energy.residual": zero, "beam.energy.work.contact": zero, "beam.position.y[1]": zero - 0.025,
         "coupling.sand_rock.energy": -1e2 * time, **columns}
     sand = {"base": "beam_discs", "base.y": 0.0, "beam.radius": 0.025, "disc.radius": 0.005, "rotation": "locked",
-            "stiffness_factor": 0.42, "modulus": 30.0 * KGF / 1e-4, "internal_step": 1e-5}
+            "stiffness_factor": 0.42, "modulus": 30.0 * KGF / 1e-4, "internal_step": 1e-5, "rolling_resistance": 0.0,
+            "packing": "square"}
     provenance = {
         "status": "complete", "name": "made-up", "system": {"description": "", "master": "sequential", "exchange_step": 1e-5},
         "components": {name: {"model": model, "parameters": {key: {"value": value} for key, value in parameters.items()}}
@@ -83,10 +84,13 @@ def test_a_rock_near_the_base_is_warned_of():
 def test_models_of_the_sand_have_their_names():
     run = made_up()
     sand = run.provenance["components"]["sand"]["parameters"]
-    assert comparison.model(run) == "calibrated sand: rotation locked, stiffness factor 0.42, E_bar 30.0 kgf/cm²"
+    assert comparison.model(run) == ("calibrated sand: rotation locked, stiffness factor 0.42, "
+                                     "square packing, E_bar 30.0 kgf/cm²")
     sand["rotation"]["value"], sand["stiffness_factor"]["value"] = "free", 1.0
     assert comparison.model(run).startswith("literal sand: rotation free")
-    sand["rotation"]["value"] = "locked"
+    sand["rolling_resistance"]["value"] = 0.3
+    assert comparison.model(run).startswith("modified sand: rotation free, stiffness factor 1, rolling resistance 0.3, ")
+    sand["rotation"]["value"], sand["rolling_resistance"]["value"] = "locked", 0.0
     assert comparison.model(run).startswith("modified sand")
 
 
