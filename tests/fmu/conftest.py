@@ -31,7 +31,7 @@ def fmus(probe, tmp_path_factory):
     return {name: build(name, destination=folder) for name in NAMES} | {"Probe": build_component(probe, destination=folder)}
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def python():
     """Run a script in a process of its own; return what it printed. It must end by itself, without error."""
     def run(script, *arguments, timeout=120, **environment):
