@@ -5,6 +5,7 @@ The life of an instance is that of an FMI slave: set parameters and inputs, :met
 """
 
 import hashlib
+import math
 import re
 import struct
 from collections.abc import Callable, Iterator, Mapping
@@ -230,7 +231,13 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
     if not np.isfinite(value):
         return [f"{name} = {value}: must be a finite number ({variable.description})"]
     if not low <= value <= high:
-        return [f"{name} = {value:.6g}{unit}: allowed is {low:g} to {high:g}{unit} ({variable.description})"]
+        return [f"{name} = {value:.6g}{unit}: allowed is {_range(low, high, unit)} ({variable.description})"]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
         return [f"{name} = {value}: must be a whole number ({variable.description})"]
     return []
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    if math.isinf(high):
+        return f"{low:g}{unit} or more"
+    return f"{high:g}{unit} or less" if math.isinf(low) else f"{low:g} to {high:g}{unit}"

@@ -155,8 +155,8 @@ LAYOUT = Layout(
             source="Sonoda et al. 1993, eq. (4)"),
         out("penetration", "depth of the rock's lowest point under the sand's surface at the start; negative above it", "m"),
         out("surface_height", "height of the sand's surface at the start, under the rock", "m"),
-        out("unrest", "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if that "
-            "is more; settling ends at 1e-6, or when settling.time is over"),
+        out("unrest", "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
+            "that is more; settling ends at 1e-6, or when settling.time is over"),
         stable_step(),
         out("energy.kinetic", "kinetic energy of the discs", "J"),
         out("energy.elastic", "elastic energy of all contacts, normal, tangential and rolling", "J"),

@@ -277,7 +277,7 @@ class _Planner:
             try:
                 starts[end.component].append((end.port, value_for(end.port, value)))
             except ValueError as error:
-                self._refuse(end.name, f"{value!r}: {error}", end.port.description)
+                self._refuse(end.name, f"{value!r}: {error}", f"set {end.name} ({end.port.description}) to another value")
         return starts
 
     def _give(self, given: dict[str, tuple[End, str, Value]], target: str, giver: str, value: Value, connected: set[str]) -> None:

@@ -24,8 +24,14 @@ def value_for(port: Port, value: Value) -> float | str:
     if not math.isfinite(number):
         raise ValueError("must be a finite number")
     if not low <= number <= high:
-        raise ValueError(f"allowed is {low:g} to {high:g}{unit}")
+        raise ValueError(f"allowed is {_range(low, high, unit)}")
     return number
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    if math.isinf(high):
+        return f"{low:g}{unit} or more"
+    return f"{high:g}{unit} or less" if math.isinf(low) else f"{low:g} to {high:g}{unit}"
 
 
 def _item(port: Port, value: Value) -> float:

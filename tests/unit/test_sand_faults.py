@@ -15,7 +15,7 @@ def test_all_bad_values_are_named_at_once():
         cushion({"disc.radius": -0.005, "modulus": math.nan, "depth": 0.0, "damping": -0.1, "packing": 4.0,
                  "rock.position.y": math.inf})
     assert len(refusal.value.problems) == 6
-    assert "disc.radius = -0.005 m: allowed is 1e-09 to inf m" in str(refusal.value)
+    assert "disc.radius = -0.005 m: allowed is 1e-09 m or more" in str(refusal.value)
     assert "modulus = nan: must be a finite number" in str(refusal.value)
 
 
