@@ -33,7 +33,7 @@ _HERE = Path(__file__).parent
 _COMPONENTS = Path(components.__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
 _PYTHONFMU_PARTS = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
-_SLAVE_PARTS = ("foundations.py", "isolation.py", "python_fmu.py")
+_SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "python_fmu.py")
 _NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
 
 Files = dict[str, bytes]

@@ -18,6 +18,7 @@ import numpy as np
 from numba import typeof
 
 from .foundations import Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
+from .interpreter import let_go_of_interpreter
 from .isolation import ForeignFoldersHidden
 
 LOG_CATEGORIES = {
@@ -95,6 +96,8 @@ class ComponentSlave(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        if self.resources is not None:
+            let_go_of_interpreter(self.resources)
         self._instance = instance = Instance(self.component, self.sizes)
         self._phase, self._stale, self._previewed = _Phase.INSTANTIATED, _Stale.STATE, False
         self._time, self._stop_time, self._compiled = math.nan, math.inf, False

@@ -1,5 +1,9 @@
 """Many instances, folders that come and go, and the cache of compiled kernels. Each test has its own process."""
 
+import sys
+
+import pytest
+
 CYCLES = """
 import gc, sys
 import psutil
@@ -30,6 +34,36 @@ assert sys.path == path
 
 def test_200_instances_one_after_the_other_leave_less_than_3_megabytes(fmus, python, tmp_path):
     assert int(python(CYCLES, fmus["FallingRock"], tmp_path / "with a space")) < 3_000_000
+
+
+LET_GO = """
+import ctypes, sys
+from tests.fmu.host import Host
+original, called = ctypes.CDLL, []
+
+class Recorded(original):
+    def __getattr__(self, name):
+        if name == "finalizePythonInterpreter":
+            called.append(self._name)
+        return super().__getattr__(name)
+
+first = Host(sys.argv[1])
+ctypes.CDLL = Recorded
+second = Host(sys.argv[1]).start()
+assert called == [second.fmu.dll._name], called
+ctypes.CDLL = original
+second.steps(3, 1e-4)
+first.start().steps(3, 1e-4)
+assert first.outputs() == second.outputs()
+first.close()
+second.close()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only the binary for Linux lets go twice")
+def test_each_instance_makes_its_binary_forget_the_interpreter(fmus, python):
+    """Otherwise the binary lets go of it twice when the process ends; valgrind shows the access to memory given back before."""
+    python(LET_GO, fmus["FallingRock"])
 
 
 MOVED = """
