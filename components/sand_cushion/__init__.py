@@ -24,6 +24,8 @@ COMPONENT = Component(
                             "{surface_height} m; raise the rock's position0.y by at least that much",
         kernel.BEAM_TOO_NARROW: "the beam is narrower than the cushion, whose box begins at box.left = {box.left} m and is "
                                 "box.width = {box.width} m wide: make the beam longer, move the box or set base = floor",
+        kernel.BEAM_GAPS: "there are gaps between the beam discs: beam.radius = {beam.radius} m is less than half the distance of "
+                          "their centres; set it to half that distance, or set base = beam_surface",
         kernel.BEAM_UNORDERED: "the beam discs must follow each other from left to right (beam.position.x[i] ascending)",
     },
     default_step=1e-5,

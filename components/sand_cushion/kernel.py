@@ -32,12 +32,14 @@ from .packing import pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED = 1, 2, 3, 4, 5
+LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS = 1, 2, 3, 4, 5, 6
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""
 _TOUCHING = 1e-9
 """Overlap (m) of rock and sand at the start that passes as touching."""
+_GAP = 0.02
+"""Gap between two beam discs, in diameters, that passes as none."""
 _SETTLING_STEP = 0.4
 """Step of the settling, in stable steps."""
 _SETTLING_RATE = 30.0
@@ -307,18 +309,26 @@ def surface_under_rock(w, x, k):
 
 
 @kernel
-def misplaced(w, x, k):
-    """Fault of the start: a beam that does not carry the whole cushion, or a rock inside the sand."""
-    n, m = disc_count(k), beam_count(k)
-    body = view(x, k, A.body)
-    if w[V.base] != FLOOR:
-        for b in range(n + 1, n + m):
-            if body[ROW * (b + 1)] <= body[ROW * b]:
-                return BEAM_UNORDERED
-        reach = w[V.beam_radius] * (1.0 + 1e-6)
-        if (body[ROW * (n + 1)] - reach > w[V.box_left]
-                or body[ROW * (n + m)] + reach < w[V.box_left] + w[V.box_width]):
-            return BEAM_TOO_NARROW
+def beam_fault(w, k):
+    """Fault of the start: a beam that does not carry the whole cushion."""
+    px = view(w, k, A.beam_position_x)
+    widest = 0.0
+    for b in range(px.size - 1):
+        if px[b + 1] <= px[b]:
+            return BEAM_UNORDERED
+        widest = max(widest, px[b + 1] - px[b])
+    if w[V.base] == BEAM_DISCS and widest > 2.0 * w[V.beam_radius] * (1.0 + _GAP):
+        return BEAM_GAPS
+    reach = w[V.beam_radius] * (1.0 + 1e-6)
+    if px[0] - reach > w[V.box_left] or px[px.size - 1] + reach < w[V.box_left] + w[V.box_width]:
+        return BEAM_TOO_NARROW
+    return OK
+
+
+@kernel
+def rock_fault(w, x, k):
+    """Fault of the start: a rock inside the sand."""
+    n, body = disc_count(k), view(x, k, A.body)
     for i in range(n):
         dx, dy = body[ROW * n] - body[ROW * i], body[ROW * n + 1] - body[ROW * i + 1]
         if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + body[ROW * i + RADIUS] - _TOUCHING:
@@ -330,14 +340,16 @@ def misplaced(w, x, k):
 def evaluate(w, x, k):
     """Outputs at the start; packs anew when the beam was moved since."""
     sums = view(x, k, A.sums)
-    if w[V.base] != FLOOR and sums[SUM.beam_key] != beam_key(w, k):
-        status = initialise(w, x, k)
+    if w[V.base] != FLOOR:
+        status = beam_fault(w, k)
+        if status == OK and sums[SUM.beam_key] != beam_key(w, k):
+            status = initialise(w, x, k)
         if status != OK:
             return status
     set_boundaries(0.0, w, x, k)
     w[V.surface_height] = surface_under_rock(w, x, k)
     w[V.penetration] = penetration(0.0, w)
-    status = misplaced(w, x, k)
+    status = rock_fault(w, x, k)
     if status != OK:
         return status
     if not rebuild(w, x, k):

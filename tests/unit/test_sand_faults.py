@@ -53,6 +53,13 @@ def test_beam_discs_out_of_order():
         cushion({**SMALL_BOX, "base": "beam_discs", "beam.position.x": np.array((0.025, 0.125, 0.075, 0.175))})
 
 
+def test_gaps_between_the_beam_discs():
+    spread = {"base": "beam_discs", "beam.radius": 0.02}
+    with pytest.raises(ComponentError, match=r"gaps between the beam discs: beam\.radius = 0\.02 m"):
+        cushion({**SMALL_BOX, **spread})
+    cushion({**SMALL_BOX, **spread, "base": "beam_surface", "box.left": 0.01})
+
+
 def test_more_neighbours_than_there_is_room_for():
     with pytest.raises(ComponentError, match="no more room for contact candidates"):
         discs_at([(1e-5 * i, 1e-5 * i * i) for i in range(60)])
