@@ -8,7 +8,7 @@ from .description import Port
 from .errors import InputRefused, Problem
 from .exchange import State
 from .plan import Plan
-from .slave import ERROR, STATUS_NAMES, WARNING, Slave, Source
+from .slave import ERROR, STATUS_NAMES, WARNING, Slave, Source, without_name
 
 _ROUNDS = 20
 """How often outputs are passed on at the start; a chain of components needs one round for each of them."""
@@ -52,7 +52,8 @@ def initialise(plan: Plan, slaves: Mapping[str, Slave], state: State, allow_unst
     unsettled = _settle(state, slaves) or before
     if bad := [end for name in plan.order if (end := state.not_finite(name)) is not None]:
         raise InputRefused([Problem(e.name, "is no finite number after the initialisation", "check the parameters") for e in bad])
-    warnings = [f"{name}: {text}" for name, slave in slaves.items() for status, text in slave.messages if status == WARNING]
+    warnings = [f"{name}: {without_name(name, text)}" for name, slave in slaves.items()
+                for status, text in slave.messages if status == WARNING]
     if unsettled:
         warnings.append(f"outputs at the start still change after {_ROUNDS} rounds of exchange, {unsettled} among them")
     unstable = [p for name in plan.order for p in _stability(plan, slaves[name])]
@@ -79,7 +80,7 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int]) -> None:
         reasons = [text for severity, text in slave.messages if severity >= ERROR]
         if status > WARNING or reasons:
             texts = reasons or [text for _, text in slave.messages] or [f"returned {STATUS_NAMES[status]} without a message"]
-            problems += [Problem(name, text) for text in dict.fromkeys(texts)]
+            problems += [Problem(name, without_name(name, text)) for text in dict.fromkeys(texts)]
     if problems:
         raise InputRefused(problems)
 

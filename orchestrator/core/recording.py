@@ -11,7 +11,7 @@ from .exchange import State, make_blocks
 from .ledger import Accounts
 from .plan import Plan
 from .results import Column
-from .slave import WARNING, Slave
+from .slave import WARNING, Slave, without_name
 
 
 class Sink(Protocol):
@@ -92,4 +92,4 @@ class Recorder:
 
 def last_words(slave: Slave) -> str:
     """What a slave logged last; nothing if it never did."""
-    return slave.messages[-1][1] if slave.messages else "without a message"
+    return without_name(slave.name, slave.messages[-1][1]) if slave.messages else "without a message"

@@ -8,6 +8,7 @@ The life of a slave: ``set`` parameters and inputs, ``setup_experiment``, ``ente
 as wanted, ``exit_initialisation``, then ``set``, ``step``, ``get`` over and over, ``terminate``, ``free``.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
@@ -116,3 +117,8 @@ class Source(Protocol):
         Raises:
             InputRefused: the instance cannot be made.
         """
+
+
+def without_name(name: str, text: str) -> str:
+    """A slave's message without the instance's name in front, which is told anyway wherever the message is shown."""
+    return re.sub(rf"^{re.escape(name)}( \([^)]*\))?: ", "", text)
