@@ -25,3 +25,12 @@ def stable_step() -> Variable:
 def substep_count(step, longest):
     """Number of equal parts of ``step`` (s) that are not longer than ``longest`` (s); at least 1."""
     return max(1, math.ceil(step / longest - _ROUNDING))
+
+
+@kernel
+def substep_length(step, count, longest):
+    """Length (s) of each of ``count`` equal parts of ``step`` (s): ``longest`` (s) itself if nothing but rounding is between them.
+
+    Some tools compute a step as the difference of two times. What is in its last digits then does not reach the results.
+    """
+    return longest if abs(step / longest - count) <= _ROUNDING else step / count

@@ -4,7 +4,7 @@ import math
 
 from ..compilation import kernel
 from ..component import OK
-from ..stepping import substep_count
+from ..stepping import substep_count, substep_length
 from .declarations import DISC, LAYOUT, SPHERE
 
 V = LAYOUT.scalar
@@ -76,7 +76,7 @@ def evaluate(w, x, k):
 def step(t, h, w, x, k):
     """Advance by h (s) with constant force and torque."""
     n = substep_count(h, w[V.internal_step])
-    dt = h / n
+    dt = substep_length(h, n, w[V.internal_step])
     moment_of_inertia = inertia(w)
     for _ in range(n):
         w[V.energy_work_contact] += move(w[V.mass], moment_of_inertia, w[V.gravity], w[V.force_x], w[V.force_y], w[V.torque], dt, w)

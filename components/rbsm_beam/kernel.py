@@ -3,7 +3,7 @@
 from ..compilation import kernel
 from ..component import OK
 from ..ports import view
-from ..stepping import substep_count
+from ..stepping import substep_count, substep_length
 from .chain import axial_energy, bending_energy, chain, deform, dissipation, hold, kinetic_energy, move, potential, reactions
 from .declarations import LAYOUT
 from .statics import rest, stable_step
@@ -45,7 +45,7 @@ def _place(pair, values):
 def step(t, h, w, x, k):
     """Advance by h (s) with constant forces and torques, the supports moving with constant velocity."""
     n = substep_count(h, w[V.internal_step])
-    advance(n, h / n, w, x, k)
+    advance(n, substep_length(h, n, w[V.internal_step]), w, x, k)
     return publish(w, x, k)
 
 

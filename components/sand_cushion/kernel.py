@@ -5,7 +5,7 @@ import math
 from ..compilation import kernel
 from ..component import OK
 from ..ports import view
-from ..stepping import substep_count
+from ..stepping import substep_count, substep_length
 from .contact_search import beam_count, disc_count, forget, is_stale, rebuild
 from .declarations import (
     ANGLE,
@@ -430,7 +430,7 @@ def penetration(ahead, w):
 def step(t, h, w, x, k):
     """Advance by h (s)."""
     n = substep_count(h, w[V.internal_step])
-    dt = h / n
+    dt = substep_length(h, n, w[V.internal_step])
     linear, mean = w[V.kinematics] == LINEAR, w[V.forces] == MEAN
     kinetic, potential = 0.0, 0.0
     for s in range(n):

@@ -41,14 +41,15 @@ class Monolith:
     sand: Instance
     beam: Instance
     dt: float
-    beam_steps: int
+    beam_step: float
     history: NDArray[np.float64]
 
     def run(self) -> None:
         """All steps."""
         inertia = float(rock_kernel.inertia(self.rock.w))
         rock, sand, beam = self.rock, self.sand, self.beam
-        status = _run(self.dt, self.beam_steps, inertia, rock.w, sand.w, sand.x, sand.k, beam.w, beam.x, beam.k, self.history)
+        status = _run(self.dt, round(self.dt / self.beam_step), self.beam_step, inertia, rock.w, sand.w, sand.x, sand.k,
+                      beam.w, beam.x, beam.k, self.history)
         assert status == 0, f"stopped with status {status}"
 
     def column(self, name: str) -> NDArray[np.float64]:
@@ -74,7 +75,7 @@ def from_system(system: System, stop_time: float, dt: float = 1e-5, beam_step: f
         sand[f"rock.{quantity}"] = rock[quantity]
         sand[f"beam.{quantity}"] = beam[quantity]
     sand.initialise()
-    return Monolith(rock, sand, beam, dt, round(dt / beam_step), np.zeros((round(stop_time / dt), len(COLUMNS))))
+    return Monolith(rock, sand, beam, dt, beam_step, np.zeros((round(stop_time / dt), len(COLUMNS))))
 
 
 def _sizes(name: str, system: System) -> Mapping[str, int]:
@@ -83,7 +84,7 @@ def _sizes(name: str, system: System) -> Mapping[str, int]:
 
 
 @kernel
-def _run(dt, beam_steps, inertia, rw, sw, sx, sk, bw, bx, bk, history):
+def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history):
     n, m = contact_search.disc_count(sk), contact_search.beam_count(sk)
     body, load, sums = view(sx, sk, SA.body), view(sx, sk, SA.load), view(sx, sk, SA.sums)
     fx, fy, torque = view(bw, bk, BA.force_x), view(bw, bk, BA.force_y), view(bw, bk, BA.torque)
@@ -105,7 +106,7 @@ def _run(dt, beam_steps, inertia, rw, sw, sx, sk, bw, bx, bk, history):
             at = FORCE_ROW * (n + 1 + b)
             fx[b], fy[b], torque[b] = load[at], load[at + 1], load[at + 2] * sw[SV.beam_radius]
         before = bw[BV.energy_work_contact]
-        beam_kernel.advance(beam_steps, dt / beam_steps, bw, bx, bk)
+        beam_kernel.advance(beam_steps, beam_step, bw, bx, bk)
         status = beam_kernel.publish(bw, bx, bk)
         if status != 0:
             return status

@@ -63,7 +63,7 @@ def test_internal_steps_are_the_same_however_they_are_called(calls):
     for count in range(100):
         whole.step(count * 1e-5, 1e-5)
         for _ in range(calls):
-            kernel.advance(10 // calls, 1e-5 / 10, parts.w, parts.x, parts.k)
+            kernel.advance(10 // calls, 1e-6, parts.w, parts.x, parts.k)
         kernel.publish(parts.w, parts.x, parts.k)
     for name in ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "support.force.y"):
         assert np.array_equal(whole[name], parts[name])
