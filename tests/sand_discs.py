@@ -17,17 +17,21 @@ Pairs = Sequence[tuple[float, float]] | NDArray[np.float64]
 RADIUS = 0.005
 """Radius of a sand disc by default (m)."""
 EMPTY_SPACE = {"base": "floor", "gravity": 0.0, "settling.time": 0.0, "box.left": -5.0, "box.width": 10.0, "base.y": -5.0,
-               "rock.position.x": 0.0, "rock.position.y": 50.0, "rotation": "free", "stiffness_factor": 1.0}
+               "rock.position.y": 50.0, "rotation": "free", "stiffness_factor": 1.0}
 """No gravity; floor, walls and rock far away: discs on their own."""
-SMALL_BOX = {"base": "floor", "box.left": 0.0, "box.width": 0.1, "rock.position.x": 0.05, "rock.position.y": 1.0}
+SMALL_BOX = {"base": "floor", "box.left": 0.0, "box.width": 0.1, "rock.position.y": 1.0}
 """A box ten discs wide on the floor, the rock out of the way; the beam discs, if any, begin at its left wall."""
 
 
 def cushion(parameters: Mapping[str, Any], discs: int = 60, elements: int = 4) -> Instance:
-    """An initialised cushion of ``discs`` sand discs."""
+    """An initialised cushion of ``discs`` sand discs; the rock is in the middle of the box and fits, unless told otherwise."""
     instance = COMPONENT.instance(discs=discs, elements=elements)
     for name, value in parameters.items():
         instance[name] = value
+    if "rock.position.x" not in parameters:
+        instance["rock.position.x"] = instance["box.left"] + 0.5 * instance["box.width"]
+    if "rock.radius" not in parameters:
+        instance["rock.radius"] = min(instance["rock.radius"], 0.495 * instance["box.width"])
     instance.initialise()
     return instance
 

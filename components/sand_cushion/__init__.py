@@ -22,6 +22,11 @@ COMPONENT = Component(
                          "a stable step of {stable_step} s; reduce internal_step or the exchange step",
         kernel.ROCK_INSIDE: "the rock starts inside the sand: its lowest point lies {penetration} m under the surface at "
                             "{surface_height} m; raise the rock's position0.y by at least that much",
+        kernel.ROCK_BESIDE: "the rock starts in or behind a side wall: with its radius of {rock.radius} m at x = "
+                            "{rock.position.x} m it does not fit into the box from {box.left} m on, {box.width} m wide; "
+                            "move the rock or widen the box",
+        kernel.DISC_TOO_WIDE: "a sand disc of radius {disc.radius} m (spread {disc.spread}) does not fit into the box, which is "
+                              "{box.width} m wide: make the discs smaller or the box wider",
         kernel.BEAM_TOO_NARROW: "the beam is narrower than the cushion, whose box begins at box.left = {box.left} m and is "
                                 "box.width = {box.width} m wide: make the beam longer, move the box or set base = floor",
         kernel.BEAM_GAPS: "there are gaps between the beam discs: beam.radius = {beam.radius} m is less than half the distance of "

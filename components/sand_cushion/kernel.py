@@ -32,7 +32,7 @@ from .packing import pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS = 1, 2, 3, 4, 5, 6
+LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE = range(1, 9)
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""
@@ -263,6 +263,8 @@ def initialise(w, x, k):
     """Pack the discs and let them settle."""
     n = disc_count(k)
     w[V.stable_step] = stable_step_of(w)
+    if 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) > w[V.box_width] * (1.0 + _GAP):
+        return DISC_TOO_WIDE
     for q in range(x.size):
         x[q] = 0.0
     set_laws(w, x, k)
@@ -327,8 +329,11 @@ def beam_fault(w, k):
 
 @kernel
 def rock_fault(w, x, k):
-    """Fault of the start: a rock inside the sand."""
+    """Fault of the start: a rock inside the sand or in a side wall. The walls are planes without an upper end."""
     n, body = disc_count(k), view(x, k, A.body)
+    if (w[V.rock_position_x] - w[V.rock_radius] < w[V.box_left] - _TOUCHING
+            or w[V.rock_position_x] + w[V.rock_radius] > w[V.box_left] + w[V.box_width] + _TOUCHING):
+        return ROCK_BESIDE
     for i in range(n):
         dx, dy = body[ROW * n] - body[ROW * i], body[ROW * n + 1] - body[ROW * i + 1]
         if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + body[ROW * i + RADIUS] - _TOUCHING:

@@ -30,7 +30,8 @@ WIDTHS = {370: 0.37, 10_000: 1.0}
 def stirred_cushion(discs: int) -> Instance:
     """A settled square packing on the floor between side walls, given random velocities; energy bookkeeping is always on."""
     sand = COMPONENT.instance(discs=discs)
-    for name, value in {"base": "floor", "box.left": 0.0, "box.width": WIDTHS[discs], "rock.position.y": 50.0}.items():
+    for name, value in {"base": "floor", "box.left": 0.0, "box.width": WIDTHS[discs],
+                        "rock.position.x": 0.5 * WIDTHS[discs], "rock.position.y": 50.0}.items():
         sand[name] = value
     sand.initialise()
     body = sand.state("body").reshape(-1, ROW)

@@ -37,7 +37,7 @@ def test_a_rock_inside_the_sand():
 
 def test_a_rock_that_touches_the_sand_is_no_fault():
     surface = cushion(SMALL_BOX)["surface_height"]
-    cushion({**SMALL_BOX, "rock.position.x": 0.055, "rock.position.y": surface + 0.0495})
+    cushion({**SMALL_BOX, "rock.radius": 0.04, "rock.position.x": 0.055, "rock.position.y": surface + 0.04})
 
 
 @pytest.mark.parametrize("box", [{"box.left": -0.01, "box.width": 0.1}, {"box.left": 0.15, "box.width": 0.1}], ids=str)
@@ -51,6 +51,17 @@ def test_a_beam_narrower_than_the_cushion(base, box):
 def test_beam_discs_out_of_order():
     with pytest.raises(ComponentError, match="from left to right"):
         cushion({**SMALL_BOX, "base": "beam_discs", "beam.position.x": np.array((0.025, 0.125, 0.075, 0.175))})
+
+
+@pytest.mark.parametrize("place", [-1.0, 0.02, 0.08, 0.3])
+def test_a_rock_in_or_behind_a_side_wall(place):
+    with pytest.raises(ComponentError, match=r"side wall.*radius of 0\.0495 m at x = .*box from 0 m on, 0\.1 m wide"):
+        cushion({**SMALL_BOX, "rock.position.x": place, "rock.radius": 0.0495})
+
+
+def test_discs_wider_than_the_box():
+    with pytest.raises(ComponentError, match=r"disc of radius 0\.06 m.*0\.1 m wide"):
+        cushion({**SMALL_BOX, "disc.radius": 0.06}, discs=1)
 
 
 def test_gaps_between_the_beam_discs():
