@@ -60,7 +60,7 @@ class Accounts:
 
     def _watch(self, bond: str, energy: float, at: float) -> None:
         alarm = self._plan.system.energy_alarm
-        if alarm is None or self._reference is None or bond in self._alarmed or abs(energy) <= alarm.share * abs(self._reference):
+        if alarm is None or not self._reference or bond in self._alarmed or abs(energy) <= alarm.share * abs(self._reference):
             return
         self._alarmed.add(bond)
         self.warnings.append(f"bond {bond}: the coupling energy {energy:.6g} J exceeds {alarm.share:.3g} of the reference "
