@@ -187,10 +187,9 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
 def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
     """Draw the figures, then show the table or its JSON; of a run that failed, only where its results are."""
     from . import comparison
-    from .cases.registry import known_of
 
     figures = _draw(done, done.folder / "figures", screen) if with_figures else []
-    known, warnings = known_of(done.provenance), comparison.warnings(done)
+    known, warnings = comparison.known_of(done), comparison.warnings(done)
     for text in warnings:
         screen.warn(text)
     if screen.as_json:
@@ -205,9 +204,8 @@ def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
 
 def _show_table(done: "Run", screen: "Screen") -> None:
     from . import comparison
-    from .cases.registry import known_of
 
-    known = known_of(done.provenance)
+    known = comparison.known_of(done)
     for line in comparison.caption(done):
         screen.say(line)
     screen.show("", comparison.table(done, known), "")

@@ -9,6 +9,7 @@ from rich.table import Table
 from components.units import cm, kgf, kN, mm, ms
 
 from . import headlines as h
+from .cases.registry import changes_of, references_of
 from .core.reading import Run
 from .screen import plain_table
 
@@ -60,6 +61,11 @@ class Row:
     experiment_deviation: float | None = None
 
 
+def known_of(run: Run) -> Mapping[str, h.Known]:
+    """What a run is compared with: nothing if it ended before the rock had come to a stop, or is not the one others know of."""
+    return {} if h.still_sinking(run) else references_of(run.provenance).known
+
+
 def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
     """The rows of the table, in the order in which a designer asks for them; of a system without an impact, its summary."""
     if h.still_sinking(run):
@@ -107,11 +113,12 @@ def _couplings(run: Run) -> Iterator[Row]:
 
 def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
     """What a reader has to know of the figures: where references that are only about right (≈) come from, what is cut off."""
+    remarks = list(references_of(run.provenance).remarks)
     if h.still_sinking(run):
-        return [_TOO_SHORT]
+        return [*remarks, _TOO_SHORT]
     found = [f"≈ {who}: {reference.note}" for entry in known.values()
              for who, reference in (("paper", entry.paper), ("experiment", entry.experiment)) if reference and reference.note]
-    return list(dict.fromkeys(found)) + ([_STILL] if h.still_in_contact(run) else [])
+    return remarks + list(dict.fromkeys(found)) + ([_STILL] if h.still_in_contact(run) else [])
 
 
 def warnings(run: Run) -> list[str]:
@@ -129,11 +136,11 @@ def warnings(run: Run) -> list[str]:
 
 
 def caption(run: Run) -> list[str]:
-    """What was run, in three short lines: case and how it was changed; model of the sand; exchange and steps."""
+    """What was run, in short lines: case; how it was changed, if it was; model of the sand; exchange and steps."""
     facts = run.provenance
-    changed = ", ".join(f"{name} = {value}" for name, value in facts.get("changed", {}).items())
-    return [f"{facts['name']}{' with ' if changed else ''}{changed}: {facts['system']['description']}".removesuffix(": "),
-            *filter(None, [model(run)]), scheme(run)]
+    changed = ", ".join(f"{name} = {value}" for name, value in changes_of(facts).items())
+    return [f"{facts['name']}: {facts['system']['description']}".removesuffix(": "),
+            *filter(None, [changed and f"changed: {changed}", model(run)]), scheme(run)]
 
 
 def model(run: Run) -> str:

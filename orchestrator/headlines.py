@@ -4,8 +4,8 @@ The figures follow from a run's results alone, whatever system it was: component
 figure whose component or column is missing is left out.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from .core.results import Figure
@@ -52,6 +52,14 @@ class Known:
 
     paper: Reference | None = None
     experiment: Reference | None = None
+
+
+@dataclass(frozen=True)
+class References:
+    """What others found for a run, by the name of the figure, and why something is not compared."""
+
+    known: Mapping[str, Known] = field(default_factory=dict)
+    remarks: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,17 @@
 """The ready-made cases by name: which components they need, in which sizes, and how the system is made from their FMUs."""
 
+import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, partial
 from typing import Any, cast
+
+from components.catalogue import component
 
 from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
-from ..core.system import System
-from ..headlines import Known
+from ..core.system import System, Value
+from ..headlines import References
 from . import sonoda1993
 
 Sizes = Mapping[str, Mapping[str, int]]
@@ -23,7 +26,7 @@ class Case:
     sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
     couplings: schemes of exchange by name, the default first, with a description.
     make(fmus, sizes, coupling): the system; ``fmus`` are the files of the FMUs by component.
-    known: what others found, by the name of the figure.
+    references(changed): what others found, for a run with other values or sizes (by ``component.name``).
     """
 
     name: str
@@ -33,7 +36,7 @@ class Case:
     couplings: Mapping[str, str]
     make: Callable[[Mapping[str, str], Sizes, str], System]
     one_size: tuple[str, ...] = ()
-    known: Mapping[str, Known] = field(default_factory=dict)
+    references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
 
 
 _OTHER_NAMES = {"lab-impact-4": "lab-impact"}
@@ -59,10 +62,50 @@ def case(name: str) -> Case:
     return found
 
 
-def known_of(facts: Mapping[str, Any]) -> Mapping[str, Known]:
-    """What others found for the case that a run's provenance names; nothing if it names none."""
+def references_of(facts: Mapping[str, Any]) -> References:
+    """What others found for the case that a run's provenance names, as far as the run is theirs; nothing if it names none."""
     found = cases().get(facts.get("case", ""))
-    return found.known if found else {}
+    if found is None:
+        return References()
+    return found.references({name: value for name, value in changes_of(facts).items() if name not in System.model_fields})
+
+
+def changes_of(facts: Mapping[str, Any]) -> dict[str, Value]:
+    """Values, keys of the system and sizes, by ``component.name``, in which a run differs from its case; of a system file, what
+    was given with the command."""
+    given, chosen = dict(facts.get("changed", {})), cases().get(facts.get("case", ""))
+    if chosen is None:
+        return given
+    own = {name: component(model).with_sizes(chosen.sizes.get(name)) for name, model in chosen.models.items()}
+    sizes = {owner: {**own[owner], **built} for owner, built in facts.get("sizes", {}).items()}
+    system = chosen.make(chosen.models, {**own, **sizes}, facts.get("coupling", next(iter(chosen.couplings))))
+    others = {f"{owner}.{size}": number for owner, built in sizes.items() for size, number in built.items()
+              if number != own[owner].get(size)}
+    return {name: value for name, value in given.items() if not _same(value, _own_value(chosen, system, name))} | others
+
+
+def _own_value(chosen: Case, system: System, name: str) -> Value | None:
+    """The value of a parameter or of a shared value in a case, from its system or else as the component declares it."""
+    if name in System.model_fields:
+        return cast(Value | None, getattr(system, name))
+    shared = next((entry.value for key, entry in system.shared.items() if name == key or name in entry.targets), None)
+    owner, _, port = name.partition(".")
+    if shared is not None or owner not in chosen.models:
+        return shared
+    if port in system.components[owner].parameters:
+        return system.components[owner].parameters[port]
+    declared = next((v for v in component(chosen.models[owner]).layout.ordered if v.name == port), None)
+    if declared is None:
+        return None
+    start = declared.start_at(0, {})
+    return declared.choices[int(start) - 1] if declared.choices else start
+
+
+def _same(one: Value, other: Value | None) -> bool:
+    try:
+        return other is not None and math.isclose(float(one), float(other), rel_tol=1e-9)
+    except ValueError:
+        return str(one) == str(other)
 
 
 def _laboratory(test: sonoda1993.Test) -> Case:
@@ -80,4 +123,4 @@ def _laboratory(test: sonoda1993.Test) -> Case:
         couplings={"paper": "sand first, inputs held, exchange every 0.01 ms",
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
                    "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
-        make=make, one_size=("sand.elements", "beam.elements"), known=sonoda1993.known_of(test))
+        make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test))

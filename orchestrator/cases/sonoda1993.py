@@ -3,7 +3,7 @@
 import csv
 import math
 from bisect import bisect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -12,8 +12,8 @@ from typing import Literal
 from components.units import cm, kgf
 
 from ..core.schedule import Scheme
-from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System
-from ..headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_TRANSMITTED, PENETRATION, Known, Reference
+from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System, Value
+from ..headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_TRANSMITTED, PENETRATION, Known, Reference, References
 
 _DATA = Path(__file__).parent / "data"
 
@@ -103,6 +103,9 @@ BOX_WIDTH = {1: 37 * cm, 2: 45 * cm}
 _GAP = 0.5e-3
 """Distance (m) between ball and sand at the start."""
 
+_DAMPING = 0.2
+"""Damping constant h of the sand in the paper's analysis of the tests (table 3)."""
+
 DEFAULT_TEST = 4
 """The test that fig. 17 shows, and ``lab-impact`` computes."""
 BEAM_ENERGY = {4: 13 * kgf * cm, 10: 40 * kgf * cm}
@@ -190,17 +193,64 @@ def lab_bonds() -> dict[str, PowerBond]:
 
 def known_of(test: Test) -> dict[str, Known]:
     """What the paper gives to compare with the computation of a test, by the name of the figure."""
-    measured = BEAM_ENERGY.get(test.number)
+    measured, computed = BEAM_ENERGY.get(test.number), _analysis(test.modulus, _DAMPING)
     return {
-        PEAK_TRANSMITTED: Known(_trend(test.modulus, lambda row: row.peak_force), Reference(test.peak_force)),
-        PENETRATION: Known(_trend(test.modulus, lambda row: row.penetration)),
+        PEAK_TRANSMITTED: Known(computed[PEAK_TRANSMITTED].paper, Reference(test.peak_force)),
+        PENETRATION: computed[PENETRATION],
         BEAM_ENERGY_FROM_STRAIN: Known(experiment=Reference(measured, "read from fig. 17 or 18") if measured else None),
     }
 
 
-def _trend(modulus: float, value: Callable[[TableFiveRow], float], damping: float = 0.2) -> Reference:
-    """The paper's own result for another modulus: a power law through the two nearest rows of table 5."""
+_SAND = ("sand.modulus", "sand.damping")
+"""What the paper varies in table 5 for the system of the tests."""
+_TESTED = ("box.", "rock.", "beam.", "base.y", "depth", "disc.radius", "unit_weight", "gravity")
+"""Beginnings of the sand's parameters that describe the test; those of :data:`_SUPPORT` are whole names. The others are choices
+of the model."""
+_SUPPORT = ("base", "walls")
+
+
+def references(test: Test, changed: Mapping[str, Value]) -> References:
+    """What is known of a test that is computed with other values or sizes, by ``component.name``.
+
+    Steps and choices of the sand's model leave it that test. Another sand is no longer the experiment's, but in table 5 if its
+    damping constant is. With anything else another system is computed.
+    """
+    if others := [name for name in changed if _of_the_test(name)]:
+        return References(remarks=[f"not compared: {_differs(others)}"])
+    varied = [name for name in _SAND if name in changed]
+    if not varied:
+        return References(known_of(test))
+    modulus, damping = float(changed.get(_SAND[0], test.modulus)), float(changed.get(_SAND[1], _DAMPING))
+    remarks = [f"not compared with the experiment: {_differs(varied)}"]
+    given = sorted({row.damping for row in table_5()})
+    if damping not in given:
+        return References(remarks=[*remarks, f"not compared with the paper: its table 5 has damping constants h of "
+                                   f"{', '.join(map(str, given))}, not {damping:g}"])
+    return References(_analysis(modulus, damping), remarks)
+
+
+def _of_the_test(name: str) -> bool:
+    owner, _, port = name.partition(".")
+    if port == "internal_step" or name in _SAND:
+        return False
+    return owner != "sand" or port in (*_SUPPORT, "discs", "elements") or port.startswith(_TESTED)
+
+
+def _differs(names: Sequence[str]) -> str:
+    return f"{', '.join(names)} {'differs' if len(names) == 1 else 'differ'} from the test"
+
+
+def _analysis(modulus: float, damping: float) -> dict[str, Known]:
+    """What the paper computed, or would have."""
+    return {PEAK_TRANSMITTED: Known(_trend(modulus, damping, lambda row: row.peak_force)),
+            PENETRATION: Known(_trend(modulus, damping, lambda row: row.penetration))}
+
+
+def _trend(modulus: float, damping: float, value: Callable[[TableFiveRow], float]) -> Reference:
+    """The paper's own result; for a modulus that is not in table 5, from a power law through the two nearest rows."""
     rows = sorted((row for row in table_5() if row.damping == damping), key=lambda row: row.modulus)
+    if (printed := next((row for row in rows if math.isclose(row.modulus, modulus, rel_tol=1e-3)), None)) is not None:
+        return Reference(value(printed))
     above = min(max(1, bisect([row.modulus for row in rows], modulus)), len(rows) - 1)
     low, high = rows[above - 1], rows[above]
     exponent = math.log(value(high) / value(low)) / math.log(high.modulus / low.modulus)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from components.component import ComponentError
 
-from ..cases.registry import known_of
+from ..comparison import known_of
 from ..core.errors import InputRefused, Problem
 from ..core.reading import Run
 from ..headlines import roles
@@ -56,7 +56,7 @@ def _pictures(run: Run) -> list[_Picture]:
     """The pictures of the components that take part."""
     from . import curves, sand
 
-    known, who = known_of(run.provenance), roles(run)
+    known, who = known_of(run), roles(run)
     force, depth = [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], [f"{who.sand}.penetration"]
     of_sand = [] if who.sand is None else [
         _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),

@@ -142,7 +142,7 @@ def test_box_2_has_its_own_number_of_discs(rockshed, tmp_path):
 
 
 def test_json_is_the_summary_with_references(rockshed, tmp_path):
-    result = rockshed("run", "lab-impact", "--json", "--quiet", *SHORT)
+    result = rockshed("run", "lab-impact", "--json", "--quiet", "--coupling", "impulse", "--stop-time", "0.025", "--no-figures")
     content = json.loads(result.stdout)
     assert content["status"] == "complete"
     by_name = {figure["name"]: figure for figure in content["figures"]}

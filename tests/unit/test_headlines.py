@@ -6,7 +6,7 @@ import pytest
 from orchestrator import comparison
 from orchestrator import headlines as h
 from orchestrator.cases import sonoda1993
-from orchestrator.cases.registry import cases, known_of
+from orchestrator.cases.registry import case, cases, changes_of, references_of
 from orchestrator.core.reading import Run
 from orchestrator.core.results import Figure
 
@@ -134,5 +134,46 @@ def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
 def test_every_test_of_the_paper_is_a_case_and_finds_its_references_again():
     assert len(cases()) == 16
     assert next(iter(cases())) == "lab-impact"
-    assert known_of({"case": "lab-impact-10"})[h.PEAK_TRANSMITTED].experiment.value == pytest.approx(673.2 * KGF)
-    assert known_of({}) == {}
+    assert references_of({"case": "lab-impact-10"}).known[h.PEAK_TRANSMITTED].experiment.value == pytest.approx(673.2 * KGF)
+    assert references_of({}).known == {}
+
+
+def of_lab_impact(changed, **sizes):
+    return {"case": "lab-impact", "changed": changed, "sizes": {"sand": sizes}}
+
+
+@pytest.mark.parametrize("changed", [
+    {"beam.internal_step": 5e-7, "sand.rotation": "free", "sand.stiffness_factor": 1.0, "sand.friction_angle": 0.6,
+     "sand.packing": "random", "exchange_step": 2e-5, "stop_time": 0.02},
+    {"rock.mass": 4, "rock_radius": 0.0495, "sand.base": "beam_discs", "rock.position0.y": 0.15, "sand.damping": 0.2}])
+def test_other_steps_and_models_and_the_tests_own_values_leave_the_comparison(changed):
+    assert references_of(of_lab_impact(changed, discs=370)) == case("lab-impact").references({})
+
+
+@pytest.mark.parametrize(("changed", "sizes", "named"), [
+    ({"rock.mass": 8}, {}, "rock.mass differs"), ({"rock_mass": 8}, {}, "rock_mass differs"),
+    ({}, {"discs": 740}, "sand.discs differs"), ({"sand.base": "floor", "sand.modulus": 1e6}, {}, "sand.base differs"),
+    ({"rock.radius": 0.06, "sand.box.width": 0.4}, {}, "rock.radius, sand.box.width differ"),
+    ({"beam.gravity": 9.81}, {}, "beam.gravity differs")])
+def test_another_system_is_not_compared_and_the_reason_is_named(changed, sizes, named):
+    found = references_of(of_lab_impact(changed, **sizes))
+    assert found.known == {}
+    assert found.remarks == [f"not compared: {named} from the test"]
+
+
+def test_another_sand_is_compared_with_table_5_only():
+    found = references_of(of_lab_impact({"sand.modulus": 40 * KGF / 1e-4, "sand.damping": 0.3}))
+    assert found.known[h.PEAK_TRANSMITTED] == h.Known(h.Reference(pytest.approx(456.5 * KGF)))
+    assert found.known[h.PENETRATION].paper.value == pytest.approx(0.0634)
+    assert "experiment: sand.modulus, sand.damping differ" in found.remarks[0]
+    none = references_of(of_lab_impact({"sand.damping": 0.25}))
+    assert none.known == {}
+    assert "0.1, 0.2, 0.3, not 0.25" in none.remarks[1]
+
+
+def test_changed_values_and_sizes_are_named():
+    assert changes_of(of_lab_impact({"rock.mass": 8, "rock.radius": 0.0495}, discs=740)) == {"rock.mass": 8, "sand.discs": 740}
+    assert changes_of({"changed": {"stop_time": 0.1}}) == {"stop_time": 0.1}
+    run = made_up()
+    run.provenance.update(of_lab_impact({"rock.mass": 8}, discs=740), coupling="paper")
+    assert "changed: rock.mass = 8, sand.discs = 740" in comparison.caption(run)
