@@ -218,7 +218,7 @@ def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
         from .pictures import draw_all
 
         try:
-            return draw_all(done, folder, screen.note)
+            return draw_all(done, folder, screen.note, screen.warn)
         except KeyboardInterrupt:
             screen.note(f"the results are complete; `rockshed plot {done.folder}` draws the pictures")
             raise

@@ -21,6 +21,7 @@ class Scale:
     unit: str
     size: float
     digits: int
+    sign: str = ""
 
 
 _FORCE = (Scale("kN", kN, 2), Scale("kgf", kgf, 0))
@@ -42,8 +43,10 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.BEAM_ENERGY: ("peak beam energy (5), (6)", _ENERGY),
     h.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
     h.BEAM_SHARE: ("peak beam energy / E0", (Scale("%", 0.01, 2),)),
-    h.RESIDUAL_SHARE: ("energy residual / E0", _SHARE),
+    h.RESIDUAL_SHARE: ("energy residual / E0", (Scale("%", 0.01, 3, "+"),)),
 }
+_HUGE = 1e7
+"""Numbers from here on, of runs that went astray, are written with an exponent."""
 _TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compared"
 _STILL = "the force on the rock has not ended: impulse and duration would be larger with a later stop time"
 
@@ -92,7 +95,8 @@ def _rows(label: str, scales: tuple[Scale, ...], value: float, known: h.Known) -
 
 
 def _written(value: float, scale: Scale) -> str:
-    return f"{value / scale.size:z.{scale.digits}f}"
+    shown = value / scale.size
+    return f"{shown:{scale.sign}z.{scale.digits}f}" if abs(shown) < _HUGE else f"{shown:{scale.sign}.3g}"
 
 
 def _deviation(value: float, reference: h.Reference | None) -> float | None:
@@ -122,17 +126,42 @@ def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
 
 
 def warnings(run: Run) -> list[str]:
-    """What a reader of the figures has to know: what the run warned of, and whether the rock came through to the base."""
-    found = list(run.provenance.get("warnings", []))
-    clearance = next((float(f.value) for f in h.headlines(run) if f.name == h.CLEARANCE), None)
+    """What a reader of the figures has to know: what the run warned of, whether the figures can be trusted, and whether the rock
+    came through to the base."""
+    return [*run.provenance.get("warnings", []), *_doubts(run), *_bottomed_out(run)]
+
+
+_RESIDUAL_LIMIT = 0.01
+"""Part of the impact energy that may be missing in the balance."""
+_UNREST_LIMIT = 1e-3
+
+
+def _doubts(run: Run) -> Iterator[str]:
+    """An energy balance that does not close, sand that was moving before the impact."""
+    share = _computed(run, h.RESIDUAL_SHARE)
+    if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
+        yield (f"the balance of energy does not close: {100.0 * share:+.3g} % of the impact energy; do not trust the figures, "
+               "reduce the steps")
     sand = h.roles(run).sand
+    if sand is None or f"{sand}.unrest" not in run.series:
+        return
+    unrest, gravity = run.series[f"{sand}.unrest"][0], run.provenance["components"][sand]["parameters"]["gravity"]["value"]
+    if gravity and not unrest <= _UNREST_LIMIT:  # it is counted in gravity
+        yield f"the sand was not at rest at the start (unrest {unrest:.2g}, at most {_UNREST_LIMIT:g}): raise settling.time"
+
+
+def _computed(run: Run, name: str) -> float | None:
+    return next((float(f.value) for f in h.headlines(run) if f.name == name), None)
+
+
+def _bottomed_out(run: Run) -> Iterator[str]:
+    clearance, sand = _computed(run, h.CLEARANCE), h.roles(run).sand
     if clearance is not None and sand is not None:
         disc = 2.0 * float(run.provenance["components"][sand]["parameters"]["disc.radius"]["value"])
         if clearance < disc:
             where = f"comes within {clearance / mm:.1f} mm of" if clearance > 0.0 else f"presses {-clearance / mm:.1f} mm into"
-            found.append(f"the rock bottoms out: it {where} the base, and a sand disc is {disc / mm:g} mm thick; the cushion is "
-                         "too thin for this impact")
-    return found
+            yield (f"the rock bottoms out: it {where} the base, and a sand disc is {disc / mm:g} mm thick; the cushion is "
+                   "too thin for this impact")
 
 
 def caption(run: Run) -> list[str]:

@@ -189,7 +189,7 @@ def _energy(run: "Run") -> Iterator[Figure]:
         yield Figure(RESIDUAL, float(max(residual, key=abs)), "J")
     if impact:
         if residual is not None:
-            yield Figure(RESIDUAL_SHARE, float(abs(residual).max()) / impact)
+            yield Figure(RESIDUAL_SHARE, float(max(residual, key=abs)) / impact)
         column = f"{roles(run).beam}.energy.elastic"
         if column in run.series:
             yield Figure(BEAM_SHARE, extreme(run, column)[0] / impact)

@@ -12,6 +12,9 @@ from ..core.errors import InputRefused, Problem
 from ..core.reading import Run
 from ..headlines import roles
 
+Tell = Callable[[str], None]
+"""Shows a line to the user."""
+
 
 @dataclass(frozen=True)
 class _Picture:
@@ -30,8 +33,11 @@ class _Picture:
         return absent
 
 
-def draw_all(run: Run, folder: Path, note: Callable[[str], None] = lambda text: None) -> list[Path]:
+def draw_all(run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell = lambda text: None) -> list[Path]:
     """Draw every picture that the results of a run allow into ``folder``; return the files.
+
+    note: is told which pictures the results have no data for; warn: which could not be drawn, and why. Whatever happens to a
+    picture, the others are drawn.
 
     Raises:
         InputRefused: the folder cannot be written.
@@ -47,6 +53,9 @@ def draw_all(run: Run, folder: Path, note: Callable[[str], None] = lambda text: 
             picture.draw(file)
         except ComponentError as error:
             note(f"no picture {picture.name}: the states were recorded by another version of the FMU ({error})")
+            continue
+        except Exception as error:  # a run's outcome is told even if a picture of it fails
+            warn(f"no picture {picture.name}: drawing it failed ({type(error).__name__}: {error})")
             continue
         drawn.append(file)
     return drawn

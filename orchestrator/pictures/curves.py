@@ -11,7 +11,7 @@ from components.units import cm, kgf, kN, mm, ms
 
 from .. import headlines as h
 from ..core.reading import Run
-from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, reference_line, second_scale
+from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, over_time, reference_line, second_scale
 
 Known = Mapping[str, h.Known]
 
@@ -31,7 +31,8 @@ def force_axes(run: Run, known: Known, axes: Axes) -> None:
         axes.plot(time, run.series[column] / kN, color=colour, label=f"{name}, peak {peak / kN:.2f} kN at {at / ms:.1f} ms")
         axes.plot(at / ms, peak / kN, "o", color=colour, markersize=3.5)
     _references(axes, known.get(h.PEAK_TRANSMITTED, h.Known()), kN, "kN", "peak transmitted force")
-    axes.set(xlabel="time (ms)", ylabel="force (kN)", xlim=(time[0], time[-1]))
+    axes.set(xlabel="time (ms)", ylabel="force (kN)")
+    over_time(axes, time)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.12 * axes.get_ylim()[1])
     second_scale(axes, kN / kgf, "(kgf)")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
@@ -64,7 +65,8 @@ def penetration(run: Run, known: Known, file: Path) -> None:
             reference_line(axes, (most + clearance) / cm, "base", "-")
         _references(axes, known.get(h.PENETRATION, h.Known()), cm, "cm", "largest")
         axes.axhline(0.0, color=GREY, linewidth=0.7)
-        axes.set(xlabel="time (ms)", ylabel="penetration (cm)", xlim=(time[0], time[-1]))
+        axes.set(xlabel="time (ms)", ylabel="penetration (cm)")
+        over_time(axes, time)
         axes.invert_yaxis()
 
 
@@ -86,7 +88,8 @@ def beam(run: Run, known: Known, file: Path) -> None:
             if f"{name}.{output}" in run.series:
                 lower.plot(time, run.series[f"{name}.{output}"], color=colour, linestyle=dashes, label=label, linewidth=1.2)
         _references(lower, known.get(h.BEAM_ENERGY_FROM_STRAIN, h.Known()), 1.0, "J", "peak by eq. (7),")
-        lower.set(xlabel="time (ms)", ylabel="energy of the beam (J)", xlim=(time[0], time[-1]))
+        lower.set(xlabel="time (ms)", ylabel="energy of the beam (J)")
+        over_time(lower, time)
         lower.set_ylim(bottom=0.0)
         second_scale(lower, 1.0 / (kgf * cm), "(kgf cm)")
         lower.legend(loc="center right")
@@ -117,15 +120,18 @@ def energy(run: Run, file: Path) -> None:
     residual, impact = h.system_residual(run), h.impact_energy(run)
     with figure(run, file, WIDTH, 5.2) as made:
         upper, lower = made.subplots(2, sharex=True, height_ratios=(4, 1))
-        upper.stackplot(time, [values for _, _, values in layers], colors=[colour for _, colour, _ in layers],
-                        labels=[name for name, _, _ in layers], edgecolor="white", linewidth=0.3)
-        upper.axhline(sum(float(values[0]) for _, _, values in layers), color=INK, linewidth=0.9, linestyle="--")
-        upper.set(ylabel="energy (J)", xlim=(time[0], time[-1]))
+        if layers:  # no part may have any energy
+            upper.stackplot(time, [values for _, _, values in layers], colors=[colour for _, colour, _ in layers],
+                            labels=[name for name, _, _ in layers], edgecolor="white", linewidth=0.3)
+        upper.axhline(sum(float(values[0]) for _, _, values in layers), color=INK, linewidth=0.9, linestyle="--",
+                      label="all energy at the start")
+        upper.set(ylabel="energy (J)")
+        over_time(upper, time)
         handles, labels = upper.get_legend_handles_labels()
         upper.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
         if residual is not None and impact:
             lower.plot(time, 100.0 * residual / impact, color=INK, linewidth=1.0)
-            lower.set_ylabel("error of the\nbalance (%)")
+            lower.set_ylabel("error of the balance\n(% of the impact\nenergy)", fontsize=8)
         lower.axhline(0.0, color=GREY, linewidth=0.7)
         lower.set_xlabel("time (ms)")
 

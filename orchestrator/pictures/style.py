@@ -51,6 +51,12 @@ def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> N
                   ha="right", va="bottom", fontsize=8, color=GREY)
 
 
+def over_time(axes: Axes, time: NDArray[np.float64]) -> None:
+    """From the first to the last time; of a run that did not get anywhere, around its one time."""
+    if time[-1] > time[0]:
+        axes.set_xlim(time[0], time[-1])
+
+
 def second_scale(axes: Axes, factor: float, label: str) -> None:
     """The same values in another unit at the right: ``factor`` * value."""
     def there(y: NDArray[np.float64]) -> NDArray[np.float64]:

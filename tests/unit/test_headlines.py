@@ -1,5 +1,7 @@
 """Headline figures and the table, from made-up results whose figures are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -28,7 +30,7 @@ def made_up(length=0.02, summary=(), **columns):
         "coupling.sand_rock.energy": -1e2 * time, **columns}
     sand = {"base": "beam_discs", "base.y": 0.0, "beam.radius": 0.025, "disc.radius": 0.005, "rotation": "locked",
             "stiffness_factor": 0.42, "modulus": 30.0 * KGF / 1e-4, "internal_step": 1e-5, "rolling_resistance": 0.0,
-            "packing": "square"}
+            "packing": "square", "gravity": 9.81}
     provenance = {
         "status": "complete", "name": "made-up", "system": {"description": "", "master": "sequential", "exchange_step": 1e-5},
         "components": {name: {"model": model, "parameters": {key: {"value": value} for key, value in parameters.items()}}
@@ -73,12 +75,62 @@ def test_without_a_balance_of_every_component_there_is_none():
 
 
 def test_a_rock_near_the_base_is_warned_of():
-    assert comparison.warnings(made_up()) == []
     depth = made_up().series["time"] * 0.0
+    assert not any("bottoms out" in text for text in comparison.warnings(made_up()))
     near = comparison.warnings(made_up(**{"sand.penetration": depth + 0.096}))
-    assert "within 4.0 mm of the base" in near[0]
+    assert "within 4.0 mm of the base" in near[-1]
     through = comparison.warnings(made_up(**{"sand.penetration": depth + 0.103}))
-    assert "presses 3.0 mm into the base" in through[0]
+    assert "presses 3.0 mm into the base" in through[-1]
+
+
+def test_a_balance_that_does_not_close_is_warned_of():
+    assert h.system_residual(made_up())[-1] / 100.0 == pytest.approx(0.019)  # beyond 1 %
+    lost = made_up(**{"rock.energy.residual": -19.9 * np.linspace(0.0, 1.0, 401)})
+    assert "does not close: -22 % of the impact energy" in comparison.warnings(lost)[0]
+    row = next(row for row in comparison.rows(lost, {}) if row.label == "energy residual / E0")
+    assert row.computed == "-22.000"
+    closed = made_up(**{"rock.energy.residual": 2.1 * np.linspace(0.0, 1.0, 401)})
+    assert comparison.warnings(closed) == []
+
+
+def test_sand_that_was_not_at_rest_is_warned_of():
+    level = np.ones(401)
+    quiet = {"rock.energy.residual": 2.0 * np.linspace(0.0, 1.0, 401)}
+    assert comparison.warnings(made_up(**quiet, **{"sand.unrest": 1e-6 * level})) == []
+    restless = made_up(**quiet, **{"sand.unrest": 2e-3 * level})
+    assert "raise settling.time" in comparison.warnings(restless)[0]
+    restless.provenance["components"]["sand"]["parameters"]["gravity"]["value"] = 0.0
+    assert comparison.warnings(restless) == []
+
+
+def test_without_impact_energy_there_are_no_shares_of_it():
+    still = made_up(**{"rock.energy.kinetic": np.zeros(401)})
+    assert not [row.label for row in comparison.rows(still, {}) if "/ E0" in row.label]
+    assert comparison.warnings(still) == []
+
+
+def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
+    from orchestrator import pictures
+
+    def fails(file):
+        raise TypeError("no colours")
+
+    def works(file):
+        file.write_bytes(b"")
+
+    made = [pictures._Picture(name, draw, ["time"]) for name, draw in (("one", fails), ("two", works))]
+    monkeypatch.setattr(pictures, "_pictures", lambda run: made)
+    said = []
+    assert pictures.draw_all(made_up(), tmp_path, warn=said.append) == [tmp_path / "two.png"]
+    assert said == ["no picture one: drawing it failed (TypeError: no colours)"]
+
+
+def test_energies_that_are_all_zero_are_drawn(tmp_path):
+    from orchestrator.pictures import curves
+
+    run = made_up()
+    curves.energy(replace(run, series={name: np.zeros(1) for name in run.series}), tmp_path / "energy.png")
+    assert (tmp_path / "energy.png").is_file()
 
 
 def test_models_of_the_sand_have_their_names():
