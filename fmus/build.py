@@ -75,8 +75,9 @@ def build_component(component: Component, sizes: Mapping[str, int] | None = None
             if not (keep and file.is_file() and file.read_bytes() == content):
                 _replace(file, content)
     except OSError as error:
-        raise BuildError(f"{component.name}: cannot write {file}: {error.strerror or error}; name a folder that can be written "
-                         f"in the environment variable {FOLDER_VARIABLE}") from error
+        remedy = (f"name a folder that can be written in the environment variable {FOLDER_VARIABLE}" if destination is None
+                  else "name another folder")
+        raise BuildError(f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}") from error
     return file
 
 

@@ -31,7 +31,7 @@ def export_system(system: System, folder: Path) -> Path:
         InputRefused: the folder holds something, or cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputRefused([Problem(str(folder), "is not empty", "name a new or empty folder")])
+        raise InputRefused([Problem(str(folder), "is not empty" if folder.is_dir() else "is a file", "name a new or empty folder")])
     specs: dict[str, Any] = {}
     try:
         folder.mkdir(parents=True, exist_ok=True)

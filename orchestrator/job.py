@@ -57,6 +57,9 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
     Raises:
         InputRefused: everything that is wrong with the request.
     """
+    if request.target.endswith(".fmu"):
+        raise InputRefused([Problem(request.target, "is an FMU, and a run takes a case or a system file", "look into it with "
+                                    "`rockshed info`, and name it in a system file; `rockshed info lab-impact --toml` shows one")])
     problems: list[Problem] = []
     values = assignments("--set", request.settings, problems)
     numbers = assignments("--size", request.sizes, problems)

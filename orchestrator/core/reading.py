@@ -3,6 +3,7 @@
 import csv
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -62,7 +63,7 @@ class Run:
 def _stored_states(path: Path, component: str) -> Iterator[tuple[float, bytes]]:
     import h5py
 
-    with h5py.File(path) as file:
+    with _undamaged(path), h5py.File(path) as file:
         if component in file:
             for number, at in enumerate(file[f"{component}/time"][:]):
                 yield float(at), file[f"{component}/state/{number}"][:].tobytes()
@@ -72,17 +73,32 @@ def read_run(folder: Path) -> Run:
     """Read the folder of a run, or what a run that was killed has left beside it.
 
     Raises:
-        InputRefused: there is no run.
+        InputRefused: there is no run, or a file of it is damaged.
     """
     places = (folder, running_folder(folder.absolute()))
     found = next((place for place in places if (place / RUN).is_file()), None)
     if found is None:
         raise InputRefused([Problem(str(folder), f"is no folder of a run: there is no {RUN}", "give the folder of a run")])
-    with (found / COLUMNS).open(encoding="utf-8", newline="") as file:
+    with _undamaged(found / RUN):
+        provenance = json.loads((found / RUN).read_text(encoding="utf-8"))
+        if not isinstance(provenance, dict) or "status" not in provenance:
+            raise ValueError("it does not describe a run")
+    with _undamaged(found / COLUMNS), (found / COLUMNS).open(encoding="utf-8", newline="") as file:
         columns = [Column(**entry) for entry in csv.DictReader(file)]
-    summary = json.loads((found / SUMMARY).read_text(encoding="utf-8")) if (found / SUMMARY).is_file() else []
-    return Run(found, json.loads((found / RUN).read_text(encoding="utf-8")), [Figure(**entry) for entry in summary], columns,
-               _read_series(found, columns))
+    with _undamaged(found / SUMMARY):
+        summary = [Figure(**entry) for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
+                   ] if (found / SUMMARY).is_file() else []
+    return Run(found, provenance, summary, columns, _read_series(found, columns))
+
+
+@contextmanager
+def _undamaged(path: Path) -> Iterator[None]:
+    """Read a file of a run; what is wrong with its content becomes a refusal that names it."""
+    try:
+        yield
+    except (ValueError, TypeError, KeyError, OSError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise InputRefused([Problem(str(path), f"cannot be read: {reason}", "the results are damaged; run it again")]) from error
 
 
 def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[np.float64]]:
@@ -90,10 +106,12 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     import pyarrow.parquet
 
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
-        table = pyarrow.parquet.read_table(folder / PARQUET)
+        with _undamaged(folder / PARQUET):
+            table = pyarrow.parquet.read_table(folder / PARQUET, columns=[column.name for column in columns])
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
-    return {column.name: table[column.name].to_numpy() for column in columns}
+    with _undamaged(folder / COLUMNS):
+        return {column.name: table[column.name].to_numpy() for column in columns}
 
 
 def add_figures(folder: Path, figures: Sequence[Figure]) -> None:

@@ -70,7 +70,7 @@ class RunFolder:
         self.folder = folder.absolute()
         self.running = running_folder(self.folder)
         self._made = [parent for parent in (self.folder.parent, *self.folder.parent.parents) if not parent.exists()]
-        self._lock = FileLock(self.folder.with_name(f".{self.folder.name}.lock"))
+        self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
         self._rows: _Stream | None = None
         self._states: _Stream | None = None
 
@@ -83,6 +83,9 @@ class RunFolder:
             shutil.rmtree(self.running, ignore_errors=True)
             self.running.mkdir()
         except Timeout:
+            if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
+                self._clean()
+                raise self._refusal("cannot be written", "choose another folder") from None
             raise self._refusal("another run is writing there", "wait for its end or choose another folder") from None
         except OSError as error:
             self._clean()
@@ -198,7 +201,7 @@ class _Stream:
 
 def running_folder(folder: Path) -> Path:
     """Where a run writes before it has ended."""
-    return folder.with_name(f"{folder.name}.running")
+    return folder.parent / f"{folder.name}.running"
 
 
 def _is_run_or_empty(folder: Path) -> bool:

@@ -45,8 +45,12 @@ def draw_all(run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell 
     drawn = []
     for picture in _pictures(run):
         file = folder / f"{picture.name}.png"
-        if missing := picture.missing(run):
-            note(f"no picture {picture.name}: the results have no {', '.join(missing)}")
+        try:
+            if missing := picture.missing(run):
+                note(f"no picture {picture.name}: the results have no {', '.join(missing)}")
+                continue
+        except InputRefused as damaged:
+            warn(f"no picture {picture.name}: {damaged}")
             continue
         _make(folder)
         try:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -307,7 +308,12 @@ def test_output_that_cannot_be_written(rockshed, tmp_path, place):
     (["build", "SandCushun"], "did you mean SandCushion"),
     (["build", "SandCushion", "--size", "discs=0"], "allowed is 1 to"),
     (["build", "FallingRock", "--size", "discs=9"], "FallingRock has no such size"),
-    (["build", "FallingRock", "--output-dir", "file/x"], "cannot write"),
+    (["build", "FallingRock", "--output-dir", "file/x"], "name another folder"),
+    (["export", "lab-impact", "file"], "is a file"),
+    (["run", "file.fmu"], "is an FMU, and a run takes a case or a system file"),
+    (["run", "lab-impact", "--output-dir", "/"], "is no folder of a run"),
+    (["plot", "/"], "is no folder of a run"),
+    (["plot", "file"], "is no folder of a run"),
     (["info", "nothing.fmu"], "there is no such file"),
     (["info", "file.fmu"], "is not an FMU"),
     (["export", "lab-impact", "full"], "is not empty"),
@@ -344,6 +350,32 @@ def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
     assert {Path(line).name for line in result.stdout.splitlines()} == PICTURES
     for name in PICTURES:
         assert (tmp_path / "again" / name).read_bytes() == (folder / "figures" / name).read_bytes()
+
+
+@pytest.mark.parametrize("content", ["{", "[]", "{}", ""])
+def test_plot_names_a_damaged_file(rockshed, finished, tmp_path, content):
+    shutil.copytree(finished[0], tmp_path / "run")
+    (tmp_path / "run/run.json").write_text(content)
+    result = rockshed("plot", tmp_path / "run")
+    assert result.exit_code == 2
+    assert f"{tmp_path / 'run/run.json'}: cannot be read" in in_one_line(result.stderr)
+
+
+@pytest.mark.parametrize(("name", "left", "status"), [("states.h5", PICTURES - {"overview.png", "sand.png"}, 0),
+                                                      ("timeseries.parquet", set(), 2)])
+def test_plot_draws_what_a_damaged_file_leaves(rockshed, finished, tmp_path, name, left, status):
+    shutil.copytree(finished[0], tmp_path / "run", ignore=shutil.ignore_patterns("figures"))
+    os.truncate(tmp_path / "run" / name, 1000)
+    result = rockshed("plot", tmp_path / "run")
+    assert result.exit_code == status
+    assert f"{tmp_path / 'run' / name}: cannot be read" in in_one_line(result.stderr)
+    assert {Path(line).name for line in result.stdout.splitlines()} == left
+
+
+def test_a_place_where_nothing_can_be_made_is_not_called_busy(rockshed):
+    result = rockshed("run", "lab-impact", "--output-dir", "/proc/x", *SHORT)
+    assert result.exit_code == 2
+    assert "cannot be written" in in_one_line(result.stderr)
 
 
 def test_plot_into_a_folder_that_cannot_be_written(rockshed, finished, tmp_path):
