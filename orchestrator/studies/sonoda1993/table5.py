@@ -57,7 +57,7 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
                     axes.plot(damping, [float("nan") if v is None else v for v in values], line, color=colour, marker="o",
                               markersize=3, linewidth=1.0, label=f"{model}, {modulus}")
             axes.set(xlabel="damping constant h", ylabel=f"{figure} ({unit})", xticks=[0.1, 0.2, 0.3])
-            axes.set_ylim(bottom=0.0)
+            axes.set_ylim(0.0, 1.08 * axes.get_ylim()[1])
         made.legend(*axes.get_legend_handles_labels(), loc="outside right upper", title="model, E_bar")
     return [file]
 
