@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -54,6 +55,12 @@ def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> N
     axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes)
     axes.annotate(text, (1.0, value), xycoords=("axes fraction", "data"), xytext=(-2, 2), textcoords="offset points",
                   ha="right", va="bottom", fontsize=8, color=GREY)
+
+
+def legend(axes: Axes, **options: Any) -> None:
+    """A legend, where there is something to name."""
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(**options)
 
 
 def second_scale(axes: Axes, factor: float, label: str) -> None:

@@ -62,7 +62,7 @@ _CAPTION = "{} of Sonoda et al. 1993: (a) test 4, (b) test 10. Of the experiment
 
 
 def _fig_17(found: Outcomes, file: Path) -> Path:
-    from ...pictures.style import ROCK, TRANSMITTED, WIDTH, captioned, reference_line
+    from ...pictures.style import ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
 
     with captioned([_CAPTION.format("Fig. 17")], file, WIDTH, 3.2) as made:
         for axes, number, letter in zip(made.subplots(1, 2, sharey=True), TESTS, "ab"):
@@ -74,12 +74,12 @@ def _fig_17(found: Outcomes, file: Path) -> Path:
             reference_line(axes, sonoda1993.tests()[number].peak_force / kgf, "peak measured")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
         made.axes[0].set_ylabel("transmitted force (kgf)")
-        made.axes[0].legend(loc="upper left")
+        legend(made.axes[0], loc="upper left")
     return file
 
 
 def _fig_18(found: Outcomes, file: Path) -> Path:
-    from ...pictures.style import ROCK, TRANSMITTED, WIDTH, captioned, reference_line
+    from ...pictures.style import ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
 
     curves = (("beam.energy.elastic", "-", "eqs (5), (6)"), ("beam.energy.strain_estimate", ":", "eq. (7)"))
     with captioned([_CAPTION.format("Fig. 18")], file, WIDTH, 3.2) as made:
@@ -92,7 +92,7 @@ def _fig_18(found: Outcomes, file: Path) -> Path:
             reference_line(axes, sonoda1993.BEAM_ENERGY[number] / _ENERGY, "peak measured, eq. (7)")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
         made.axes[0].set_ylabel("energy of the beam (kgf cm)")
-        made.axes[0].legend(loc="upper left", bbox_to_anchor=(0.0, 0.93))
+        legend(made.axes[0], loc="upper left", bbox_to_anchor=(0.0, 0.93))
     return file
 
 
