@@ -29,7 +29,8 @@ def several(items):
 
 
 ROW = exactly(quantity=TEXT, unit=TEXT, paper=NUMBER, experiment=NUMBER, computed=NUMBER, spread=NUMBER,
-              deviation_from_paper=NUMBER, deviation_from_experiment=NUMBER, model=TEXT, verdict={"enum": ["", "holds", "does not"]}, note=TEXT,
+              deviation_from_paper=NUMBER, deviation_from_experiment=NUMBER,
+              model=TEXT, verdict={"enum": ["", "holds", "does not"]}, note=TEXT,
               model_options={"type": "object"}, seeds=several({"type": "integer"}), fmus=HASHES, runs=several(TEXT))
 STUDY = exactly(name=TEXT, title=TEXT, notes=several(TEXT), figures=several(TEXT), rows=several(ROW))
 RUN = exactly(name=TEXT, case=TEXT, settings=several(TEXT), coupling={"type": ["string", "null"]}, options={"type": "object"},

@@ -94,7 +94,8 @@ def baselines() -> list[Row]:
 
     return [row("a constant", leave_one_out(stiffness, measured, constant), "leave-one-out mean of the measurements"),
             row("a power law in k", leave_one_out(stiffness, measured, by_power_law), "leave-one-out fit to the measurements"),
-            row("the paper's trend", [_paper(test) for test in _twelve()], "a power law between the rows of its table 5, h = 0.2; no measurement in it")]
+            row("the paper's trend", [_paper(test) for test in _twelve()],
+                "a power law between the rows of its table 5, h = 0.2; no measurement in it")]
 
 
 def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
