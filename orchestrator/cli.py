@@ -277,6 +277,37 @@ def bench(part: Annotated[list[str] | None, typer.Argument(metavar="[discs|coupl
             raise typer.Exit(CHECK_FAILED)
 
 
+@app.command()
+def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993.")],
+              only: Annotated[list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")] = None,
+              quick: Annotated[bool, typer.Option("--quick", help="One run where the full reproduction has ten seeds.")] = False,
+              output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")] = None,
+              workers: Annotated[int | None, typer.Option(min=1, help="Processes at a time; default: one for each core.")] = None,
+              as_json: Json = False, quiet: Quiet = False) -> None:
+    """Run the studies of a paper and set computed beside printed and measured figures: table, JSON, figures, HTML page."""
+    from .screen import INTERRUPTED
+
+    with _screen(quiet, as_json) as screen:
+        from .studies.report import table
+        from .studies.reproduction import reproduce
+
+        folder = output_dir or RESULTS / paper
+        with screen.counting("runs") as done:
+            made = reproduce(paper, folder, only or [], quick, workers, screen.note, done)
+        if as_json:
+            screen.dump(made.content)
+        else:
+            screen.show(table(made.parts))
+            for part in made.parts:
+                for text in part.study.notes:
+                    screen.say(f"{part.study.name}: {text}")
+            screen.say(f"results in {folder}: " + ", ".join(file.name for file in made.files)
+                       + f", {sum(len(part.figures) for part in made.parts)} figures")
+        if made.interrupted:
+            screen.warn("interrupted: rows without a figure were not run")
+            raise typer.Exit(INTERRUPTED)
+
+
 def main() -> None:
     """The entry point of the command ``rockshed``."""
     app()

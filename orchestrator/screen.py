@@ -106,6 +106,23 @@ class Screen:
 
             yield Bar(describe, show)
 
+    @contextmanager
+    def counting(self, text: str) -> "Iterator[Callable[[int, int], None]]":
+        """A bar over pieces of work: called with the number done and the number of all. Elsewhere a note for each tenth."""
+        if self.quiet or not self.err.is_terminal:
+            def tell(done: int, total: int) -> None:
+                if 10 * done // total > 10 * (done - 1) // total:
+                    self.note(f"{text}: {done} of {total}")
+
+            yield tell
+            return
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
+
+        with Progress(SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
+                      console=self.err, transient=True) as shown:
+            task = shown.add_task(text, total=None)
+            yield lambda done, total: shown.update(task, total=total, completed=done)
+
     # ------------------------------------------------------------------ stdout
 
     def show(self, *parts: Any) -> None:

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
-from components.units import cm, kgf
+from components.units import cm, kgf, mm
 
 from ..core.schedule import Scheme
 from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System, Value
@@ -69,6 +69,27 @@ def tests() -> dict[int, Test]:
             float(row["peak_transmitted_force_kgf"]) * kgf,
             printed.get(number, stiffness / STATIC_RATIO) * kgf / cm**2, number in printed)
     return found
+
+
+@dataclass(frozen=True)
+class Sand:
+    """A row of table 1. Diameters (m) that 10, 30 and 60 percent of the mass are finer than."""
+
+    name: str
+    specific_gravity: float
+    uniformity: float
+    curvature: float
+    d10: float
+    d30: float
+    d60: float
+
+
+@cache
+def sands() -> dict[str, Sand]:
+    """The two sands of table 1 by their letter."""
+    return {row["sand"]: Sand(row["name"], float(row["specific_gravity"]), float(row["uniformity_coefficient"]),
+                              float(row["curvature_coefficient"]), *(float(row[f"{d}_mm"]) * mm for d in ("d10", "d30", "d60")))
+            for row in _rows("table1")}
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,11 @@
 """The look of all pictures: sizes, colours, a caption that says what was run, and how a file is written."""
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -31,11 +32,16 @@ _LOOK = {
 }
 
 
-@contextmanager
-def figure(run: Run, file: Path, width: float, height: float) -> Iterator[Figure]:
+def figure(run: Run, file: Path, width: float, height: float) -> AbstractContextManager[Figure]:
     """A figure (inches) with the run's caption below, written to ``file`` at the end, as a whole or not at all."""
+    return captioned(caption(run), file, width, height)
+
+
+@contextmanager
+def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> Iterator[Figure]:
+    """A figure (inches) with these lines below, written to ``file`` at the end, as a whole or not at all."""
     with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
-        wrapped = [line for text in caption(run) for line in wrap(text, int(_LETTERS * width))]
+        wrapped = [line for text in lines for line in wrap(text, int(_LETTERS * width))]
         made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
         made.supxlabel("\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3)
         yield made
@@ -55,6 +61,12 @@ def over_time(axes: Axes, time: NDArray[np.float64]) -> None:
     """From the first to the last time; of a run that did not get anywhere, around its one time."""
     if time[-1] > time[0]:
         axes.set_xlim(time[0], time[-1])
+
+
+def legend(axes: Axes, **options: Any) -> None:
+    """A legend, where there is something to name."""
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(**options)
 
 
 def second_scale(axes: Axes, factor: float, label: str) -> None:

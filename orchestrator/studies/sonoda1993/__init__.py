@@ -1,0 +1,1 @@
+"""The studies of Sonoda et al. (1993): one file for each, found by its ``STUDY``."""

@@ -1,0 +1,55 @@
+"""``rockshed reproduce`` as a user meets it: a study through the FMUs, in processes of their own."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from orchestrator.cli import app
+from orchestrator.job import Request
+from orchestrator.studies.running import run_all
+from orchestrator.studies.sonoda1993.fig19 import COARSE, _single
+from orchestrator.studies.study import COMPLETE, FAILED, Task
+
+
+@pytest.fixture(scope="module")
+def table_5(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("reproduction") / "out"
+    arguments = ["reproduce", "sonoda1993", "--quick", "--only", "table5", "--workers", "2", "--output-dir", str(folder)]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    return folder, result
+
+
+def test_table_5_has_its_nine_rows_with_both_models(table_5):
+    folder, result = table_5
+    content = json.loads((folder / "reproduction.json").read_text())
+    rows = content["studies"][0]["rows"]
+    assert len(rows) == 9 * 2 * 2
+    assert len(content["runs"]) == 9 * 2
+    assert all(run["status"] == "complete" for run in content["runs"])
+    for row in rows:
+        if row["model"] == "calibrated":
+            assert abs(row["deviation_from_paper"]) < 0.1
+        assert row["model_options"]["rotation"] == {"calibrated": "locked", "literal": "free"}[row["model"]]
+        assert set(row["fmus"]) == {"sand", "rock", "beam"}
+    assert "Table 5" in result.stdout
+    assert "runs: 18 of 18" in result.stderr
+
+
+def test_the_page_holds_its_figures(table_5):
+    folder, _ = table_5
+    page = (folder / "reproduction.html").read_text()
+    assert (folder / "figures" / "table5.png").is_file()
+    assert 'src="data:image/png;base64,' in page
+    assert "9.64" in page
+
+
+def test_a_run_that_fails_is_an_outcome_beside_the_others():
+    good = Task(Request("lab-impact", options={"stop_time": 0.001}))
+    found = run_all([_single(COARSE), good], 1, print, lambda done, total: None)
+    failed = found[_single(COARSE).key]
+    assert failed.status == FAILED
+    assert failed.failed_at < 1e-3
+    assert "the beam diverged" in failed.error
+    assert found[good.key].status == COMPLETE

@@ -1,0 +1,187 @@
+"""Rows, baselines and files of the studies, without a run."""
+
+import json
+
+import numpy as np
+import pytest
+from jsonschema import validate
+
+from components.units import kgf
+from orchestrator.core.errors import InputRefused
+from orchestrator.job import Request
+from orchestrator.studies import running
+from orchestrator.studies.reproduction import DATA, PAGE, chosen, reproduce, studies
+from orchestrator.studies.sonoda1993 import section2, table2
+from orchestrator.studies.sonoda1993.fig19 import order
+from orchestrator.studies.statistics import by_power_law, constant, leave_one_out, mean_absolute_error, power_law
+from orchestrator.studies.study import COMPLETE, FAILED, INTERRUPTED, Outcome, Outcomes, Row, Task, row_of_runs
+
+NUMBER, TEXT = {"type": ["number", "null"]}, {"type": "string"}
+HASHES = {"type": "object", "additionalProperties": {"type": "string", "pattern": "^[0-9a-f]{64}$"}}
+
+
+def exactly(**properties):
+    return {"type": "object", "additionalProperties": False, "properties": properties, "required": list(properties)}
+
+
+def several(items):
+    return {"type": "array", "items": items}
+
+
+ROW = exactly(quantity=TEXT, unit=TEXT, paper=NUMBER, experiment=NUMBER, computed=NUMBER, spread=NUMBER,
+              deviation_from_paper=NUMBER, deviation_from_experiment=NUMBER,
+              model=TEXT, verdict={"enum": ["", "holds", "does not"]}, note=TEXT,
+              model_options={"type": "object"}, seeds=several({"type": "integer"}), fmus=HASHES, runs=several(TEXT))
+STUDY = exactly(name=TEXT, title=TEXT, notes=several(TEXT), figures=several(TEXT), rows=several(ROW))
+RUN = exactly(name=TEXT, case=TEXT, settings=several(TEXT), coupling={"type": ["string", "null"]}, options={"type": "object"},
+              seed={"type": ["integer", "null"]}, status={"enum": ["complete", "failed", "interrupted"]}, error=TEXT,
+              wall_time={"type": "number"}, model_options={"type": "object"}, fmus=HASHES)
+SCHEMA = exactly(format={"const": "rockshed reproduction 1"}, paper=TEXT, started=TEXT, quick={"type": "boolean"},
+                 workers={"type": "integer"}, wall_time={"type": "number"}, versions={"type": "object"}, studies=several(STUDY),
+                 runs=several(RUN))
+
+
+def task(seed=None):
+    return Task(Request("lab-impact", () if seed is None else (f"sand.seed={seed}",)), "calibrated", seed)
+
+
+def outcomes(*values):
+    """One outcome for each seed; a text is the reason why there is none."""
+    return Outcomes({task(seed).key: outcome(task(seed).key, seed, value) for seed, value in enumerate(values)})
+
+
+def outcome(key, seed, value):
+    options = {"rotation": "locked", "seed": seed}
+    if isinstance(value, str):
+        return Outcome(key, FAILED, value, options=options)
+    return Outcome(key, COMPLETE, figures={"force": value}, options=options, fmus={"sand": "ab" * 32})
+
+
+# ------------------------------------------------------------------ rows
+
+
+def test_a_row_has_mean_and_spread_over_the_seeds_in_the_unit_of_the_paper():
+    found = outcomes(390 * kgf, 400 * kgf, 410 * kgf)
+    row = row_of_runs("P", "kgf", kgf, "force", [task(i) for i in range(3)], found, 320.0, 500.0)
+    assert (row.computed, row.spread) == (pytest.approx(400.0), pytest.approx(10.0))
+    assert row.deviation(row.paper) == pytest.approx(0.25)
+    assert row.deviation(row.experiment) == pytest.approx(-0.2)
+    assert row.seeds == [0, 1, 2]
+    assert row.options == {"rotation": "locked"}
+
+
+def test_a_single_run_has_no_spread():
+    assert row_of_runs("P", "N", 1.0, "force", [task(0)], outcomes(1.0)).spread is None
+
+
+def test_a_run_that_failed_is_told_and_left_out():
+    row = row_of_runs("P", "N", 1.0, "force", [task(0), task(1)], outcomes("sand at t = 1 s: diverged", 7.0))
+    assert row.computed == 7.0
+    assert row.note == "1 of 2 runs did not end (failed: sand at t = 1 s: diverged)"
+    assert row.fmus == {"sand": "ab" * 32}
+    lost = row_of_runs("P", "N", 1.0, "force", [task(0)], outcomes("diverged"), 3.0)
+    assert (lost.computed, lost.deviation(lost.paper)) == (None, None)
+
+
+def test_every_study_makes_its_rows_and_figures_when_no_run_ends(tmp_path):
+    for study in studies("sonoda1993"):
+        found = Outcomes({t.key: Outcome(t.key, INTERRUPTED, "not run") for t in study.tasks(True)}, quick=True)
+        rows = study.rows(found)
+        assert rows
+        assert all(row.note or row.verdict or row.computed is not None for row in rows), study.name
+        assert all(file.read_bytes().startswith(b"\x89PNG") for file in study.draw(found, rows, tmp_path))
+
+
+def test_tasks_that_are_the_same_are_one_run(monkeypatch):
+    monkeypatch.setattr(running, "_order", lambda task, note: running._Order(task.key, None, False))
+    monkeypatch.setattr(running, "_carry_out", lambda orders, workers: iter([Outcome(order.key, COMPLETE) for order in orders]))
+    told = []
+    found = running.run_all([task(1), task(2), task(1)], 1, print, lambda done, total: told.append((done, total)))
+    assert len(found) == 2
+    assert told == [(1, 2), (2, 2)]
+
+
+def test_ctrl_c_keeps_what_was_computed(monkeypatch):
+    def carry_out(orders, workers):
+        yield Outcome(orders[0].key, COMPLETE)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(running, "_order", lambda task, note: running._Order(task.key, None, False))
+    monkeypatch.setattr(running, "_carry_out", carry_out)
+    found = running.run_all([task(1), task(2)], 1, lambda text: None, lambda done, total: None)
+    assert [outcome.status for outcome in found.values()] == [COMPLETE, INTERRUPTED]
+
+
+def test_unknown_studies_are_all_refused():
+    with pytest.raises(InputRefused, match=r"table55.*did you mean table5") as refusal:
+        chosen("sonoda1993", ["table55", "nothing"])
+    assert len(refusal.value.problems) == 2
+    with pytest.raises(InputRefused, match="no studies of such a paper"):
+        studies("sonoda")
+
+
+# ------------------------------------------------------------------ statistics
+
+
+def test_a_power_law_is_found_again_and_predicts_what_was_left_out():
+    x = np.array([1.0, 2.0, 5.0, 9.0])
+    y = 3.0 * x**0.25
+    assert power_law(x, y) == pytest.approx((3.0, 0.25))
+    assert mean_absolute_error(leave_one_out(list(x), list(y), by_power_law), y) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_value_is_predicted_without_itself():
+    assert leave_one_out([1.0, 2.0, 3.0], [0.0, 3.0, 9.0], constant) == [6.0, 4.5, 1.5]
+
+
+def test_baselines_of_the_twelve_tests():
+    """The first two as an independent computation has them; the paper's trend as a power law between the rows of its table 5."""
+    assert [row.computed for row in table2.baselines()] == pytest.approx([9.3, 5.2, 26.6], abs=0.05)
+
+
+def test_the_order_of_an_error_is_its_slope_and_needs_three_points():
+    assert order([(h, 4.0 * h**2) for h in (1e-5, 1e-4, 1e-3)]) == pytest.approx(2.0)
+    assert order([(1e-5, 1.0), (1e-4, 2.0), (1e-3, 0.0)]) is None
+
+
+# ------------------------------------------------------------------ claims of section 2
+
+
+def claims():
+    return {row.quantity: row for row in section2.rows(Outcomes({}))}
+
+
+def test_compaction_in_the_text_and_in_the_table():
+    """The text says 7 and 19 percent; its own table 2 has 1 to 11 and 13 to 49 percent."""
+    for sand, low, high in (("A", 1.2, 11.0), ("B", 13.0, 49.0)):
+        changes = section2.rises(lambda test: test.peak_force, sand).values()
+        assert (min(changes), max(changes)) == (pytest.approx(low, abs=0.1), pytest.approx(high, abs=0.1))
+    assert claims()["compaction raises P by about 19 % in sand B (box 1)"].verdict == "does not"
+    assert claims()["compaction raises P by about 7 % in sand A (box 1)"].verdict == "holds"
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    ("P grows with k", "holds"), ("P is proportional to k", "does not"), ("compaction raises k in every pair of tests", "holds"),
+    ("k of sand B, compacted, is largest at w = 16.2 %", "holds"), ("P of sand A, compacted, is largest at w = 6.98 %", "does not"),
+    ("the size of the box hardly matters for P", "holds"), ("the size of the box hardly matters for k", "does not"),
+])
+def test_claims(claim, verdict):
+    assert claims()[claim].verdict == verdict
+
+
+# ------------------------------------------------------------------ files
+
+
+def test_files_of_a_study_without_runs(tmp_path):
+    made = reproduce("sonoda1993", tmp_path / "out", ["section2"])
+    content = json.loads((tmp_path / "out" / DATA).read_text())
+    validate(content, SCHEMA)
+    assert [study["name"] for study in content["studies"]] == ["section2"]
+    assert len(content["studies"][0]["rows"]) == len(made.parts[0].rows)
+    page = (tmp_path / "out" / PAGE).read_text()
+    assert "P is proportional to k" in page
+    assert "src=\"http" not in page
+
+
+def test_deviation_needs_a_reference():
+    assert Row("P", "N", computed=1.0).deviation(None) is None
