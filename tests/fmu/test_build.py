@@ -125,7 +125,7 @@ def test_nothing_half_written_is_left_when_a_build_is_interrupted(monkeypatch, t
 
 def test_a_folder_that_cannot_be_written_is_refused_with_a_remedy(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(BuildError, match="FallingRock: cannot write .*name another folder"):
+    with pytest.raises(BuildError, match=r"FallingRock: cannot write .*name another folder"):
         build("FallingRock", destination=tmp_path / "file" / "folder")
     monkeypatch.setenv("ROCKSHED_FMU_DIR", str(tmp_path / "file"))
     with pytest.raises(BuildError, match=r"cannot write .*ROCKSHED_FMU_DIR"):
