@@ -34,6 +34,10 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.PEAK_ROCK: ("peak force on the rock", _FORCE),
     h.PEAK_ROCK_AT: ("  at", _TIME),
     h.RATIO: ("ratio of the two peaks", (Scale("", 1.0, 2),)),
+    h.SETTLED_TRANSMITTED: ("settled transmitted force", _FORCE),
+    h.SETTLED_ROCK: ("settled force on the rock", _FORCE),
+    h.SETTLED_RATIO: ("ratio of the settled maxima", (Scale("", 1.0, 2),)),
+    h.SETTLED_CUT_OFF: ("  settled: below", (Scale("Hz", 1.0, 0),)),
     h.IMPULSE_TRANSMITTED: ("transmitted impulse", (Scale("N s", 1.0, 1),)),
     h.IMPULSE_ROCK: ("impulse on the rock", (Scale("N s", 1.0, 1),)),
     h.DURATION: ("duration on the rock", (Scale("ms", ms, 1),)),
@@ -42,7 +46,8 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.IMPACT_ENERGY: ("impact energy E0", _ENERGY),
     h.BEAM_ENERGY: ("peak beam energy (5), (6)", _ENERGY),
     h.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
-    h.BEAM_SHARE: ("peak beam energy / E0", (Scale("%", 0.01, 2),)),
+    h.BEAM_SHARE: ("peak beam energy (5), (6) / E0", (Scale("%", 0.01, 2),)),
+    h.BEAM_SHARE_FROM_STRAIN: ("peak beam energy (7) / E0", (Scale("%", 0.01, 2),)),
     h.RESIDUAL_SHARE: ("energy residual / E0", (Scale("%", 0.01, 3, "+"),)),
 }
 _HUGE = 1e7
@@ -62,6 +67,8 @@ class Row:
     paper_deviation: float | None = None
     experiment: str = ""
     experiment_deviation: float | None = None
+    handbook: str = ""
+    handbook_deviation: float | None = None
 
 
 def known_of(run: Run) -> Mapping[str, h.Known]:
@@ -91,7 +98,8 @@ def _rows(label: str, scales: tuple[Scale, ...], value: float, known: h.Known) -
         first = number == 0
         yield Row(label if first else "", scale.unit, _written(value, scale),
                   text(known.paper), _deviation(value, known.paper) if first else None,
-                  text(known.experiment), _deviation(value, known.experiment) if first else None)
+                  text(known.experiment), _deviation(value, known.experiment) if first else None,
+                  text(known.handbook), _deviation(value, known.handbook) if first else None)
 
 
 def _written(value: float, scale: Scale) -> str:
@@ -121,7 +129,7 @@ def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
     if h.still_sinking(run):
         return [*remarks, _TOO_SHORT]
     found = [f"≈ {who}: {reference.note}" for entry in known.values()
-             for who, reference in (("paper", entry.paper), ("experiment", entry.experiment)) if reference and reference.note]
+             for who, reference in entry.by().items() if reference.note]
     return remarks + list(dict.fromkeys(found)) + ([_STILL] if h.still_in_contact(run) else [])
 
 
@@ -208,7 +216,9 @@ def table(run: Run, known: Mapping[str, h.Known]) -> Table:
     columns = [("paper", "paper", [row.paper for row in listed]),
                ("", "paper", [_percent(row.paper_deviation) for row in listed]),
                ("experiment", "experiment", [row.experiment for row in listed]),
-               ("", "experiment", [_percent(row.experiment_deviation) for row in listed])]
+               ("", "experiment", [_percent(row.experiment_deviation) for row in listed]),
+               ("handbook", "handbook", [row.handbook for row in listed]),
+               ("", "handbook", [_percent(row.handbook_deviation) for row in listed])]
     present = {whose for _, whose, texts in columns if any(texts)}
     shown = [(title, texts) for title, whose, texts in columns if whose in present]
     titles = ["computed", *(title for title, _ in shown)]
@@ -225,7 +235,6 @@ def _percent(deviation: float | None) -> str:
 def figures_with(run: Run, known: Mapping[str, h.Known]) -> list[dict[str, Any]]:
     """The summary as plain data, with what others found beside each figure."""
     def beside(name: str) -> dict[str, float]:
-        entry = known.get(name, h.Known())
-        return {key: reference.value for key, reference in (("paper", entry.paper), ("experiment", entry.experiment)) if reference}
+        return {who: reference.value for who, reference in known.get(name, h.Known()).by().items()}
 
     return [{**asdict(figure), **beside(figure.name)} for figure in run.summary]

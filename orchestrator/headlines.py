@@ -4,6 +4,7 @@ The figures follow from a run's results alone, whatever system it was: component
 figure whose component or column is missing is left out.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -21,18 +22,28 @@ PEAK_TRANSMITTED_AT = "peak transmitted force at"
 PEAK_ROCK = "peak force on the rock"
 PEAK_ROCK_AT = "peak force on the rock at"
 RATIO = "peak transmitted force / peak force on the rock"
+SETTLED_TRANSMITTED = "settled maximum of the transmitted force"
+SETTLED_ROCK = "settled maximum of the force on the rock"
+SETTLED_RATIO = "settled transmitted force / settled force on the rock"
+SETTLED_CUT_OFF = "cut-off frequency of the settled forces"
 PENETRATION = "penetration"
 CLEARANCE = "least distance of rock and base"
 DEFLECTION = "peak midspan deflection"
 BEAM_ENERGY = "peak beam energy"
 BEAM_ENERGY_FROM_STRAIN = "peak beam energy from the midspan strain"
 BEAM_SHARE = "peak beam energy / impact energy"
+BEAM_SHARE_FROM_STRAIN = "peak beam energy from the midspan strain / impact energy"
 IMPULSE_ROCK = "impulse on the rock"
 IMPULSE_TRANSMITTED = "transmitted impulse"
 DURATION = "duration of the force on the rock"
 IMPACT_ENERGY = "impact energy"
 RESIDUAL = "largest energy residual of the system"
 RESIDUAL_SHARE = "largest energy residual of the system / impact energy"
+
+SETTLING = 0.5
+"""Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one contact."""
+_ORDER = 4
+"""Order of the low-pass filter; applied forwards and backwards."""
 
 CONTACT_SHARE = 0.01
 """Part of its peak above which the force on the rock counts towards its duration."""
@@ -48,10 +59,15 @@ class Reference:
 
 @dataclass(frozen=True)
 class Known:
-    """What others found for a figure: by the paper's analysis, and in the experiment."""
+    """What others found for a figure: by the paper's analysis, in the experiment, and what a design handbook gives."""
 
     paper: Reference | None = None
     experiment: Reference | None = None
+    handbook: Reference | None = None
+
+    def by(self) -> "dict[str, Reference]":
+        """Those that there are, by who found them."""
+        return {who: reference for who, reference in vars(self).items() if reference}
 
 
 @dataclass(frozen=True)
@@ -115,7 +131,7 @@ def impact_energy(run: "Run") -> float | None:
 
 def headlines(run: "Run") -> list[Figure]:
     """Every headline figure that the results give."""
-    return [*_forces(run), *_cushion(run), *_beam(run), *_energy(run)]
+    return [*_forces(run), *_settled(run), *_cushion(run), *_beam(run), *_energy(run)]
 
 
 def _forces(run: "Run") -> Iterator[Figure]:
@@ -136,6 +152,50 @@ def _forces(run: "Run") -> Iterator[Figure]:
     touching = time[force > CONTACT_SHARE * on_rock]
     if touching.size:
         yield Figure(DURATION, float(touching[-1] - touching[0]), "s")
+
+
+def cut_off(run: "Run") -> float:
+    """Cut-off frequency (Hz) of the settled forces.
+
+    Discs that meet, or are struck one by one, give spikes at the natural frequency of a disc, sqrt(k_n/m)/2 pi: they come from
+    the size of the discs, not from the impact, which lasts many times as long.
+    """
+    sand = run.provenance["components"][roles(run).sand]["parameters"]
+    factor, modulus, density, radius = (float(sand[name]["value"]) for name in (
+        "stiffness_factor", "modulus", "unit_weight", "disc.radius"))
+    return SETTLING * math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
+
+
+def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":
+    """An output without what is faster than the cut-off: a Butterworth low-pass filter without shift in time (scipy.signal).
+
+    None where the rows are too few or too far apart for it.
+    """
+    import numpy as np
+    from scipy.signal import butter, sosfiltfilt
+
+    time, values = run.series["time"], run.series[column]
+    if time.size < 2:
+        return None
+    rate = (time.size - 1) / (time[-1] - time[0])
+    if time.size * cut_off(run) < rate or rate <= 2.0 * cut_off(run):
+        return None
+    even = np.linspace(time[0], time[-1], time.size)
+    filtered = sosfiltfilt(butter(_ORDER, cut_off(run), fs=rate, output="sos"), np.interp(even, time, values))
+    return np.interp(time, even, filtered)
+
+
+def _settled(run: "Run") -> Iterator[Figure]:
+    columns = [f"{roles(run).sand}.{output}" for output in ("transmitted_force", "rock.force.y")]
+    curves = [settled(run, column) for column in columns if column in run.series]
+    if len(curves) < len(columns) or any(curve is None for curve in curves):
+        return
+    transmitted, rock = (float(curve.max()) for curve in curves if curve is not None)
+    yield Figure(SETTLED_TRANSMITTED, transmitted, "N")
+    yield Figure(SETTLED_ROCK, rock, "N")
+    if rock > 0.0:
+        yield Figure(SETTLED_RATIO, transmitted / rock)
+    yield Figure(SETTLED_CUT_OFF, cut_off(run), "1/s")
 
 
 def still_in_contact(run: "Run") -> bool:
@@ -190,6 +250,7 @@ def _energy(run: "Run") -> Iterator[Figure]:
     if impact:
         if residual is not None:
             yield Figure(RESIDUAL_SHARE, float(max(residual, key=abs)) / impact)
-        column = f"{roles(run).beam}.energy.elastic"
-        if column in run.series:
-            yield Figure(BEAM_SHARE, extreme(run, column)[0] / impact)
+        for name, output in ((BEAM_SHARE, "energy.elastic"), (BEAM_SHARE_FROM_STRAIN, "energy.strain_estimate")):
+            column = f"{roles(run).beam}.{output}"
+            if column in run.series:
+                yield Figure(name, extreme(run, column)[0] / impact)

@@ -12,7 +12,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
 from ..core.system import System, Value
 from ..headlines import References
-from . import sonoda1993
+from . import full_scale, sonoda1993
 
 Sizes = Mapping[str, Mapping[str, int]]
 """Sizes by component of the system: ``{"sand": {"discs": 370}}``. What is not named has its default."""
@@ -47,7 +47,7 @@ def cases() -> dict[str, Case]:
     """All cases by name."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
-    return {case.name: case for case in found}
+    return {case.name: case for case in [*found, *map(_full_scale, full_scale.impacts().values())]}
 
 
 def case(name: str) -> Case:
@@ -124,3 +124,19 @@ def _laboratory(test: sonoda1993.Test) -> Case:
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
                    "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
         make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test))
+
+
+def _full_scale(impact: full_scale.Impact) -> Case:
+    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+        return full_scale.full_scale_system(fmus, impact, cast(full_scale.Coupling, coupling), sizes["sand"]["discs"],
+                                            sizes["sand"]["elements"])
+
+    beam = {"beam": "RBSMBeam"} if impact.span else {}
+    elements = {"elements": impact.elements}
+    return Case(
+        impact.name, f"Sonoda et al. 1993, full scale: {impact.summary}",
+        models={"sand": "SandCushion", "rock": "FallingRock", **beam},
+        sizes={"sand": {"discs": impact.discs, **elements}, **dict.fromkeys(beam, elements)},
+        couplings={"paper": "sand first, inputs held, exchange every 0.05 ms",
+                   "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms"},
+        make=make, one_size=("sand.elements", "beam.elements") if beam else (), references=partial(full_scale.references, impact))

@@ -3,7 +3,7 @@
 import csv
 import math
 from bisect import bisect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -51,7 +51,8 @@ class Test:
     modulus_in_table_4: bool
 
 
-def _rows(table: str) -> list[dict[str, str]]:
+def printed_rows(table: str) -> list[dict[str, str]]:
+    """Rows of a table of the paper, as printed."""
     lines = (_DATA / f"sonoda1993_{table}.csv").read_text(encoding="utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
@@ -59,9 +60,9 @@ def _rows(table: str) -> list[dict[str, str]]:
 @cache
 def tests() -> dict[int, Test]:
     """The sixteen tests of table 2 by number."""
-    printed = {int(row["no"]): float(row["e_bar_kgf_per_cm2"]) for row in _rows("table4")}
+    printed = {int(row["no"]): float(row["e_bar_kgf_per_cm2"]) for row in printed_rows("table4")}
     found = {}
-    for row in _rows("table2"):
+    for row in printed_rows("table2"):
         number, stiffness = int(row["no"]), float(row["k_kgf_per_cm"])
         found[number] = Test(
             number, row["sand"], int(row["box"]), float(row["water_content_percent"]),
@@ -89,7 +90,7 @@ def sands() -> dict[str, Sand]:
     """The two sands of table 1 by their letter."""
     return {row["sand"]: Sand(row["name"], float(row["specific_gravity"]), float(row["uniformity_coefficient"]),
                               float(row["curvature_coefficient"]), *(float(row[f"{d}_mm"]) * mm for d in ("d10", "d30", "d60")))
-            for row in _rows("table1")}
+            for row in printed_rows("table1")}
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ class TableFiveRow:
 def table_5() -> list[TableFiveRow]:
     """Influence of the damping constant h, computed in the paper."""
     return [TableFiveRow(float(r["e_bar_kgf_per_cm2"]) * kgf / cm**2, float(r["h"]), float(r["penetration_cm"]) * cm,
-                         float(r["peak_transmitted_force_kgf"]) * kgf) for r in _rows("table5")]
+                         float(r["peak_transmitted_force_kgf"]) * kgf) for r in printed_rows("table5")]
 
 
 BALL_MASS = 4.0
@@ -176,8 +177,8 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
             "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
             "beam_radius": SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"]),
         },
-        connections=lab_connections(),
-        bonds=lab_bonds(),
+        connections=impact_connections(("rock", "beam")),
+        bonds=impact_bonds(("rock", "beam")),
         energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
         master=master,
         order=["sand", "rock", "beam"],
@@ -194,22 +195,18 @@ _MOTION = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "ang
 _FORCES = ("force.x", "force.y", "torque")
 
 
-def lab_connections() -> list[Connection]:
-    """Kinematics of rock and beam to the sand, contact forces back."""
-    return ([Connection(source=f"rock.{q}", target=f"sand.rock.{q}") for q in _MOTION]
-            + [Connection(source=f"beam.{q}[*]", target=f"sand.beam.{q}[*]") for q in _MOTION]
-            + [Connection(source=f"sand.rock.{q}", target=f"rock.{q}") for q in _FORCES]
-            + [Connection(source=f"sand.beam.{q}[*]", target=f"beam.{q}[*]") for q in _FORCES])
+def impact_connections(partners: Iterable[str]) -> list[Connection]:
+    """Kinematics of ``partners``, of rock and beam, to the sand; contact forces back."""
+    ends = [(name, "[*]" if name == "beam" else "") for name in partners]
+    return ([Connection(source=f"{name}.{q}{all_}", target=f"sand.{name}.{q}{all_}") for name, all_ in ends for q in _MOTION]
+            + [Connection(source=f"sand.{name}.{q}{all_}", target=f"{name}.{q}{all_}") for name, all_ in ends for q in _FORCES])
 
 
-def lab_bonds() -> dict[str, PowerBond]:
-    """The two interfaces of the cushion."""
-    return {
-        "sand_rock": PowerBond(giver="sand", force=[f"rock.{q}" for q in _FORCES], taker="rock", position=list(_MOTION[:3]),
-                               work="energy.work.rock"),
-        "sand_beam": PowerBond(giver="sand", force=[f"beam.{q}[*]" for q in _FORCES], taker="beam",
-                               position=[f"{q}[*]" for q in _MOTION[:3]], work="energy.work.beam"),
-    }
+def impact_bonds(partners: Iterable[str]) -> dict[str, PowerBond]:
+    """The interfaces of the cushion with ``partners``, of rock and beam."""
+    return {f"sand_{name}": PowerBond(
+        giver="sand", force=[f"{name}.{q}{all_}" for q in _FORCES], taker=name, position=[f"{q}{all_}" for q in _MOTION[:3]],
+        work=f"energy.work.{name}") for name, all_ in ((name, "[*]" if name == "beam" else "") for name in partners)}
 
 
 def known_of(test: Test) -> dict[str, Known]:
@@ -222,7 +219,7 @@ def known_of(test: Test) -> dict[str, Known]:
     }
 
 
-_SAND = ("sand.modulus", "sand.damping")
+SAND = ("sand.modulus", "sand.damping")
 """What the paper varies in table 5 for the system of the tests."""
 _TESTED = ("box.", "rock.", "beam.", "base.y", "depth", "disc.radius", "unit_weight", "gravity")
 """Beginnings of the sand's parameters that describe the test; those of :data:`_SUPPORT` are whole names. The others are choices
@@ -236,13 +233,13 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
     Steps and choices of the sand's model leave it that test. Another sand is no longer the experiment's, but in table 5 if its
     damping constant is. With anything else another system is computed.
     """
-    if others := [name for name in changed if _of_the_test(name)]:
-        return References(remarks=[f"not compared: {_differs(others)}"])
-    varied = [name for name in _SAND if name in changed]
+    if others := [name for name in changed if of_the_test(name)]:
+        return References(remarks=[f"not compared: {differs(others)}"])
+    varied = [name for name in SAND if name in changed]
     if not varied:
         return References(known_of(test))
-    modulus, damping = float(changed.get(_SAND[0], test.modulus)), float(changed.get(_SAND[1], _DAMPING))
-    remarks = [f"not compared with the experiment: {_differs(varied)}"]
+    modulus, damping = float(changed.get(SAND[0], test.modulus)), float(changed.get(SAND[1], _DAMPING))
+    remarks = [f"not compared with the experiment: {differs(varied)}"]
     given = sorted({row.damping for row in table_5()})
     if damping not in given:
         return References(remarks=[*remarks, f"not compared with the paper: its table 5 has damping constants h of "
@@ -250,14 +247,16 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
     return References(_analysis(modulus, damping), remarks)
 
 
-def _of_the_test(name: str) -> bool:
+def of_the_test(name: str) -> bool:
+    """Whether a value, by ``component.name``, belongs to what was tested: not to the steps or the sand's model."""
     owner, _, port = name.partition(".")
-    if port == "internal_step" or name in _SAND:
+    if port == "internal_step" or name in SAND:
         return False
     return owner != "sand" or port in (*_SUPPORT, "discs", "elements") or port.startswith(_TESTED)
 
 
-def _differs(names: Sequence[str]) -> str:
+def differs(names: Sequence[str]) -> str:
+    """The names, in a sentence."""
     return f"{', '.join(names)} {'differs' if len(names) == 1 else 'differ'} from the test"
 
 

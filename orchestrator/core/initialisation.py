@@ -86,17 +86,28 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int]) -> None:
 
 
 def _settle(state: State, slaves: Mapping[str, Slave]) -> str:
-    """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing."""
+    """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing.
+
+    A warning about inputs that are then replaced is forgotten: the slave says it again if it still holds.
+    """
     outputs = state.outputs
     before = np.full_like(outputs, np.nan)
     for _ in range(_ROUNDS):
+        said = {name: len(slave.messages) for name, slave in slaves.items()}
         _phase(slaves, state.take)
         changed = np.flatnonzero((outputs != before) & ~(np.isnan(outputs) & np.isnan(before)))
         if not changed.size:
             return ""
         before[:] = outputs
         _phase(slaves, state.give)
+        for name in state.setters:
+            _forget_warnings(slaves[name], said[name])
     return state.plan.outputs[changed[0]].name
+
+
+def _forget_warnings(slave: Slave, since: int) -> None:
+    """Take back the warnings among the messages from number ``since`` on."""
+    slave.messages[since:] = [message for message in slave.messages[since:] if message[0] != WARNING]
 
 
 def _stability(plan: Plan, slave: Slave) -> list[Problem]:

@@ -19,7 +19,12 @@ Known = Mapping[str, h.Known]
 def forces(run: Run, known: Known, file: Path) -> None:
     """Transmitted force and force on the rock, with the measured peak."""
     with figure(run, file, WIDTH, 3.6) as made:
-        force_axes(run, known, made.subplots())
+        axes = made.subplots()
+        force_axes(run, known, axes)
+        _settled_forces(run, axes)
+        on_rock = known.get(h.SETTLED_ROCK, h.Known())
+        _references(axes, on_rock, kN, "kN", "force on the rock")
+        axes.set_ylim(top=max([axes.get_ylim()[1], *(1.12 * reference.value / kN for reference in on_rock.by().values())]))
 
 
 def force_axes(run: Run, known: Known, axes: Axes) -> None:
@@ -38,6 +43,18 @@ def force_axes(run: Run, known: Known, axes: Axes) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
+def _settled_forces(run: Run, axes: Axes) -> None:
+    """Both forces without their spikes."""
+    sand = h.roles(run).sand
+    for column, colour in ((f"{sand}.transmitted_force", TRANSMITTED), (f"{sand}.rock.force.y", ROCK)):
+        curve = h.settled(run, column)
+        if curve is None:
+            return
+        axes.plot(run.series["time"] / ms, curve / kN, color=colour, linewidth=0.9, linestyle=(0, (3, 2)))
+    axes.annotate(f"dashed: settled, below {h.cut_off(run):.0f} Hz", (1.0, 1.0), xycoords="axes fraction", xytext=(-2, -3),
+                  textcoords="offset points", ha="right", va="top", fontsize=8, color=GREY)
+
+
 def _references(axes: Axes, known: h.Known, scale: float, unit: str, what: str) -> None:
     """Lines at what others found."""
     if known.experiment:
@@ -48,6 +65,9 @@ def _references(axes: Axes, known: h.Known, scale: float, unit: str, what: str) 
         about = "≈ " if known.paper.note else ""
         value = known.paper.value / scale
         reference_line(axes, value, f"{what} in the paper's analysis, {about}{value:.2f} {unit}", ":")
+    if known.handbook:
+        value = known.handbook.value / scale
+        reference_line(axes, value, f"{what} by the handbook's formula, {value:.0f} {unit}", "-.")
 
 
 def penetration(run: Run, known: Known, file: Path) -> None:

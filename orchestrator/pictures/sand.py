@@ -21,8 +21,8 @@ from .curves import Known, force_axes
 from .style import BEAM, GREY, INK, figure
 
 FRAMES = 6
-DEFLECTION_SCALE = 30.0
-"""Deflections of the beam's axis are drawn so many times too large."""
+DEFLECTION_SCALES = (30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0)
+"""Deflections of the beam's axis are drawn so many times too large: the largest of these that keeps them within a disc."""
 _INTERESTING = 0.25
 """The frames end when the transmitted force has fallen below this part of its peak for good."""
 _CHAINS = LinearSegmentedColormap.from_list("chains", ["#e8c98f", "#e08a2e", "#c23b22", "#5a0f3c"])
@@ -106,14 +106,24 @@ def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes])
     for frame, axes in zip(shown, panels):
         _panel(run, frame, axes, largest / kN, window)
     if h.roles(run).beam:
-        _name_axis(panels[0])
+        _name_axis(panels[0], deflection_scale(run))
     bar = made.colorbar(ScalarMappable(Normalize(0.0, largest / kN), _CHAINS), ax=list(panels), shrink=0.8, aspect=25, pad=0.01)
     bar.set_label("elastic force in a contact (kN)", fontsize=8)
     bar.outline.set_linewidth(0.5)
 
 
-def _name_axis(axes: Axes) -> None:
-    axes.annotate(f"beam axis, deflections × {DEFLECTION_SCALE:g}", (0.0, 0.0), xycoords="axes fraction", xytext=(2, 1),
+def deflection_scale(run: Run) -> float:
+    """How many times too large the deflections of the beam are drawn."""
+    column = f"{h.roles(run).beam}.midspan.deflection"
+    if column not in run.series:
+        return DEFLECTION_SCALES[-1]
+    diameter = 2.0 * float(run.provenance["components"][h.roles(run).sand]["parameters"]["beam.radius"]["value"])
+    most = float(abs(run.series[column]).max())
+    return next((scale for scale in DEFLECTION_SCALES if scale * most <= diameter), DEFLECTION_SCALES[-1])
+
+
+def _name_axis(axes: Axes, scale: float) -> None:
+    axes.annotate(f"beam axis, deflections × {scale:g}", (0.0, 0.0), xycoords="axes fraction", xytext=(2, 1),
                   textcoords="offset points", fontsize=6.5, color=BEAM, zorder=5,
                   bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75})
 
@@ -178,7 +188,7 @@ def _axis_of_beam(run: Run, frame: Frame, axes: Axes) -> None:
     row = int(abs(run.series["time"] - frame.time).argmin())
     start = np.array([run.series[column][0] for column in columns])
     moved = np.array([run.series[column][row] for column in columns]) - start
-    axes.plot(frame.state.beam.x / cm, (start + DEFLECTION_SCALE * moved) / cm, color=BEAM, linewidth=1.4, zorder=4)
+    axes.plot(frame.state.beam.x / cm, (start + deflection_scale(run) * moved) / cm, color=BEAM, linewidth=1.4, zorder=4)
 
 
 def _words(run: Run, frame: Frame) -> str:

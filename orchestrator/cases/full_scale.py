@@ -1,0 +1,167 @@
+"""Full scale in Sonoda et al. (1993), sec. 4 (3): a rock of 1 tf on 90 cm of sand, on a rigid base (figs 20 to 22) and on two
+girders (figs 23 and 24, table 6).
+
+What the paper leaves open is chosen here and said where the numbers stand.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+from components.units import cm, cm2, cm4, kgf, kN
+
+from .. import headlines as h
+from ..core.schedule import Scheme
+from ..core.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..headlines import Known, Reference, References
+from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
+
+Coupling = Literal["paper", "impulse"]
+"""paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first, kinematics extrapolated, mean
+forces, exchange every 0.2 ms."""
+
+_COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
+    "paper": ("sequential", 5e-5, "held", "last"),
+    "impulse": ("sequential", 2e-4, "linear", "mean"),
+}
+
+ROCK_MASS = 1000.0
+ROCK_RADIUS = 45.6 * cm
+DROP = 10.0
+ROCK_SPEED = 14.0
+"""After the drop of 10 m, as the paper rounds it (m/s)."""
+LAYER = 90 * cm
+DISC_RADIUS = 5 * cm
+_GAP = 5e-3
+"""Distance (m) between rock and sand at the start."""
+_SAND_STEP = 5e-5
+"""Discs ten times as large as in the laboratory; the stable step is longer than 4e-4 s for all these sands."""
+
+
+@dataclass(frozen=True)
+class Impact:
+    """An impact at full scale.
+
+    modulus: fictitious modulus E_bar (Pa). width: of the box (m). depth: effective depth dL of the sand (m). span: of the girders
+    (m), 0 on a rigid base. stop_time: end of the run (s), after the rock has turned.
+    """
+
+    name: str
+    summary: str
+    modulus: float
+    width: float
+    depth: float
+    stop_time: float
+    span: float = 0.0
+
+    @property
+    def discs(self) -> int:
+        """Number of sand discs of 10 cm in the box: 360 and 270, as in the paper."""
+        return round(self.width / (2 * DISC_RADIUS)) * round(LAYER / (2 * DISC_RADIUS))
+
+    @property
+    def elements(self) -> int:
+        """Number of beam discs, or 1 (the least that the sand can be built with, never touched) on a rigid base."""
+        return round(self.span / ELEMENT) if self.span else 1
+
+
+RIGID_DEPTH = 2 * ROCK_RADIUS * 10.0 / 9.9
+"""Effective depth on the rigid base (m), which the paper does not give: as in the laboratory, 10 cm for a ball of 9.9 cm."""
+GIRDER_DEPTH = 170 * cm
+"""Distance of the girders, which the paper takes as the effective depth."""
+
+ELEMENT = 20 * cm
+"""Beam disc; twice a sand disc, with a stable step of 2e-5 s. The paper does not give its discs."""
+GIRDERS = 2
+GIRDER_AREA, GIRDER_SECOND_MOMENT, GIRDER_HEIGHT = 136.0 * cm2, 38_700 * cm4, 39 * cm
+"""Of one girder. The paper says H-300x400 only: read as the rolled section of the series 400 x 300, H-390x300x10x16 of JIS G 3192
+as it stood in 1993, bent about the strong axis."""
+_BEAM_STEP = 1e-5
+
+_SANDS = (("pit", "pit sand", 20.0, 0.24), ("river", "river sand", 75.0, 0.16), ("crushed", "crushed sand", 100.0, 0.16))
+"""Name, E_bar (kgf/cm2) and end of the run (s); the paper has 70 to 80 for river sand."""
+_GIRDER_SAND, _GIRDER_STOP = 100.0, 0.2
+
+
+@cache
+def impacts() -> dict[str, Impact]:
+    """The impacts at full scale by the name of their case."""
+    rigid = [Impact(f"rigid-base-{name}", f"1 tf from 10 m on 90 cm of {words} on a rigid base, E_bar {modulus:g} kgf/cm²",
+                    modulus * kgf / cm2, 4.0, RIGID_DEPTH, stop) for name, words, modulus, stop in _SANDS]
+    spans = [float(row["span_m"]) for row in printed_rows("table6")]
+    girders = [Impact(f"girders-{span:g}", f"1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders of {span:g} m",
+                      _GIRDER_SAND * kgf / cm2, 3.0, GIRDER_DEPTH, _GIRDER_STOP, span) for span in spans]
+    return {impact.name: impact for impact in rigid + girders}
+
+
+def full_scale_system(fmus: Mapping[str, str], impact: Impact, coupling: Coupling = "paper", discs: int | None = None,
+                      elements: int | None = None) -> System:
+    """An impact at full scale as a co-simulation of FMUs: ``rock`` and ``sand``, and ``beam`` with girders.
+
+    The origin is the left support on the girders, the left wall on the rigid base. discs, elements: sizes that ``sand`` and
+    ``beam`` were built with, by default those of the impact; the rock starts above the layer that so many discs make.
+    """
+    master, exchange, kinematics, forces = _COUPLINGS[coupling]
+    middle = 0.5 * (impact.span or impact.width)
+    rows = math.ceil((discs or impact.discs) / round(impact.width / (2 * DISC_RADIUS)))
+    partners = ("rock", "beam") if impact.span else ("rock",)
+    components = {
+        "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
+            "modulus": impact.modulus, "depth": impact.depth, "disc.radius": DISC_RADIUS, "box.left": middle - 0.5 * impact.width,
+            "box.width": impact.width, "base": "beam_discs" if impact.span else "floor", "kinematics": kinematics,
+            "forces": forces, "internal_step": _SAND_STEP}),
+        "rock": ComponentSpec(fmu=fmus["rock"], parameters={
+            "position0.x": middle, "position0.y": rows * 2 * DISC_RADIUS + ROCK_RADIUS + _GAP, "velocity0.y": -ROCK_SPEED,
+            "internal_step": _SAND_STEP}),
+    }
+    shared = {
+        "rock_radius": SharedValue(value=ROCK_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
+        "rock_mass": SharedValue(value=ROCK_MASS, targets=["rock.mass", "sand.rock.mass"]),
+    }
+    if impact.span:
+        spacing = impact.span / (elements or impact.elements)
+        components["beam"] = ComponentSpec(fmu=fmus["beam"], parameters={
+            "span": impact.span, "axis.y": -0.5 * spacing, "section.area": GIRDERS * GIRDER_AREA,
+            "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT, "section.height": GIRDER_HEIGHT, "internal_step": _BEAM_STEP})
+        shared["beam_radius"] = SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"])
+    return System(
+        name=impact.name, description=f"Sonoda et al. 1993, full scale: {impact.summary}", components=components, shared=shared,
+        connections=impact_connections(partners), bonds=impact_bonds(partners),
+        energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"), master=master, order=["sand", *partners],
+        stop_time=impact.stop_time, exchange_step=exchange, output_interval=4e-4, state_interval=4e-3,
+        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"]
+        + (["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"] if impact.span else []))
+
+
+HANDBOOK_LAME = 1e6
+"""Lame constant (Pa) that the Japanese rockfall handbook recommends for sand: 1000 kN/m2."""
+
+
+def handbook_force(mass: float, height: float, lame: float = HANDBOOK_LAME) -> float:
+    """Impact force (N) on a rock of ``mass`` (kg) after a fall of ``height`` (m) by the Japanese rockfall handbook.
+
+    P = 2.108 (m g)^(2/3) lambda^(2/5) H^(3/5), weight and force in kN, ``lame`` in Pa. It is Hertz's solution for a sphere on a
+    half-space with Poisson's ratio 0.25.
+    """
+    return 2.108 * (mass * kgf / kN) ** (2 / 3) * (lame / kN) ** 0.4 * height**0.6 * kN
+
+
+def references(impact: Impact, changed: Mapping[str, Value]) -> References:
+    """What is known of an impact that is computed with other values or sizes, by ``component.name``: nothing, if more than steps
+    and choices of the sand's model are others."""
+    if others := [name for name in changed if name in SAND or of_the_test(name)]:
+        return References(remarks=[f"not compared: {differs(others)}"])
+    return References(known_of(impact))
+
+
+def known_of(impact: Impact) -> dict[str, Known]:
+    """What the paper and the handbook give to compare with an impact, by the name of the figure."""
+    if not impact.span:
+        force = Reference(handbook_force(ROCK_MASS, DROP), "the handbook's formula with lambda = 1000 kN/m2, whatever the sand")
+        return {h.SETTLED_ROCK: Known(handbook=force), h.SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice"))}
+    row = next(row for row in printed_rows("table6") if float(row["span_m"]) == impact.span)
+    measured, computed = (Reference(0.01 * float(row[f"{who}_percent"])) for who in ("experiment", "paper_analysis"))
+    return {h.BEAM_SHARE: Known(computed, measured), h.BEAM_SHARE_FROM_STRAIN: Known(experiment=measured),
+            h.SETTLED_RATIO: Known(Reference(1.4, "figs 23 and 24: the difference of the maxima is 30 to 50 %"))}
