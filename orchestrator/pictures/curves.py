@@ -24,7 +24,7 @@ def forces(run: Run, known: Known, file: Path) -> None:
         _settled_forces(run, axes)
         on_rock = known.get(h.SETTLED_ROCK, h.Known())
         _references(axes, on_rock, kN, "kN", "force on the rock")
-        axes.set_ylim(top=max([axes.get_ylim()[1], *(1.12 * reference.value / kN for reference in on_rock.by().values())]))
+        axes.set_ylim(top=max([axes.get_ylim()[1], *(1.2 * reference.value / kN for reference in on_rock.by().values())]))
 
 
 def force_axes(run: Run, known: Known, axes: Axes) -> None:
