@@ -102,7 +102,7 @@ def beam(run: Run, known: Known, file: Path) -> None:
         deflection = run.series[f"{name}.midspan.deflection"] / mm
         upper.plot(time, deflection, color=BEAM)
         upper.axhline(0.0, color=GREY, linewidth=0.7)
-        upper.set(ylabel="midspan deflection (mm)\ndownwards")
+        upper.set(ylabel="deflection (mm)\ndownwards")
         upper.invert_yaxis()
         for output, label, colour, dashes in energies:
             if f"{name}.{output}" in run.series:

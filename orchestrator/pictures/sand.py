@@ -108,7 +108,7 @@ def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes])
     if h.roles(run).beam:
         _name_axis(panels[0], deflection_scale(run))
     bar = made.colorbar(ScalarMappable(Normalize(0.0, largest / kN), _CHAINS), ax=list(panels), shrink=0.8, aspect=25, pad=0.01)
-    bar.set_label("elastic force in a contact (kN)", fontsize=8)
+    bar.set_label("contact force (kN)", fontsize=8)
     bar.outline.set_linewidth(0.5)
 
 
