@@ -197,14 +197,16 @@ def model(run: Run) -> str:
 def scheme(run: Run) -> str:
     """How values were exchanged, and with which steps."""
     facts, system = run.provenance, run.provenance["system"]
-    steps = ", ".join(f"{name} {_step(entry):g}" for name, entry in facts["components"].items() if _step(entry))
+    given = {name: spec["step"] or system["exchange_step"] for name, spec in system.get("components", {}).items()}
+    used = {name: _step(entry, given.get(name, system["exchange_step"])) for name, entry in facts["components"].items()}
+    steps = ", ".join(f"{name} {step:g}" for name, step in used.items() if step)
     coupling = f"coupling {facts['coupling']}" if "coupling" in facts else f"{system['master']} master"
     return f"{coupling}: steps in ms: exchange {system['exchange_step'] / ms:g}" + (f", {steps}" if steps else "")
 
 
-def _step(component: Mapping[str, Any]) -> float:
-    """Internal step (ms) of a component; 0 if it names none."""
-    return float(component["parameters"].get("internal_step", {}).get("value", 0.0)) / ms
+def _step(component: Mapping[str, Any], communication_step: float) -> float:
+    """Longest internal step (ms) that a component makes: never longer than its communication step (s); 0 if it names none."""
+    return min(float(component["parameters"].get("internal_step", {}).get("value", 0.0)), communication_step) / ms
 
 
 # ------------------------------------------------------------------ as a table, as data
