@@ -27,6 +27,11 @@ COMPONENT = Component(
                             "move the rock or widen the box",
         kernel.DISC_TOO_WIDE: "a sand disc of radius {disc.radius} m (spread {disc.spread}) does not fit into the box, which is "
                               "{box.width} m wide: make the discs smaller or the box wider",
+        kernel.TOO_LOOSE: "the sand cannot lie as loosely as solid_fraction = {solid_fraction}: with its friction it falls to "
+                          "{layer.solid_fraction}; ask for that, raise friction_angle, rolling_resistance or cohesion, or take "
+                          "packing = random",
+        kernel.TOO_DENSE: "the sand cannot be packed as densely as solid_fraction = {solid_fraction}: it reaches "
+                          "{layer.solid_fraction}; ask for less, or raise disc.spread",
         kernel.BEAM_TOO_NARROW: "the beam is narrower than the cushion, whose box begins at box.left = {box.left} m and is "
                                 "box.width = {box.width} m wide: make the beam longer, move the box or set base = floor",
         kernel.BEAM_GAPS: "there are gaps between the beam discs: beam.radius = {beam.radius} m is less than half the distance of "

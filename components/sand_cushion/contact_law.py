@@ -1,5 +1,6 @@
 """The contact law of Sonoda et al. (1993), sec. 3: normal spring and dashpot without tension, tangential spring and dashpot in
-series with a Coulomb slider, rolling resistance.
+series with a Coulomb slider. Beyond the paper, and off by default: rolling resistance, contacts that do not spring back all the
+way, capillary bridges.
 
 All functions work on one contact. The normal points from body 1 to body 2; the tangent is the normal turned counter-clockwise.
 """
@@ -36,3 +37,36 @@ def rolling_moment(moment, rolling_speed, stiffness, limit, dt):
     trial = moment + stiffness * rolling_speed * dt
     clipped = min(limit, max(-limit, trial))
     return clipped, (trial - clipped) / stiffness * clipped
+
+
+@inlined
+def permanent_overlap(before, overlap, share):
+    """Part of the overlap (m) that stays when the contact is unloaded; it never recedes.
+
+    Walton and Braun (1986), fig. 2: loading along k_n, unloading and reloading along the steeper ``unloading`` = k_n / (1 - share):
+    the force is unloading * (overlap - permanent), which on first loading is k_n * overlap.
+    """
+    return max(before, share * overlap)
+
+
+@inlined
+def capillary_pull(pressed, pull, bridge):
+    """Attraction (N) by a capillary bridge: ``pull`` while the discs are pressed together (``pressed`` > 0, m), falling to nothing
+    while the gap -pressed opens to ``bridge`` (m)."""
+    return pull * min(1.0, max(0.0, 1.0 + pressed / bridge))
+
+
+@inlined
+def capillary_energy(pressed, pull, bridge):
+    """Potential energy (J) of :func:`capillary_pull`, zero beyond the longest bridge."""
+    closed = min(1.0, max(0.0, 1.0 + pressed / bridge))
+    return -pull * (0.5 * bridge * closed * closed + max(0.0, pressed))
+
+
+@inlined
+def yield_loss(before, now, unloading, share, pull):
+    """Energy (J) lost while the permanent overlap grows from ``before`` to ``now`` (m), less what the pull does on this way.
+
+    The force along it is k_n overlap = unloading (1 - share) / share * permanent.
+    """
+    return (now - before) * (0.5 * unloading * (1.0 - share) / share * (now + before) - pull)

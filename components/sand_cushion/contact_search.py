@@ -16,7 +16,7 @@ from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PLANES, RADIU
 V, A = LAYOUT.scalar, LAYOUT.array
 
 SKIN = 0.6
-"""Largest gap of a listed pair, in radii of a sand disc."""
+"""Largest gap of a listed pair, in radii of a sand disc; capillary bridges come on top."""
 
 
 @kernel
@@ -29,6 +29,13 @@ def disc_count(k):
 def beam_count(k):
     """Number of beam discs M."""
     return k[A.beam_position_x + 1]
+
+
+@kernel
+def listed_gap(w):
+    """Largest gap (m) of a listed pair."""
+    bridge = w[V.cohesion_range] * 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread])
+    return SKIN * w[V.disc_radius] + (bridge if w[V.cohesion] > 0.0 else 0.0)
 
 
 @kernel
@@ -139,6 +146,19 @@ def inherit(rows, row, partner, spring, row_before, partner_before, spring_befor
 
 
 @kernel
+def inherit_pairs(n, spring, spring_before, k):
+    """:func:`inherit` for the pairs of discs."""
+    inherit(n, view(k, k, A.row), view(k, k, A.second), spring, view(k, k, A.row_before), view(k, k, A.second_before), spring_before)
+
+
+@kernel
+def inherit_edges(n, spring, spring_before, k):
+    """:func:`inherit` for the contacts with all else."""
+    inherit(n + 1, view(k, k, A.edge_row), view(k, k, A.edge_partner), spring, view(k, k, A.edge_row_before),
+            view(k, k, A.edge_partner_before), spring_before)
+
+
+@kernel
 def forget(x, k):
     """Empty the lists, and with them all contact springs."""
     row, edge_row = view(k, k, A.row), view(k, k, A.edge_row)
@@ -166,8 +186,11 @@ def keep_for_inheritance(x, k):
     set_aside(pairs, view(k, k, A.second), view(k, k, A.second_before))
     set_aside(edges, view(k, k, A.edge_partner), view(k, k, A.edge_partner_before))
     set_aside(pairs, view(x, k, A.spring), view(x, k, A.spring_before))
+    set_aside(pairs, view(x, k, A.plastic), view(x, k, A.plastic_before))
     set_aside(pairs, view(x, k, A.roll), view(x, k, A.roll_before))
     set_aside(edges, view(x, k, A.edge_spring), view(x, k, A.edge_spring_before))
+    set_aside(edges, view(x, k, A.edge_plastic), view(x, k, A.edge_plastic_before))
+    set_aside(edges, view(x, k, A.edge_roll), view(x, k, A.edge_roll_before))
 
 
 @kernel
@@ -177,7 +200,7 @@ def list_discs(w, x, k):
     body, row = view(x, k, A.body), view(k, k, A.row)
     first, second = view(k, k, A.first), view(k, k, A.second)
     cell_start, cell_disc, disc_cell = view(k, k, A.cell_start), view(k, k, A.cell_disc), view(k, k, A.disc_cell)
-    skin = SKIN * w[V.disc_radius]
+    skin = listed_gap(w)
     size = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) + skin
     bottom = base_top(w, body, n, m) if w[V.base] != BEAM_DISCS else body[ROW * (n + 1) + 1]
     cells = cell_start.size - 1
@@ -223,13 +246,15 @@ def rebuild(w, x, k):
     keep_for_inheritance(x, k)
     if not list_discs(w, x, k) or not list_edges(w, x, k):
         return False
-    row, before = view(k, k, A.row), view(k, k, A.row_before)
-    second, second_before = view(k, k, A.second), view(k, k, A.second_before)
-    inherit(n, row, second, view(x, k, A.spring), before, second_before, view(x, k, A.spring_before))
+    row = view(k, k, A.row)
+    inherit_pairs(n, view(x, k, A.spring), view(x, k, A.spring_before), k)
+    inherit_edges(n, view(x, k, A.edge_spring), view(x, k, A.edge_spring_before), k)
     if w[V.rolling_resistance] > 0.0:
-        inherit(n, row, second, view(x, k, A.roll), before, second_before, view(x, k, A.roll_before))
-    inherit(n + 1, view(k, k, A.edge_row), view(k, k, A.edge_partner), view(x, k, A.edge_spring),
-            view(k, k, A.edge_row_before), view(k, k, A.edge_partner_before), view(x, k, A.edge_spring_before))
+        inherit_pairs(n, view(x, k, A.roll), view(x, k, A.roll_before), k)
+        inherit_edges(n, view(x, k, A.edge_roll), view(x, k, A.edge_roll_before), k)
+    if w[V.unloading_ratio] > 1.0:
+        inherit_pairs(n, view(x, k, A.plastic), view(x, k, A.plastic_before), k)
+        inherit_edges(n, view(x, k, A.edge_plastic), view(x, k, A.edge_plastic_before), k)
     spring = view(x, k, A.spring)
     for p in range(row[n], row[n] + BLOCK):
         spring[p] = 0.0

@@ -1,29 +1,33 @@
 """Variables of the sand cushion. Equations, frame, signs and sources: README.md beside this file."""
 
+import math
 from collections import namedtuple
 
 from ..component import Size
 from ..ports import Layout, Sizes, State, choice, count, inp, out, param
 from ..stepping import internal_step, stable_step
-from ..units import cm, deg, kgf
+from ..units import cm, cm2, deg, kgf
 
-SQUARE, HEXAGONAL, RANDOM = 1, 2, 3
+SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
 FREE, LOCKED = 1, 2
 FLOOR, BEAM_SURFACE, BEAM_DISCS = 1, 2, 3
 FIXED, ON_BEAM = 1, 2
+FLAT, ROUND = 1, 2
 HELD, LINEAR = 1, 2
 LAST, MEAN = 1, 2
+DISC, LAYER = 1, 2
 
 SIZES = {
     "discs": Size(370, 1, 1_000_000, "number of sand discs"),
     "elements": Size(24, 1, 2_000, "number of beam discs that the sand may touch"),
 }
 
-CALIBRATED_STIFFNESS_FACTOR = 0.42
-"""With locked rotation: fitted to table 5 of the paper, not derived. The static test (fig. 13) alone would ask for 0.37."""
+CALIBRATED_STIFFNESS_FACTOR = 0.375
+"""With locked rotation: fitted to table 5 and to the static test (fig. 13) of the paper, not derived."""
 
 _BALL_RADIUS = 4.95 * cm
 _BEAM_RADIUS = 2.5 * cm
+_BEAM_DISC_MASS = 11.85 * cm2 * 5.0 * cm * 7850.0
 _TABLE_3 = "Sonoda et al. 1993, table 3"
 _EQ_1 = "Sonoda et al. 1993, eq. (1)"
 
@@ -46,17 +50,21 @@ PLANES = 3
 Kind = namedtuple("Kind", "sand rock base wall rock_base rock_wall")
 KIND = Kind(*range(6))
 """Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
-Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling")
-LAW = Law(*range(6))
-"""Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance."""
+Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge")
+LAW = Law(*range(10))
+"""Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance,
+unloading stiffness (N/m), part of the overlap that stays, capillary force / distance of centres (N/m), longest bridge / distance
+of centres."""
 
-Column = namedtuple("Column", "x y vx vy spin reach root elastic tangential normal_dashpot tangential_dashpot sliding")
-COLUMN = Column(*range(12))
+Column = namedtuple("Column", "x y vx vy spin reach root elastic tangential normal_dashpot tangential_dashpot sliding plastic "
+                              "capillary")
+COLUMN = Column(*range(14))
 """Columns of the block of pairs: seven that describe the pairs, then energies, which add up over the blocks. The law leaves
 force to the right, force upwards, tangential and normal force in the first four."""
 
-Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling rock beam transmitted travelled beam_key")
-SUM = Sum(*range(10))
+Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam transmitted "
+                        "travelled beam_key")
+SUM = Sum(*range(12))
 """Running sums that a kernel keeps between two steps in ``sums``."""
 
 
@@ -93,9 +101,15 @@ LAYOUT = Layout(
               minimum=0.0, maximum=0.5),
         param("depth", "effective depth dL of the cushion, into the picture", 10 * cm, "m", minimum=1e-6,
               source="Sonoda et al. 1993, sec. 3 (2)"),
-        param("unit_weight", "mass density of a disc", 0.0018 * kgf / cm ** 3 / kgf, "kg/m3", minimum=1e-6, source=_TABLE_3),
+        param("unit_weight", "mass density of a disc, or of the layer with its voids (unit_weight_of)", 0.0018 * kgf / cm ** 3 / kgf,
+              "kg/m3", minimum=1e-6, source=_TABLE_3),
+        choice("unit_weight_of", "what unit_weight is the density of: a disc; or the layer, discs are then heavier by 1 / "
+               "solid_fraction", ("disc", "layer"), "disc"),
+        param("solid_fraction", "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion and "
+              "unit_weight_of = layer. The default is that of a square lattice", math.pi / 4.0, minimum=0.5, maximum=0.9),
         param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
-        choice("packing", "arrangement of the discs at the start", ("square", "hexagonal", "random"), "square"),
+        choice("packing", "arrangement of the discs at the start; random: as they settle, prepared: settled until they have "
+               "solid_fraction", ("square", "hexagonal", "random", "prepared"), "square"),
         param("lattice_shift", "square and hexagonal packing: each disc is moved at random by up to this part of its diameter", 0.0,
               minimum=0.0, maximum=0.5),
         count("seed", "random packing and lattice shift: number of the sample", 1, minimum=0, maximum=2**31 - 1),
@@ -113,6 +127,10 @@ LAYOUT = Layout(
         param("friction_angle", "angle of friction phi; mu = tan(phi)", 30 * deg, "rad", minimum=0.0, maximum=1.5, source=_TABLE_3),
         param("rolling_resistance", "rolling friction: largest rolling moment / (normal force * radius); with free rotation", 0.0,
               minimum=0.0),
+        param("unloading_ratio", "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); 1 is elastic", 1.0,
+              minimum=1.0, maximum=1e3),
+        param("cohesion", "cohesion of the moist sand, by capillary forces between its discs (Rumpf); 0 is dry", 0.0, "Pa", minimum=0.0),
+        param("cohesion_range", "length at which a capillary bridge breaks / distance of the centres", 0.05, minimum=1e-3, maximum=0.25),
         param("rock.stiffness_ratio", "k_n rock-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
         param("base.stiffness_ratio", "k_n base-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
         param("wall.stiffness_ratio", "k_n wall-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
@@ -121,10 +139,15 @@ LAYOUT = Layout(
         # what the cushion rests on and between
         choice("base", "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's discs as discs",
                ("floor", "beam_surface", "beam_discs"), "beam_discs"),
+        choice("base.shape", "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, for the beam's top is flat and its "
+               "discs are those of the computation; round: with the radius of the beam discs (base = beam_discs)", ("flat", "round"),
+               "flat"),
         choice("walls", "side walls fixed in space, or standing on the beam", ("fixed", "on_beam"), "fixed"),
         param("rock.radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6),
         param("rock.mass", "mass of the rock, for the dashpots of its contact with base and walls", 4.0, "kg", minimum=1e-6),
         param("beam.radius", "radius of a beam disc", _BEAM_RADIUS, "m", minimum=1e-6),
+        param("beam.disc_mass", "mass of a beam disc, for the dashpots of its contacts with sand; 0 takes the sand disc's there",
+              _BEAM_DISC_MASS, "kg", minimum=0.0),
         # integration and exchange
         internal_step(1e-5),
         choice("kinematics", "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
@@ -155,6 +178,9 @@ LAYOUT = Layout(
             source="Sonoda et al. 1993, eq. (4)"),
         out("penetration", "depth of the rock's lowest point under the sand's surface at the start; negative above it", "m"),
         out("surface_height", "height of the sand's surface at the start, under the rock", "m"),
+        out("layer.solid_fraction", "part of the layer that discs fill at the start; its height is twice that of their centre of "
+            "gravity", "1"),
+        out("layer.height", "height of the layer at the start: twice that of its centre of gravity above the base", "m"),
         out("unrest", "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
             "that is more; settling ends at 1e-6, or when settling.time is over"),
         stable_step(),
@@ -165,10 +191,12 @@ LAYOUT = Layout(
         out("energy.tangential_dashpot", "energy dissipated in tangential dashpots", "J"),
         out("energy.sliding", "energy dissipated in sliding contacts", "J"),
         out("energy.rolling", "energy dissipated by rolling resistance", "J"),
+        out("energy.plastic", "energy lost in contacts that do not spring back, less what their capillary bridges gained", "J"),
+        out("energy.capillary", "potential energy of the capillary bridges, zero where there is none", "J"),
         out("energy.work.rock", "work that the rock has done on the sand", "J"),
         out("energy.work.beam", "work that the beam has done on the sand (and on the walls standing on it)", "J"),
-        out("energy.residual", "kinetic + elastic + gravity + dissipated - work, minus the sum at the start", "J"),
-        out("energy.start", "kinetic + elastic + gravity at the start", "J"),
+        out("energy.residual", "kinetic + elastic + capillary + gravity + dissipated - work, minus the sum at the start", "J"),
+        out("energy.start", "kinetic + elastic + capillary + gravity at the start", "J"),
     ),
     states=(
         State("body", lambda n: ROW * _bodies(n)),
@@ -178,6 +206,12 @@ LAYOUT = Layout(
         State("spring_before", _pairs),
         State("roll", _pairs),
         State("roll_before", _pairs),
+        State("plastic", _pairs),
+        State("plastic_before", _pairs),
+        State("edge_plastic", _edges),
+        State("edge_plastic_before", _edges),
+        State("edge_roll", _edges),
+        State("edge_roll_before", _edges),
         State("edge_spring", _edges),
         State("edge_spring_before", _edges),
         State("block", lambda n: BLOCK * len(COLUMN)),

@@ -4,7 +4,15 @@ import math
 
 from ..compilation import inlined, kernel
 from ..ports import view
-from .contact_law import normal_force, rolling_moment, tangential_force
+from .contact_law import (
+    capillary_energy,
+    capillary_pull,
+    normal_force,
+    permanent_overlap,
+    rolling_moment,
+    tangential_force,
+    yield_loss,
+)
 from .contact_search import beam_count, disc_count
 from .declarations import (
     BEAM_SURFACE,
@@ -40,10 +48,14 @@ def clear(load, sums):
 
 
 @inlined
-def block_law(block, spring, law, dt):
+def block_law(block, spring, plastic, law, dt, lasting):
     """The law of contact_law.py for a block of pairs, in a form that the compiler turns into vector instructions: no branches,
-    a quantity of all pairs beside the other. Pairs that do not touch come out with nothing."""
-    stiffness, damping = law[LAW.normal], law[LAW.damping]
+    a quantity of all pairs beside the other. Pairs that do not touch come out with nothing.
+
+    lasting: whether contacts may keep an overlap or stick together; a constant of the calling place, so that the plain law costs
+    nothing more.
+    """
+    stiffness, damping, share = law[LAW.unloading], law[LAW.damping], law[LAW.yielding]
     tangential, tangential_damping, friction = law[LAW.tangential], law[LAW.tangential_damping], law[LAW.friction]
     for q in range(BLOCK):
         dx, dy = block[COLUMN.x * BLOCK + q], block[COLUMN.y * BLOCK + q]
@@ -52,9 +64,20 @@ def block_law(block, spring, law, dt):
         distance = math.sqrt(dx * dx + dy * dy)
         inverse = 1.0 / distance
         nx, ny = dx * inverse, dy * inverse
-        overlap = block[COLUMN.reach * BLOCK + q] - distance
+        reach = block[COLUMN.reach * BLOCK + q]
+        overlap = reach - distance
         opening = dvx * nx + dvy * ny
         slip = dvy * nx - dvx * ny - block[COLUMN.spin * BLOCK + q]
+        pull = 0.0
+        if lasting:
+            bridge, full = law[LAW.bridge] * reach, law[LAW.pull] * reach
+            yielded = permanent_overlap(plastic[q], overlap, share)
+            lost = yield_loss(plastic[q], yielded, stiffness, share, full) if yielded > plastic[q] else 0.0
+            plastic[q] = yielded if overlap > -bridge else 0.0
+            overlap -= plastic[q]
+            pull = capillary_pull(overlap, full, bridge)
+            block[COLUMN.plastic * BLOCK + q] += lost
+            block[COLUMN.capillary * BLOCK + q] += capillary_energy(overlap, full, bridge)
         pressed = normal_force(overlap, opening, stiffness, damping * root)
         normal = pressed if overlap > 0.0 else 0.0
         dashpot, before = tangential_damping * root, spring[q]
@@ -71,8 +94,9 @@ def block_law(block, spring, law, dt):
         block[COLUMN.normal_dashpot * BLOCK + q] += dashpot_n if overlap > 0.0 else 0.0
         block[COLUMN.tangential_dashpot * BLOCK + q] += dashpot_t if overlap > 0.0 else 0.0
         block[COLUMN.sliding * BLOCK + q] += slid if overlap > 0.0 else released
-        block[q] = normal * nx + force * ny  # force that the first exerts on the second
-        block[BLOCK + q] = normal * ny - force * nx
+        attracted = normal - pull
+        block[q] = attracted * nx + force * ny  # force that the first exerts on the second
+        block[BLOCK + q] = attracted * ny - force * nx
         block[2 * BLOCK + q] = force
         block[3 * BLOCK + q] = normal
 
@@ -99,7 +123,7 @@ def block_rolling(begin, end, dt, body, load, first, second, roll, block, law, s
 
 
 @kernel
-def between_discs(dt, pairs, rolls, body, load, first, second, spring, roll, law, block, sums):
+def between_discs(dt, pairs, rolls, lasting, body, load, first, second, spring, plastic, roll, law, block, sums):
     """Forces between sand discs: eq. (1) of the paper, block by block."""
     for q in range(COLUMN.elastic * BLOCK, len(COLUMN) * BLOCK):
         block[q] = 0.0
@@ -107,16 +131,21 @@ def between_discs(dt, pairs, rolls, body, load, first, second, spring, roll, law
         begin = b * BLOCK & INDEX
         for q in range(0, BLOCK, LANES):
             pairs_to_columns(body, first, second, begin + q, block, q, BLOCK)
-        block_law(block, spring[begin:begin + BLOCK], law, dt)
+        if lasting:
+            block_law(block, spring[begin:begin + BLOCK], plastic[begin:begin + BLOCK], law, dt, True)
+        else:
+            block_law(block, spring[begin:begin + BLOCK], plastic[begin:begin + BLOCK], law, dt, False)
         for q in range(0, BLOCK, LANES):
             columns_to_pairs(load, first, second, begin + q, block, q, BLOCK)
         if rolls:
             block_rolling(begin, min(begin + BLOCK, pairs), dt, body, load, first, second, roll, block, law, sums)
-    sums[SUM.elastic] += 0.5 * (law[LAW.normal] * lane_sum(block, COLUMN.elastic)
+    sums[SUM.elastic] += 0.5 * (law[LAW.unloading] * lane_sum(block, COLUMN.elastic)
                                 + lane_sum(block, COLUMN.tangential) / law[LAW.tangential])
     sums[SUM.normal_dashpot] += lane_sum(block, COLUMN.normal_dashpot) * dt
     sums[SUM.tangential_dashpot] += lane_sum(block, COLUMN.tangential_dashpot) * dt
     sums[SUM.sliding] += lane_sum(block, COLUMN.sliding)
+    sums[SUM.plastic] += lane_sum(block, COLUMN.plastic)
+    sums[SUM.capillary] = lane_sum(block, COLUMN.capillary)
 
 
 @kernel
@@ -206,24 +235,32 @@ def with_boundaries(dt, w, x, k):
     """Forces of discs and rock with rock, beam, base and walls."""
     n, m = disc_count(k), beam_count(k)
     body, load, law, sums = view(x, k, A.body), view(x, k, A.load), view(x, k, A.law), view(x, k, A.sums)
-    owner, partner, spring = view(k, k, A.edge_body), view(k, k, A.edge_partner), view(x, k, A.edge_spring)
-    elastic, dashpot_n, dashpot_t, slid = 0.0, 0.0, 0.0, 0.0
+    owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
+    spring, plastic, roll = view(x, k, A.edge_spring), view(x, k, A.edge_plastic), view(x, k, A.edge_roll)
+    rolls = w[V.rotation] == FREE and w[V.rolling_resistance] > 0.0
+    elastic, dashpot_n, dashpot_t, slid, lost = 0.0, 0.0, 0.0, 0.0, 0.0
     for p in range(view(k, k, A.edge_row)[n + 1] & INDEX):
         i, b = owner[p] & INDEX, partner[p] & INDEX
         at, force_at = ROW * i & INDEX, FORCE_ROW * i & INDEX
         nx, ny, gap, vx, vy = touch(i, b, w, body, n, m)
         kind = kind_of(i, b, n, m) * len(LAW) & INDEX
         tangential = law[kind + LAW.tangential]
+        stiffness, share = law[kind + LAW.unloading], law[kind + LAW.yielding]
+        yielded = permanent_overlap(plastic[p], -gap, share)
+        if yielded > plastic[p]:
+            lost += yield_loss(plastic[p], yielded, stiffness, share, 0.0)
+        plastic[p] = yielded if gap < 0.0 else 0.0
+        gap += plastic[p]
         if gap >= 0.0:
             if spring[p] != 0.0:
                 slid += 0.5 * spring[p] * spring[p] / tangential
                 spring[p] = 0.0
+            roll[p] = 0.0
             continue
         dvx, dvy = vx - body[at + 2], vy - body[at + 3]
         opening = dvx * nx + dvy * ny
         slip = dvy * nx - dvx * ny - body[at + SPIN]
-        mass_root = 2.0 * body[at + HALF_ROOT]  # of disc or rock
-        stiffness = law[kind + LAW.normal]
+        mass_root = dashpot_root(i, b, w, body, n, m)
         normal = normal_force(-gap, opening, stiffness, law[kind + LAW.damping] * mass_root)
         dashpot = law[kind + LAW.tangential_damping] * mass_root
         force, kept, taken = tangential_force(spring[p], slip, tangential, dashpot, law[kind + LAW.friction] * normal, dt)
@@ -237,10 +274,42 @@ def with_boundaries(dt, w, x, k):
         load[force_at + 1] -= py
         load[force_at + 2] += force
         load_boundary(b, i, px, py, nx, ny, w, body, load, sums, n, m)
+        if rolls and law[kind + LAW.rolling] > 0.0:
+            roll[p] = roll_on_boundary(dt, i, b, b <= n + m, roll[p], normal, law[kind + LAW.normal], law[kind + LAW.rolling], body,
+                                       load, sums)
     sums[SUM.elastic] += 0.5 * elastic
     sums[SUM.normal_dashpot] += dashpot_n * dt
     sums[SUM.tangential_dashpot] += dashpot_t * dt
     sums[SUM.sliding] += slid
+    sums[SUM.plastic] += lost
+
+
+@inlined
+def dashpot_root(i, b, w, body, n, m):
+    """Root of the mass m in c_n = 2 h sqrt(m k_n) (eq. 1): that of the disc or the rock, but the beam disc's where sand lies on a
+    beam."""
+    on_beam = i < n and b > n and (b <= n + m or (b == n + m + 3 and w[V.base] == BEAM_SURFACE))
+    if on_beam and w[V.beam_disc_mass] > 0.0:
+        return 2.0 * body[ROW * (n + 1) + HALF_ROOT]
+    return 2.0 * body[ROW * i + HALF_ROOT]
+
+
+@inlined
+def roll_on_boundary(dt, i, b, is_round, moment, normal, stiffness, rolling, body, load, sums):
+    """Rolling resistance of disc i on boundary b. Returns the moment (N m) on i. Planes do not turn, and take no moment."""
+    radius = body[ROW * i + RADIUS]
+    turning, reduced = -body[ROW * i + SPIN] / radius, radius
+    if is_round:
+        turning += body[ROW * b + SPIN] / body[ROW * b + RADIUS]
+        reduced = radius * body[ROW * b + RADIUS] / (radius + body[ROW * b + RADIUS])
+    bend = ROLLING * stiffness * rolling * rolling * reduced * reduced
+    moment, lost = rolling_moment(moment, turning, bend, rolling * reduced * normal, dt)
+    sums[SUM.rolling] += lost
+    sums[SUM.elastic] += 0.5 * moment * moment / bend
+    load[FORCE_ROW * i + 2] += moment / radius
+    if is_round:
+        load[FORCE_ROW * b + 2] -= moment / body[ROW * b + RADIUS]
+    return moment
 
 
 @inlined
@@ -260,6 +329,8 @@ def contact_forces(dt, w, x, k):
     sums = view(x, k, A.sums)
     clear(view(x, k, A.load), sums)
     rolls = w[V.rotation] == FREE and w[V.rolling_resistance] > 0.0
-    between_discs(dt, view(k, k, A.row)[disc_count(k)], rolls, view(x, k, A.body), view(x, k, A.load), view(k, k, A.first),
-                  view(k, k, A.second), view(x, k, A.spring), view(x, k, A.roll), view(x, k, A.law), view(x, k, A.block), sums)
+    lasting = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
+    between_discs(dt, view(k, k, A.row)[disc_count(k)], rolls, lasting, view(x, k, A.body), view(x, k, A.load),
+                  view(k, k, A.first), view(k, k, A.second), view(x, k, A.spring), view(x, k, A.plastic), view(x, k, A.roll),
+                  view(x, k, A.law), view(x, k, A.block), sums)
     with_boundaries(dt, w, x, k)

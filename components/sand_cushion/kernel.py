@@ -21,18 +21,20 @@ from .declarations import (
     LAYOUT,
     LINEAR,
     MEAN,
+    PREPARED,
     RADIUS,
     RANDOM,
+    ROUND,
     ROW,
     SPIN,
     SUM,
 )
 from .forces import ROLLING, contact_forces
-from .packing import pack
+from .packing import disc_mass, mean_base, pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE = range(1, 9)
+LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE, TOO_LOOSE, TOO_DENSE = range(1, 11)
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""
@@ -44,6 +46,16 @@ _SETTLING_STEP = 0.4
 """Step of the settling, in stable steps."""
 _SETTLING_RATE = 30.0
 """Damping of all motion while settling (1/s)."""
+_LOOSE_FRICTION, _LOOSE_ROLLING = 2.0, 1.0
+"""Friction and rolling resistance with which a prepared layer first settles."""
+_PREPARATION_RATE, _PREPARATION_TIME = 0.7, 100.0
+"""Damping of all motion while a layer is prepared, times sqrt(r/g), and time that it may take to settle, and again in which friction
+falls to nothing, in sqrt(r/g)."""
+_NEARLY_AT_REST = 1e-2
+_DENSITY_TOLERANCE = 0.01
+_COLLAPSE = 0.04
+"""How far from ``solid_fraction`` a prepared layer may be: too loose when it was compacted all it can, or too dense at rest, to which
+also capillary forces press it."""
 _AT_REST = 1e-6
 """Sand is at rest when no disc is accelerated by more than this part of gravity, nor moves faster than this times sqrt(g r)."""
 _CHECK_EVERY = 50
@@ -55,15 +67,32 @@ _INSTANT = 1e-9
 
 @kernel
 def set_law(kind, stiffness, friction, w, law):
-    """Constants of one kind of contact from its k_n (N/m), eq. (1): c = 2 h sqrt(m k), k_s = s k_n."""
+    """Constants of one kind of contact from its k_n (N/m), eq. (1): c = 2 h sqrt(m k), k_s = s k_n. Contacts of sand may yield,
+    those of the rock with base and walls do not."""
     at = kind * len(LAW)
+    of_sand = kind != KIND.rock_base and kind != KIND.rock_wall
+    ratio = w[V.unloading_ratio] if of_sand else 1.0
     tangential = w[V.tangential_ratio] * stiffness
     law[at + LAW.normal] = stiffness
     law[at + LAW.damping] = 2.0 * w[V.damping] * math.sqrt(stiffness)
     law[at + LAW.tangential] = tangential
     law[at + LAW.tangential_damping] = 2.0 * w[V.damping] * math.sqrt(tangential)
     law[at + LAW.friction] = math.tan(friction)
-    law[at + LAW.rolling] = w[V.rolling_resistance]
+    law[at + LAW.rolling] = w[V.rolling_resistance] if of_sand else 0.0
+    law[at + LAW.unloading] = ratio * stiffness
+    law[at + LAW.yielding] = 1.0 - 1.0 / ratio
+    law[at + LAW.pull] = capillary_strength(w) if kind == KIND.sand else 0.0
+    law[at + LAW.bridge] = w[V.cohesion_range]
+
+
+@kernel
+def capillary_strength(w):
+    """Force of a capillary bridge / distance of the centres (N/m), from the cohesion c of the sand.
+
+    Rumpf (1970): discs of diameter D that fill the part sf of the layer and pull each other with F at z contacts have the tensile
+    strength sf z F / (pi D dL); with z = 4 and c = strength * tan(phi), F = pi c D dL / (4 sf tan(phi)).
+    """
+    return math.pi * w[V.cohesion] * w[V.depth] / (4.0 * w[V.solid_fraction] * math.tan(w[V.friction_angle]))
 
 
 @kernel
@@ -84,7 +113,7 @@ def boundary_stiffness(kind, w):
     if kind == KIND.rock:
         return w[V.rock_stiffness_ratio] * stiffness_against(w[V.rock_radius], w)
     if kind == KIND.base:
-        radius = w[V.beam_radius] if w[V.base] == BEAM_DISCS else w[V.disc_radius]
+        radius = w[V.beam_radius] if w[V.base] == BEAM_DISCS and w[V.base_shape] == ROUND else w[V.disc_radius]
         return w[V.base_stiffness_ratio] * stiffness_against(radius, w)
     if kind == KIND.wall:
         return w[V.wall_stiffness_ratio] * sand_stiffness(w)
@@ -109,19 +138,19 @@ def stable_step_of(w):
 
     For a contact, (n.(u_j - u_i))^2 <= 2 (n.u_i)^2 + 2 (n.u_j)^2, and six neighbours have sum n n^T = 3 I: translation has
     omega^2 <= 6 (k_n + k_s) / m. Discs that all turn the same way shear their contacts most: omega^2 <= 24 k_s / m, and rolling
-    resistance adds 12 of its stiffness / I. Dashpots likewise, with the velocity of half a step before:
+    resistance adds 12 of its stiffness / I among discs, up to 16 in a corner of planes. Dashpots likewise, with the velocity of half a step before:
     dt <= 2 / omega (sqrt(1 + z^2) - z) with 2 z omega their bound.
     """
-    least = w[V.disc_radius] * (1.0 - (w[V.disc_spread] if w[V.packing] == RANDOM else 0.0))
-    mass = w[V.unit_weight] * math.pi * least * least * w[V.depth]
+    least = w[V.disc_radius] * (1.0 - (w[V.disc_spread] if w[V.packing] >= RANDOM else 0.0))
+    mass = disc_mass(least, w)
     stiffness = sand_stiffness(w)
     for kind in (KIND.rock, KIND.base, KIND.wall):
         stiffness = max(stiffness, boundary_stiffness(kind, w))
     contact = math.sqrt(stiffness / mass)
     ratio = w[V.tangential_ratio]
-    springs, dashpots = 6.0 * (1.0 + ratio), 6.0 * (1.0 + math.sqrt(ratio))
+    springs, dashpots = 6.0 * (w[V.unloading_ratio] + ratio), 6.0 * (1.0 + math.sqrt(ratio))
     if w[V.rotation] == FREE:
-        springs = max(springs, 24.0 * ratio + 6.0 * ROLLING * w[V.rolling_resistance] ** 2)
+        springs = max(springs, 24.0 * ratio + 8.0 * ROLLING * w[V.rolling_resistance] ** 2)
         dashpots = max(dashpots, 24.0 * math.sqrt(ratio))
     omega = contact * math.sqrt(springs)
     z = w[V.damping] * dashpots * contact / omega
@@ -161,13 +190,14 @@ def place(b, px, py, angle, vx, vy, omega, ahead, body, load):
 
 @kernel
 def size_boundaries(w, x, k):
-    """Radii of rock and beam discs, the root of the rock's mass for its dashpots, and the body that is far away."""
+    """Radii of rock and beam discs, the roots of their masses for the dashpots, and the body that is far away."""
     n, m = disc_count(k), beam_count(k)
     body = view(x, k, A.body)
     body[ROW * n + RADIUS] = w[V.rock_radius]
     body[ROW * n + HALF_ROOT] = 0.5 * math.sqrt(w[V.rock_mass])
     for b in range(n + 1, n + m + 1):
         body[ROW * b + RADIUS] = w[V.beam_radius]
+        body[ROW * b + HALF_ROOT] = 0.5 * math.sqrt(w[V.beam_disc_mass])
     body[ROW * (n + m + 1)] = _FAR
 
 
@@ -242,20 +272,72 @@ def slow_down(factor, w, x, k):
 
 
 @kernel
-def settle(w, x, k):
-    """Let the discs come to rest under gravity, with base and walls at rest and the rock away; at most settling.time."""
+def come_to_rest(longest, rate, rest, w, x, k):
+    """Let the discs come to rest under gravity, with base and walls at rest and the rock away: until their unrest is below
+    ``rest``, at most ``longest`` (s). All motion is damped with ``rate`` (1/s)."""
     dt = _SETTLING_STEP * w[V.stable_step]
-    for s in range(int(w[V.settling_time] / dt)):
+    for s in range(int(longest / dt)):
         status, _, _ = advance(dt, w, x, k)
         if status != OK:
             return status
-        if s % _CHECK_EVERY == 0 and unrest(w, x, k) < _AT_REST:
+        if s % _CHECK_EVERY == 0 and unrest(w, x, k) < rest:
             break
-        slow_down(1.0 - _SETTLING_RATE * dt, w, x, k)
-    contact_forces(_INSTANT * dt, w, x, k)
+        slow_down(1.0 - rate * dt, w, x, k)
+    return OK
+
+
+@kernel
+def settle(w, x, k):
+    """Let the discs come to rest and publish how far they are from it."""
+    status = come_to_rest(w[V.settling_time], _SETTLING_RATE, _AT_REST, w, x, k)
+    contact_forces(_INSTANT * w[V.stable_step], w, x, k)
     w[V.unrest] = unrest(w, x, k)
     slow_down(0.0, w, x, k)
-    return OK
+    return status
+
+
+@kernel
+def prepare(w, x, k):
+    """Bring the layer to ``solid_fraction``: let it settle as loosely as it can, with discs that hardly slide or roll, then make
+    them slide more and more easily until it is dense enough. From there on it has the friction and the cohesion of the sand."""
+    law = view(x, k, A.law)
+    friction, rolling, pull = law[LAW.friction], law[LAW.rolling], law[LAW.pull]
+    unit = math.sqrt(w[V.disc_radius] / max(w[V.gravity], 1e-12))
+    rate, longest = _PREPARATION_RATE / unit, _PREPARATION_TIME * unit
+    law[LAW.friction], law[LAW.rolling], law[LAW.pull] = _LOOSE_FRICTION, _LOOSE_ROLLING, 0.0
+    status = come_to_rest(longest, rate, _NEARLY_AT_REST, w, x, k)
+    dt = _SETTLING_STEP * w[V.stable_step]
+    for s in range(int(longest / dt)):
+        if status != OK or solid_fraction(w, x, k) >= w[V.solid_fraction]:
+            break
+        law[LAW.friction] = _LOOSE_FRICTION * (1.0 - s * dt / longest)
+        law[LAW.rolling] = _LOOSE_ROLLING * (1.0 - s * dt / longest)
+        status, _, _ = advance(dt, w, x, k)
+        slow_down(1.0 - rate * dt, w, x, k)
+    law[LAW.friction], law[LAW.rolling], law[LAW.pull] = friction, rolling, pull
+    return status
+
+
+@kernel
+def layer_height(w, x, k):
+    """Height (m) of a layer of even density with the discs' centre of gravity, above the mean level of the base."""
+    n, body = disc_count(k), view(x, k, A.body)
+    mass, moment = 0.0, 0.0
+    for i in range(n):
+        area = body[ROW * i + RADIUS] * body[ROW * i + RADIUS]
+        mass += area
+        moment += area * body[ROW * i + 1]
+    return 2.0 * (moment / mass - mean_base(w, body, n, beam_count(k)))
+
+
+@kernel
+def solid_fraction(w, x, k):
+    """Part of the layer that discs fill, with the height :func:`layer_height`."""
+    body = view(x, k, A.body)
+    area = 0.0
+    for i in range(disc_count(k)):
+        area += math.pi * body[ROW * i + RADIUS] * body[ROW * i + RADIUS]
+    return area / (w[V.box_width] * layer_height(w, x, k))
 
 
 @kernel
@@ -279,7 +361,12 @@ def initialise(w, x, k):
     forget(x, k)
     if not rebuild(w, x, k):
         return LIST_FULL
-    status = settle(w, x, k)
+    status = prepare(w, x, k) if w[V.packing] == PREPARED else OK
+    if status == OK:
+        status = settle(w, x, k)
+    w[V.layer_height], w[V.layer_solid_fraction] = layer_height(w, x, k), solid_fraction(w, x, k)
+    if status == OK and w[V.packing] == PREPARED:
+        status = preparation_fault(w)
     sums = view(x, k, A.sums)
     for q in range(sums.size):
         sums[q] = 0.0
@@ -308,6 +395,16 @@ def surface_under_rock(w, x, k):
         if abs(body[ROW * i] - w[V.rock_position_x]) < w[V.rock_radius]:
             near = max(near, top)
     return near if near > -math.inf else anywhere
+
+
+@kernel
+def preparation_fault(w):
+    """Fault of the start: a layer that is not as dense as it was to be."""
+    if w[V.layer_solid_fraction] > w[V.solid_fraction] + _COLLAPSE:
+        return TOO_LOOSE
+    if w[V.layer_solid_fraction] < w[V.solid_fraction] - _DENSITY_TOLERANCE:
+        return TOO_DENSE
+    return OK
 
 
 @kernel
@@ -360,11 +457,11 @@ def evaluate(w, x, k):
     if not rebuild(w, x, k):
         return LIST_FULL
     contact_forces(_INSTANT * w[V.internal_step], w, x, k)
-    for q in (SUM.normal_dashpot, SUM.tangential_dashpot, SUM.sliding, SUM.rolling, SUM.rock, SUM.beam):
+    for q in (SUM.normal_dashpot, SUM.tangential_dashpot, SUM.sliding, SUM.rolling, SUM.plastic, SUM.rock, SUM.beam):
         sums[q] = 0.0
     w[V.energy_start] = 0.0
     publish_energies(kinetic_energy(x, k), potential_energy(w, x, k), w, sums)
-    w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_gravity]
+    w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
     w[V.energy_residual] = 0.0
     collect_forces(1.0, True, w, x, k)
     return OK
@@ -420,8 +517,10 @@ def publish_energies(kinetic, potential, w, sums):
     w[V.energy_normal_dashpot], w[V.energy_tangential_dashpot] = sums[SUM.normal_dashpot], sums[SUM.tangential_dashpot]
     w[V.energy_sliding], w[V.energy_rolling] = sums[SUM.sliding], sums[SUM.rolling]
     w[V.energy_work_rock], w[V.energy_work_beam] = sums[SUM.rock], sums[SUM.beam]
-    stored = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_gravity]
-    lost = w[V.energy_normal_dashpot] + w[V.energy_tangential_dashpot] + w[V.energy_sliding] + w[V.energy_rolling]
+    w[V.energy_plastic], w[V.energy_capillary] = sums[SUM.plastic], sums[SUM.capillary]
+    stored = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
+    lost = (w[V.energy_normal_dashpot] + w[V.energy_tangential_dashpot] + w[V.energy_sliding] + w[V.energy_rolling]
+            + w[V.energy_plastic])
     w[V.energy_residual] = stored + lost - w[V.energy_work_rock] - w[V.energy_work_beam] - w[V.energy_start]
 
 

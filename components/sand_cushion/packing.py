@@ -6,7 +6,7 @@ from ..compilation import kernel
 from ..counter_random import uniform
 from ..ports import view
 from .contact_search import base_top, beam_count, disc_count
-from .declarations import BEAM_DISCS, HALF_ROOT, HEXAGONAL, INVERSE_MASS, LAYOUT, RADIUS, RANDOM, ROW, SPIN
+from .declarations import BEAM_DISCS, HALF_ROOT, HEXAGONAL, INVERSE_MASS, LAYER, LAYOUT, RADIUS, RANDOM, ROW, SPIN
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -17,9 +17,16 @@ _LOOSE = 1.05
 
 
 @kernel
+def disc_mass(radius, w):
+    """Mass (kg) of a disc: a cylinder of the cushion's depth."""
+    density = w[V.unit_weight] / (w[V.solid_fraction] if w[V.unit_weight_of] == LAYER else 1.0)
+    return density * math.pi * radius * radius * w[V.depth]
+
+
+@kernel
 def set_disc(body, i, x, y, radius, w):
-    """Place disc i at rest; its mass is that of a cylinder of the cushion's depth."""
-    mass = w[V.unit_weight] * math.pi * radius * radius * w[V.depth]
+    """Place disc i at rest."""
+    mass = disc_mass(radius, w)
     body[ROW * i], body[ROW * i + 1] = x, y
     body[ROW * i + 2], body[ROW * i + 3], body[ROW * i + SPIN] = 0.0, 0.0, 0.0
     body[ROW * i + RADIUS], body[ROW * i + INVERSE_MASS], body[ROW * i + HALF_ROOT] = radius, 1.0 / mass, 0.5 * math.sqrt(mass)
@@ -43,12 +50,19 @@ def foundation(w, body, n, m):
 
 
 @kernel
+def mean_base(w, body, n, m):
+    """Mean height (m) of what the sand lies on; between beam discs it lies deeper than their tops."""
+    valleys = (1.0 - 0.25 * math.pi) * w[V.beam_radius] if w[V.base] == BEAM_DISCS else 0.0
+    return foundation(w, body, n, m) - valleys
+
+
+@kernel
 def square_lattice(w, body, n, bottom, stiffness, base_stiffness):
     """Columns of discs, each compressed by its own weight: at rest when they stand on a flat base."""
     radius = w[V.disc_radius]
     columns = columns_of(w[V.box_width], 2.0 * radius)
     margin = 0.5 * (w[V.box_width] - columns * 2.0 * radius)
-    weight = w[V.unit_weight] * math.pi * radius * radius * w[V.depth] * w[V.gravity]
+    weight = disc_mass(radius, w) * w[V.gravity]
     for i in range(n):
         line, column = i // columns, i % columns
         height = (n - column + columns - 1) // columns  # discs in this column
@@ -104,7 +118,7 @@ def pack(w, x, k, stiffness, base_stiffness):
     n, m = disc_count(k), beam_count(k)
     body = view(x, k, A.body)
     bottom = foundation(w, body, n, m)
-    if w[V.packing] == RANDOM:
+    if w[V.packing] >= RANDOM:
         random_heap(w, body, n, bottom)
         return
     if w[V.packing] == HEXAGONAL:

@@ -101,12 +101,13 @@ def column(spin, rolling_resistance):
 
 
 def test_rolling_resistance_slows_at_its_limit():
-    """Two equal discs have the effective radius r/2: moment mu_r m g r/2 on I = m r^2 / 2 is the deceleration mu_r g / r."""
-    discs = column(10.0, 0.3)
+    """Two equal discs have the effective radius r/2: moment mu_r m g r/2 on I = m r^2 / 2 is the deceleration mu_r g / r. The floor
+    adds mu_r 2 m g r, four times as much, on the lower one."""
+    discs = column(30.0, 0.3)
     run(discs, 2e-3)
     before = rows(discs)[:, 4].copy()
     run(discs, 4e-3)
-    assert before - rows(discs)[:, 4] == pytest.approx(np.array((1.0, -1.0)) * 0.3 * G * 4e-3, rel=1e-6)
+    assert before - rows(discs)[:, 4] == pytest.approx(np.array((5.0, -1.0)) * 0.3 * G * 4e-3, rel=1e-6)
     assert discs["energy.rolling"] > 0.9 * (discs["energy.start"] - discs["energy.kinetic"] - discs["energy.gravity"]) > 0.0
 
 
@@ -115,6 +116,6 @@ def test_rolling_resistance_holds_discs_that_turn_slowly():
     for _ in range(100):
         run(held, 1e-3)
         run(released, 1e-3)
-        assert abs(held.state("angle")).max() < 1e-5
+        assert abs(held.state("angle")).max() < 2e-5
     assert released.state("angle") == pytest.approx([2e-3, -2e-3], rel=1e-9)
     assert held["energy.rolling"] == 0.0

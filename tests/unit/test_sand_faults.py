@@ -12,7 +12,7 @@ from tests.sand_discs import SMALL_BOX, cushion, discs_at, run, stirred
 
 def test_all_bad_values_are_named_at_once():
     with pytest.raises(ComponentError) as refusal:
-        cushion({"disc.radius": -0.005, "modulus": math.nan, "depth": 0.0, "damping": -0.1, "packing": 4.0,
+        cushion({"disc.radius": -0.005, "modulus": math.nan, "depth": 0.0, "damping": -0.1, "packing": 9.0,
                  "rock.position.y": math.inf})
     assert len(refusal.value.problems) == 6
     assert "disc.radius = -0.005 m: allowed is 1e-09 m or more" in str(refusal.value)

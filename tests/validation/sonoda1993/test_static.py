@@ -33,14 +33,10 @@ def secant(load, modulus, depth):
     return load[at - 5:at].mean() / kgf / depth / modulus
 
 
-@pytest.mark.parametrize(("factor", "expected"), [(0.42, 1.52), (0.37, 1.31)])
-def test_spring_constant_is_proportional_to_the_modulus(factor, expected):
-    """Table 4 has k = 1.29 E_bar.
-
-    The factor 0.42 that fits table 5 gives 1.49 to 1.58 (E_bar from 20 to 100), 0.37 gives 1.27 to 1.37.
-    """
+def test_spring_constant_is_proportional_to_the_modulus():
+    """Table 4 has k = 1.29 E_bar; measured 1.29 to 1.39 for E_bar from 100 to 20 on single lattices."""
     for modulus in (20, 100):
-        assert secant(loads(modulus, stiffness_factor=factor), modulus, 4.0) == pytest.approx(expected, rel=0.08)
+        assert secant(loads(modulus), modulus, 4.0) == pytest.approx(1.29, rel=0.09)
 
 
 def test_load_rises_with_the_penetration():
