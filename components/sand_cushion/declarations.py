@@ -22,12 +22,13 @@ SIZES = {
     "elements": Size(24, 1, 2_000, "number of beam discs that the sand may touch"),
 }
 
-CALIBRATED_STIFFNESS_FACTOR = 0.375
+CALIBRATED_STIFFNESS_FACTOR = 0.37
 """With locked rotation: fitted to table 5 and to the static test (fig. 13) of the paper, not derived."""
 
 _BALL_RADIUS = 4.95 * cm
 _BEAM_RADIUS = 2.5 * cm
-_BEAM_DISC_MASS = 11.85 * cm2 * 5.0 * cm * 7850.0
+_BEAM_DISC_MASS = math.pi * _BEAM_RADIUS**2 * 10.0 * cm * 7850.0
+"""A disc of steel, as deep as the cushion."""
 _TABLE_3 = "Sonoda et al. 1993, table 3"
 _EQ_1 = "Sonoda et al. 1993, eq. (1)"
 

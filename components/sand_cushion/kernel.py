@@ -48,6 +48,8 @@ _SETTLING_RATE = 30.0
 """Damping of all motion while settling (1/s)."""
 _LOOSE_FRICTION, _LOOSE_ROLLING = 2.0, 1.0
 """Friction and rolling resistance with which a prepared layer first settles."""
+_PREPARATION_STEP = 0.8
+"""Step of the preparation of a layer, in stable steps."""
 _PREPARATION_RATE, _PREPARATION_TIME = 0.7, 100.0
 """Damping of all motion while a layer is prepared, times sqrt(r/g), and time that it may take to settle, and again in which friction
 falls to nothing, in sqrt(r/g)."""
@@ -272,10 +274,10 @@ def slow_down(factor, w, x, k):
 
 
 @kernel
-def come_to_rest(longest, rate, rest, w, x, k):
+def come_to_rest(longest, part, rate, rest, w, x, k):
     """Let the discs come to rest under gravity, with base and walls at rest and the rock away: until their unrest is below
-    ``rest``, at most ``longest`` (s). All motion is damped with ``rate`` (1/s)."""
-    dt = _SETTLING_STEP * w[V.stable_step]
+    ``rest``, at most ``longest`` (s), in steps of ``part`` stable steps. All motion is damped with ``rate`` (1/s)."""
+    dt = part * w[V.stable_step]
     for s in range(int(longest / dt)):
         status, _, _ = advance(dt, w, x, k)
         if status != OK:
@@ -289,7 +291,7 @@ def come_to_rest(longest, rate, rest, w, x, k):
 @kernel
 def settle(w, x, k):
     """Let the discs come to rest and publish how far they are from it."""
-    status = come_to_rest(w[V.settling_time], _SETTLING_RATE, _AT_REST, w, x, k)
+    status = come_to_rest(w[V.settling_time], _SETTLING_STEP, _SETTLING_RATE, _AT_REST, w, x, k)
     contact_forces(_INSTANT * w[V.stable_step], w, x, k)
     w[V.unrest] = unrest(w, x, k)
     slow_down(0.0, w, x, k)
@@ -305,8 +307,8 @@ def prepare(w, x, k):
     unit = math.sqrt(w[V.disc_radius] / max(w[V.gravity], 1e-12))
     rate, longest = _PREPARATION_RATE / unit, _PREPARATION_TIME * unit
     law[LAW.friction], law[LAW.rolling], law[LAW.pull] = _LOOSE_FRICTION, _LOOSE_ROLLING, 0.0
-    status = come_to_rest(longest, rate, _NEARLY_AT_REST, w, x, k)
-    dt = _SETTLING_STEP * w[V.stable_step]
+    status = come_to_rest(longest, _PREPARATION_STEP, rate, _NEARLY_AT_REST, w, x, k)
+    dt = _PREPARATION_STEP * w[V.stable_step]
     for s in range(int(longest / dt)):
         if status != OK or solid_fraction(w, x, k) >= w[V.solid_fraction]:
             break
