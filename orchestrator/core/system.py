@@ -117,7 +117,7 @@ class System(_Data):
     state_interval: time between two recorded states (s) of the components with ``record_states``.
     record: variables in the results, ``component.port``; ``*`` stands for any text, and then selects outputs. Default: all
         outputs.
-    watch: outputs whose extremes over all exchanges go into the summary, in the same notation.
+    watch: outputs whose extremes and integral over all exchanges go into the summary, in the same notation.
     """
 
     name: str
