@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
+from shlex import quote as quoted
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -73,7 +74,7 @@ def list_() -> None:
     with _screen() as screen:
         table = plain_table("case", "")
         for case in cases().values():
-            table.add_row(case.name, case.summary)
+            table.add_row(" = ".join((case.name, *case.other_names)), case.summary)
         parts = plain_table("component", "", "sizes")
         for name in NAMES:
             found = component(name)
@@ -150,23 +151,25 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
     request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
-        _finish(done, screen, not no_figures)
+        if done.status == "failed":  # said before drawing, which takes its time and may be interrupted
+            screen.fail(str(done.provenance["error"]))
         if done.status == "interrupted":
             screen.warn(f"interrupted at t = {1e3 * done.series['time'][-1]:g} ms; the results until then are kept")
-            raise typer.Exit(INTERRUPTED)
+        drawn = _finish(done, screen, not no_figures)
         if done.status == "failed":
-            screen.fail(str(done.provenance["error"]))
             raise typer.Exit(RUN_FAILED)
+        if done.status == "interrupted" or not drawn:
+            raise typer.Exit(INTERRUPTED)
 
 
 def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool, screen: "Screen") -> "Run":
     """Prepare and carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
+        from . import comparison
         from .building import is_cold
         from .core.errors import RunFailed
         from .core.reading import add_figures, read_run
         from .core.run import simulate
-        from .headlines import headlines
         from .job import prepare
         from .screen import COLD_START
 
@@ -179,27 +182,36 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
                             facts=job.facts)
         except RunFailed:
             done = read_run(folder)  # status and reason are in it
-    figures = headlines(done)
+    figures = comparison.figures(done, comparison.known_of(done))
     add_figures(folder, figures)
     return replace(done, summary=[*done.summary, *figures])
 
 
-def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
-    """Draw the figures, then show the table or its JSON; of a run that failed, only where its results are."""
+def _finish(done: "Run", screen: "Screen", with_figures: bool) -> bool:
+    """Draw the figures, then show the table or its JSON; of a run that failed, only where its results are.
+
+    False if Ctrl-C has ended the drawing; the results are shown all the same.
+    """
     from . import comparison
 
-    figures = _draw(done, done.folder / "figures", screen) if with_figures else []
-    known, warnings = comparison.known_of(done), comparison.warnings(done)
+    figures, drawn = list[Path](), True
+    try:
+        figures = _draw(done, done.folder / "figures", screen) if with_figures else []
+    except KeyboardInterrupt:
+        screen.warn(f"drawing was interrupted; `rockshed plot {quoted(str(done.folder))}` draws the pictures")
+        drawn = False
+    warnings = comparison.warnings(done)
     for text in warnings:
         screen.warn(text)
     if screen.as_json:
         screen.dump({"status": done.status, "folder": str(done.folder), "error": done.provenance.get("error"),
                      "warnings": warnings, "caption": comparison.caption(done),
-                     "figures": comparison.figures_with(done, known), "pictures": [str(file) for file in figures]})
-        return
+                     "figures": [figure.as_entry() for figure in done.summary], "pictures": [str(file) for file in figures]})
+        return drawn
     if done.status != "failed":
         _show_table(done, screen)
     screen.say(f"results in {done.folder}" + (f", {len(figures)} pictures in {figures[0].parent}" if figures else ""))
+    return drawn
 
 
 def _show_table(done: "Run", screen: "Screen") -> None:
@@ -217,11 +229,7 @@ def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
     with screen.busy("drawing"):
         from .pictures import draw_all
 
-        try:
-            return draw_all(done, folder, screen.note, screen.warn)
-        except KeyboardInterrupt:
-            screen.note(f"the results are complete; `rockshed plot {done.folder}` draws the pictures")
-            raise
+        return draw_all(done, folder, screen.note, screen.warn)
 
 
 @app.command()

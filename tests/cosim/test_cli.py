@@ -68,7 +68,7 @@ def test_list_names_every_case_and_component(rockshed):
     text = rockshed("list").stdout
     for number in (*range(1, 4), *range(5, 17)):
         assert f"lab-impact-{number} " in text
-    assert all(name in text for name in ("lab-impact ", "FallingRock", "SandCushion", "RBSMBeam", "discs = 370"))
+    assert all(name in text for name in ("lab-impact = lab-impact-4 ", "FallingRock", "SandCushion", "RBSMBeam", "discs = 370"))
 
 
 def test_version(rockshed):
@@ -85,7 +85,7 @@ def test_build_in_another_size_and_look_into_it(rockshed, tmp_path):
     seen = in_one_line(rockshed("info", file).stdout)
     assert "beam.force.y[1..3] N" in seen
     assert "modulus Pa 2.98122e+06 1e-06 .." in seen
-    assert "rotation locked free | locked" in seen
+    assert "rotation locked 1 = free | 2 = locked" in seen
     assert "canGetAndSetFMUstate" in seen
     assert "GUID {" in seen
 
@@ -112,6 +112,7 @@ def test_a_run_leaves_results_and_pictures(finished):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in (folder / "figures").iterdir())
     assert "peak transmitted force" in result.stdout
     assert "calibrated sand: rotation locked" in result.stdout
+    assert "sand A, compacted at 0.4 kgf/cm², water content 6.98 %, box 1" in result.stdout.splitlines()[0]
 
 
 def test_the_table_compares_with_paper_and_experiment_when_the_impact_is_over(rockshed):
@@ -147,9 +148,15 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     content = json.loads(result.stdout)
     assert content["status"] == "complete"
     by_name = {figure["name"]: figure for figure in content["figures"]}
-    assert by_name["peak transmitted force"]["experiment"] == pytest.approx(519.1 * 9.80665)
-    stored = {f["name"]: f["value"] for f in json.loads((tmp_path / "results/lab-impact/summary.json").read_text())}
-    assert stored == {name: figure["value"] for name, figure in by_name.items()}
+    peak = by_name["peak transmitted force"]
+    measured, computed = peak["references"]["experiment"], peak["references"]["paper"]
+    assert measured == {"value": pytest.approx(519.1 * 9.80665), "note": "",
+                        "deviation": pytest.approx(peak["value"] / (519.1 * 9.80665) - 1.0)}
+    assert "interpolated to E_bar" in computed["note"]
+    assert "references" not in by_name["impact energy"]
+    assert json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["figures"]
+    read = read_run(tmp_path / "results/lab-impact").figure("peak transmitted force")
+    assert (read.references["paper"].value, read.references["paper"].note) == (computed["value"], computed["note"])
     assert result.stderr == ""
 
 
@@ -341,6 +348,29 @@ def test_an_unstable_run_fails_with_component_and_time(rockshed, tmp_path):
     assert "peak transmitted force" not in result.stdout
     assert read_run(tmp_path / "results/lab-impact").status == "failed"
     assert (tmp_path / "results/lab-impact/figures/energy.png").is_file()
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Ctrl-C as soon as drawing begins."""
+    def stop(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("orchestrator.pictures.draw_all", stop)
+
+
+def test_ctrl_c_while_a_failed_run_is_drawn_does_not_hide_why_it_failed(rockshed, impatient):
+    result = rockshed("run", "lab-impact", "--allow-unstable", "--set", "beam.internal_step=1e-5", "--output-dir", "my run")
+    assert result.exit_code == 1
+    said = in_one_line(result.stderr)
+    assert 0 <= said.index("failed: beam at t = 0.0") < said.index("drawing was interrupted; `rockshed plot 'my run'")
+
+
+def test_ctrl_c_while_a_run_is_drawn_leaves_its_figures(rockshed, impatient, tmp_path):
+    result = rockshed("run", "lab-impact", "--stop-time", "0.001")
+    assert result.exit_code == 130
+    assert "peak transmitted force" in result.stdout
+    assert read_run(tmp_path / "results/lab-impact").status == "complete"
 
 
 def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
