@@ -193,7 +193,7 @@ def model(run: Run) -> str:
     modulus = float(values["modulus"]) / kgf * cm**2
     resisted = f"rolling resistance {rolling:g}, " if rolling else ""
     return (f"{kind or 'modified'} sand: rotation {rotation}, stiffness factor {factor:g}, {resisted}{values['packing']} packing, "
-            f"E_bar {modulus:.1f} kgf/cm²")
+            f"fictitious modulus E_bar {modulus:.1f} kgf/cm²")
 
 
 def scheme(run: Run) -> str:

@@ -382,6 +382,24 @@ def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
         assert (tmp_path / "again" / name).read_bytes() == (folder / "figures" / name).read_bytes()
 
 
+def test_pictures_of_the_sand_have_a_scale_and_one_unit_of_length(finished):
+    from matplotlib.figure import Figure
+    from matplotlib.text import Annotation, Text
+
+    from orchestrator.pictures import sand
+
+    run, made = read_run(finished[0]), Figure()
+    panels = list(made.subplots(1, 2))
+    sand.draw(run, sand.frames(run, [0.0, 0.004]), made, panels)
+    words = [text.get_text() for text in made.findobj(Text) if text.get_text()]
+    assert "rock 0.1 cm above, 0.05 kN transmitted" in words
+    assert any(text.startswith("rock 3.0 cm deep, ") for text in words)
+    assert not [text for text in words if " mm" in text or "P =" in text]
+    bars = [text for text in panels[0].texts if isinstance(text, Annotation) and text.arrow_patch]
+    assert [abs(bar.xy[0] - bar.xyann[0]) for bar in bars] == [pytest.approx(5.0)]  # the axes are in cm
+    assert "5 cm" in words
+
+
 @pytest.mark.parametrize("content", ["{", "[]", "{}", ""])
 def test_plot_names_a_damaged_file(rockshed, finished, tmp_path, content):
     shutil.copytree(finished[0], tmp_path / "run")
