@@ -22,8 +22,8 @@ from .curves import Known, force_axes
 from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
-_READ_AS = ("lines: forces in the contacts, by width and colour; deep: the rock's lowest point below the surface that the sand had at "
-            "the start; transmitted: vertical force of the sand on its base")
+_READ_AS = ("lines: forces in the contacts, by width and colour; deep: the rock's lowest point below the surface that the sand had "
+            "at the start; transmitted: vertical force of the sand on its base")
 _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
 DEFLECTION_SCALES = (30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0)

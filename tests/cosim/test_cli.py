@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from orchestrator.cli import app
 from orchestrator.core.reading import read_run
 from orchestrator.core.system import load_system
+from orchestrator.screen import spoken
 
 PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
 SHORT = ["--stop-time", "0.001", "--no-figures"]
@@ -242,13 +243,61 @@ REFUSED = [
     (["lab-impact", "--set", "beam.span=0.3"], ["narrower than the cushion", "make the beam longer"]),
     (["lab-impact", "--set", "beam.internal_step=1e-5"], ["1e-05 s", "stable_step = 6.14", "beam.internal_step"]),
     (["lab-impact", "--exchange-step", "3e-5"],
-     ["output_interval: 0.0001 s is no whole number of steps of 3e-05 s", "nearest are 9e-05 s"]),
+     ["output_interval: 0.0001 s is no whole number of steps of 3e-05 s", "nearest are 9e-05 s",
+      "exchange_step = 3e-05, output_interval = 9e-05, state_interval = 0.00048, stop_time = 0.03999"]),
+    (["lab-impact", "--exchange-step", "1e-3"], ["exchange_step = 0.001, output_interval = 0.001, state_interval = 0.001"]),
+    (["lab-impact", "--stop-time", "1e9"], ["stop_time: 1e+09 s is beyond the longest time, 4.61e+06 s", "make it shorter"]),
+    (["lab-impact", "--stop-time", "1e6"],
+     ["output_interval: 10,000,000,001 rows of 299 columns are 3e+12 values", "5 s or more will do",
+      "state_interval: 2,000,000,001 states would be recorded", "100 s or more will do"]),
     (["lab-impact", "--stop-time", "-1"], ["stop_time", "is not after start_time"]),
     (["lab-impact", "--stop-time", "nan"], ["stop_time", "finite"]),
     (["lab-impact", "--coupling", "magic"], ["'magic' is unknown", "paper, impulse, jacobi"]),
     (["lab-impact", "--master", "boss"], ["'sequential' or 'jacobi'"]),
     (["missing.toml"], ["missing.toml", "cannot be read"]),
 ]
+
+
+def test_times_that_a_refusal_proposes_together_are_accepted(rockshed):
+    said = in_one_line(rockshed("run", "lab-impact", "--exchange-step", "3e-5").stderr).partition("this will do: ")[2]
+    options = [part for text in said.split(", ") for part in ("--" + text.split(" = ")[0].replace("_", "-"), text.split(" = ")[1])]
+    assert options[:2] == ["--exchange-step", "3e-05"]
+    assert rockshed("run", "lab-impact", *options, "--no-figures").exit_code == 0
+
+
+def test_the_interval_that_a_refusal_proposes_is_accepted(rockshed):
+    from orchestrator.core.plan import make_plan
+    from orchestrator.core.run import sources_of
+    from orchestrator.job import Request, prepare
+
+    system = prepare(Request("lab-impact", options={"stop_time": 1e6, "output_interval": 5.0, "state_interval": 100.0})).system
+    assert make_plan(system, sources_of(system)).timing.exchanges == 10**11
+
+
+@pytest.mark.parametrize(("encoding", "said"), [("utf-16", "is written in UTF-16, and TOML is UTF-8"),
+                                                ("latin-1", "is no text in UTF-8"), ("utf-8-sig", "")])
+def test_the_encoding_of_a_system_file(rockshed, tmp_path, encoding, said):
+    text = rockshed("info", "lab-impact", "--toml").stdout
+    (tmp_path / "lab.toml").write_bytes(f"# Größe\n{text}".encode(encoding))
+    result = rockshed("info", "lab.toml")
+    assert result.exit_code == (2 if said else 0)
+    assert said in in_one_line(result.stderr)
+
+
+def test_a_long_run_tells_how_long_it_will_take(capsys):
+    from orchestrator.screen import Estimate, Screen
+
+    now = [0.0]
+    estimate = Estimate(lambda: now[0])
+    assert estimate.left(0.0, 10.0) == ""
+    for now[0], reached, said in ((1.0, 0.1, ""), (3.0, 0.5, "about 57 s left"), (10.0, 0.6, "about 2.6 min left")):
+        assert estimate.left(reached, 10.0) == said
+    show = Screen()._told(estimate)
+    for now[0] in (4.0, 6.0, 8.0, 11.0, 12.5):
+        show(now[0] / 1e3, 10.0)
+    told = [line.split(",")[0] for line in capsys.readouterr().err.splitlines()]
+    assert told == ["reached 6.0 of 10000 ms", "reached 12.5 of 10000 ms"]
+    assert [spoken(seconds) for seconds in (3.21, 600.0, 12345.0, 6.6e9)] == ["3.2 s", "10 min", "3.4 h", "210 years"]
 
 
 @pytest.mark.parametrize(("arguments", "said"), REFUSED, ids=lambda value: " ".join(value)[:60])
@@ -439,7 +488,7 @@ def long_run(tmp_path):
     processes = []
 
     def start(folder):
-        command = ["run", "lab-impact", "--stop-time", "100", "--output-dir", str(folder), "--no-figures"]
+        command = ["run", "lab-impact", "--stop-time", "9", "--output-dir", str(folder), "--no-figures"]
         process = subprocess.Popen([sys.executable, "-m", "orchestrator.cli", *command], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
         processes.append(process)
