@@ -18,8 +18,12 @@ RESULTS = Path("results")
 """Folder of the runs that name no other."""
 
 app = typer.Typer(name="rockshed", no_args_is_help=True, add_completion=False, pretty_exceptions_show_locals=False,
-                  context_settings={"help_option_names": ["-h", "--help"]},
-                  help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.")
+                  rich_markup_mode=None,  # its help shows every flag as if it took a value
+                  context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+                  help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.",
+                  epilog="`rockshed run lab-impact` is where to begin; `rockshed COMMAND --help` tells the options. Exit codes: 0 "
+                         "done, 1 the run failed (what was computed is kept), 2 refused (nothing was computed or left behind), 3 a "
+                         "check failed, 130 interrupted with Ctrl-C (what was computed is kept).")
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no notes: results, warnings and errors only.")]
@@ -27,6 +31,8 @@ Set = Annotated[list[str] | None, typer.Option("--set", metavar="COMPONENT.PARAM
                                                help="Another value of a parameter or of a shared value. May be repeated.")]
 RunSize = Annotated[list[str] | None, typer.Option("--size", metavar="COMPONENT.SIZE=NUMBER",
                                                    help="Build a component in another size. May be repeated.")]
+Coupling = Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case; default paper.")]
+System = Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")]
 
 
 def _version(wanted: bool) -> None:
@@ -83,7 +89,7 @@ def list_() -> None:
 
 
 @app.command()
-def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPONENT]...", help="All of them by default.")] = None,
+def build(components: Annotated[list[str] | None, typer.Argument(metavar="COMPONENT", help="All of them by default.")] = None,
           size: Annotated[list[str] | None, typer.Option(metavar="NAME=NUMBER", help="A size other than the default. May be "
                                                          "repeated.")] = None,
           output_dir: Annotated[Path | None, typer.Option(help="Folder of the FMUs.")] = None, quiet: Quiet = False) -> None:
@@ -96,10 +102,11 @@ def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPO
 
 
 @app.command()
-def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
+def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml", help="An FMU, also a stranger's, a case, or a "
+                                                     "system file.")],
          toml: Annotated[bool, typer.Option("--toml", help="Print the system as a file that `rockshed run` takes.")] = False,
          ) -> None:
-    """What is in an FMU or in a system: ports, steps, values, connections."""
+    """What is in an FMU or a system: ports, values, connections."""
     from .export import system_text
     from .inspection import show_fmu, show_system
     from .job import Request, prepare
@@ -114,9 +121,8 @@ def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
 
 
 @app.command()
-def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
-           folder: Annotated[Path, typer.Argument(help="A new or empty folder.")],
-           set_: Set = None, size: RunSize = None, coupling: Annotated[str | None, typer.Option()] = None) -> None:
+def export(target: System, folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="A new or empty folder.")],
+           set_: Set = None, size: RunSize = None, coupling: Coupling = None) -> None:
     """Write a system as TOML, with its FMUs, to change and run it."""
     from .export import export_system
     from .job import Request, prepare
@@ -127,7 +133,7 @@ def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
 
 
 @app.command()
-def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")],
+def run(target: System,
         set_: Set = None, size: RunSize = None,
         output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")] = None,
         stop_time: Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")] = None,
@@ -137,12 +143,15 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
                                                              "sand.")] = None,
         master: Annotated[str | None, typer.Option(metavar="sequential|jacobi", help="One component after the other, or "
                                                      "all at once.")] = None,
-        coupling: Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case.")] = None,
+        coupling: Coupling = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
-    """Run a case or a system file, compare, draw; build what is missing."""
+    """Run a case or a system file, compare, draw.
+
+    FMUs of a case that are missing are built.
+    """
     from .job import Request
     from .screen import INTERRUPTED, RUN_FAILED
 
@@ -236,7 +245,7 @@ def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
 def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run, finished or not.")],
          output_dir: Annotated[Path | None, typer.Option(help="Folder of the pictures; default RUN/figures.")] = None,
          quiet: Quiet = False) -> None:
-    """Draw a run again, also one that failed or was interrupted or killed."""
+    """Draw a run again, also one that failed or was killed."""
     with _screen(quiet) as screen:
         from .core.errors import InputRefused, Problem
         from .core.reading import read_run
@@ -256,11 +265,14 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
 
 
 @app.command()
-def bench(part: Annotated[list[str] | None, typer.Argument(metavar="[discs|coupling|start]...", help="All of them by "
+def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupling|start", help="All of them by "
                                                            "default.")] = None,
           rounds: Annotated[int, typer.Option(min=3, help="Rounds in which everything takes its turn.")] = 7,
           as_json: Json = False, quiet: Quiet = False) -> None:
-    """Measure speed and price of the coupling, in ratios within interleaved rounds. Takes about two minutes."""
+    """Measure speed and price of the coupling.
+
+    All figures are ratios within interleaved rounds. Takes about two minutes.
+    """
     with _screen(quiet, as_json) as screen:
         from .bench.table import PARTS
         from .core.errors import InputRefused, Problem
@@ -292,7 +304,10 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
               output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")] = None,
               workers: Annotated[int | None, typer.Option(min=1, help="Processes at a time; default: one for each core.")] = None,
               as_json: Json = False, quiet: Quiet = False) -> None:
-    """Run the studies of a paper and set computed beside printed and measured figures: table, JSON, figures, HTML page."""
+    """Carry out the studies of a paper.
+
+    Computed figures stand beside printed and measured ones: table, JSON, figures, HTML page.
+    """
     from .screen import INTERRUPTED
 
     with _screen(quiet, as_json) as screen:
@@ -318,7 +333,7 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
 
 def main() -> None:
     """The entry point of the command ``rockshed``."""
-    app()
+    app(prog_name="rockshed")
 
 
 if __name__ == "__main__":

@@ -108,6 +108,7 @@ class _Planner:
     descriptions: dict[str, Description] = field(default_factory=dict)
 
     def plan(self) -> Plan:
+        """Go through the system part by part, then refuse it or return the plan."""
         self._describe()
         order = self._order()
         timing = make_timing(self.system, self.problems)

@@ -213,6 +213,7 @@ class _Stream:
         self._file.flush()
 
     def append(self, columns: Sequence[Any]) -> None:
+        """Write a batch, given by columns of equal length."""
         import pyarrow as pa
 
         self._writer.write_batch(pa.record_batch([pa.array(c, f.type) for c, f in zip(columns, self._schema, strict=True)],
@@ -220,6 +221,7 @@ class _Stream:
         self._file.flush()
 
     def close(self) -> None:
+        """End the stream, so that it is complete."""
         self._writer.close()
         self._file.close()
 

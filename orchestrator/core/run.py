@@ -64,6 +64,7 @@ class _Session:
     initialised: bool = False
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
+        """Make and initialise the slaves, then open the results."""
         began = time.perf_counter()
         self.slaves = instantiate(self.plan, self.sources)
         state = State(self.plan)
@@ -77,6 +78,7 @@ class _Session:
         self.results.begin(recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts})
 
     def run(self, interruption: Interruption, progress: Progress | None) -> None:
+        """Carry out the exchanges and finish the results, also those of a run that fails."""
         failure: RunFailed | None = None
         try:
             status = "complete" if self.master.run(interruption, progress) else "interrupted"

@@ -65,6 +65,22 @@ def test_help_is_there_without_the_heavy_libraries():
     assert done.stdout.strip() == "set()"
 
 
+def test_help_tells_every_command_in_one_line_and_the_exit_codes(rockshed):
+    lines = [line.strip() for line in rockshed("--help").stdout.splitlines()]
+    for command in ("list", "build", "info", "export", "run", "plot", "bench", "reproduce"):
+        line, = (line for line in lines if line.startswith(f"{command} "))
+        assert line.endswith(".")
+        assert "..." not in line
+    assert "2 refused (nothing was computed or left behind)" in in_one_line(rockshed("--help").stdout)
+
+
+def test_help_tells_every_option_and_flags_take_no_value(rockshed):
+    text = in_one_line(rockshed("run", "--help").stdout)
+    assert "--json Print" in text
+    assert "--no-figures Draw" in text
+    assert "--coupling paper|impulse|jacobi Scheme" in text
+
+
 def test_list_names_every_case_and_component(rockshed):
     text = rockshed("list").stdout
     for number in (*range(1, 4), *range(5, 17)):
