@@ -1,8 +1,10 @@
 """The command line ``rockshed``. Commands import what they need when they run, so that help is there at once."""
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from io import TextIOWrapper
 from pathlib import Path
 from shlex import quote as quoted
 from typing import TYPE_CHECKING, Annotated
@@ -333,6 +335,9 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
 
 def main() -> None:
     """The entry point of the command ``rockshed``."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a terminal that knows no Greek shows ? in its place
+            stream.reconfigure(errors="replace")
     app(prog_name="rockshed")
 
 

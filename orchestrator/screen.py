@@ -185,8 +185,8 @@ class Screen:
         self.out.print(escape(text), soft_wrap=True)
 
     def dump(self, content: Any) -> None:
-        """Print results for a program."""
-        self.out.file.write(json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+        """Print results for a program, in letters that every encoding has."""
+        self.out.file.write(json.dumps(content, indent=2) + "\n")
 
 
 def _reached(reached: float, stop: float) -> str:

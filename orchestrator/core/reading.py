@@ -96,7 +96,7 @@ def _undamaged(path: Path) -> Iterator[None]:
     """Read a file of a run; what is wrong with its content becomes a refusal that names it."""
     try:
         yield
-    except (ValueError, TypeError, KeyError, OSError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise InputRefused([Problem(str(path), f"cannot be read: {reason}", "the results are damaged; run it again")]) from error
 

@@ -94,6 +94,7 @@ class RunFolder:
     def __init__(self, folder: Path) -> None:
         self.folder = folder.absolute()
         self.running = running_folder(self.folder)
+        self._old = self.folder.parent / f".{self.folder.name}.old"
         self._made = [parent for parent in (self.folder.parent, *self.folder.parent.parents) if not parent.exists()]
         self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
         self._rows: _Stream | None = None
@@ -105,7 +106,8 @@ class RunFolder:
         try:
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self._lock.acquire(timeout=0)
-            shutil.rmtree(self.running, ignore_errors=True)
+            for left in filter(Path.exists, (self.running, self._old)):  # by a run that was killed
+                shutil.rmtree(left)
             self.running.mkdir()
         except Timeout:
             if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
@@ -194,12 +196,10 @@ class RunFolder:
 
     def _swap(self) -> None:
         """The new folder takes the place of the old one. Renaming is one step each for the file system."""
-        old = self.folder.with_name(f".{self.folder.name}.old")
-        shutil.rmtree(old, ignore_errors=True)
         if self.folder.exists():
-            self.folder.rename(old)
+            self.folder.rename(self._old)
         self.running.rename(self.folder)
-        shutil.rmtree(old, ignore_errors=True)
+        shutil.rmtree(self._old, ignore_errors=True)
 
 
 class _Stream:

@@ -31,12 +31,12 @@ def make_timing(system: System, problems: list[Problem]) -> Timing | None:
     times = {"exchange_step": system.exchange_step, "start_time": system.start_time, "stop_time": system.stop_time,
              "output_interval": system.output_interval or system.exchange_step,
              "state_interval": system.state_interval or system.exchange_step,
-             **{f"{name}.step": system.step(name) for name in system.components}}
+             **{f"{name}.step": spec.step for name, spec in system.components.items() if spec.step}}
     ticks = {key: _ticks(key, seconds, problems) for key, seconds in times.items()}
     if len(problems) > before:
         return None
     exchange, start, length = ticks["exchange_step"], ticks["start_time"], ticks["stop_time"] - ticks["start_time"]
-    steps = {name: ticks[f"{name}.step"] for name in system.components}
+    steps = {name: ticks.get(f"{name}.step", exchange) for name in system.components}
     for name, step in steps.items():
         problems += _step_problems(f"{name}.step", step, exchange)
     if length <= 0:
@@ -62,7 +62,7 @@ def _ticks(key: str, seconds: float, problems: list[Problem]) -> int:
     try:
         return to_ticks(seconds)
     except ValueError as error:
-        problems.append(Problem(key, str(error), "round it, or make it shorter" if seconds > 1.0 else "round it"))
+        problems.append(Problem(key, str(error), "make it shorter" if seconds > 1.0 else "round it to 1e-12 s or multiples of it"))
         return 0
 
 

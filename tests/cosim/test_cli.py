@@ -88,6 +88,14 @@ def test_list_names_every_case_and_component(rockshed):
     assert all(name in text for name in ("lab-impact = lab-impact-4 ", "FallingRock", "SandCushion", "RBSMBeam", "discs = 370"))
 
 
+def test_a_terminal_that_knows_few_letters_shows_what_it_can(finished):
+    for command, said in ((["list"], "kgf/cm?"), (["plot", str(finished[0]), "--output-dir", str(finished[0].parent / "ü")], "")):
+        done = subprocess.run([sys.executable, "-m", "orchestrator.cli", *command], capture_output=True,
+                              cwd=Path(__file__).parents[2], env={**os.environ, "PYTHONIOENCODING": "ascii"})
+        assert done.returncode == 0, done.stderr
+        assert said in done.stdout.decode("ascii")
+
+
 def test_version(rockshed):
     result = rockshed("--version")
     assert result.exit_code == 0
@@ -261,6 +269,7 @@ REFUSED = [
     (["lab-impact", "--exchange-step", "3e-5"],
      ["output_interval: 0.0001 s is no whole number of steps of 3e-05 s", "nearest are 9e-05 s",
       "exchange_step = 3e-05, output_interval = 9e-05, state_interval = 0.00048, stop_time = 0.03999"]),
+    (["lab-impact", "--exchange-step", "1e-20"], ["refused: exchange_step: 1e-20 s is no", "→ round it to 1e-12 s"]),
     (["lab-impact", "--exchange-step", "1e-3"], ["exchange_step = 0.001, output_interval = 0.001, state_interval = 0.001"]),
     (["lab-impact", "--stop-time", "1e9"], ["stop_time: 1e+09 s is beyond the longest time, 4.61e+06 s", "make it shorter"]),
     (["lab-impact", "--stop-time", "1e6"],
@@ -474,6 +483,15 @@ def test_plot_names_a_damaged_file(rockshed, finished, tmp_path, content):
     assert f"{tmp_path / 'run/run.json'}: cannot be read" in in_one_line(result.stderr)
 
 
+@pytest.mark.parametrize("content", ["[1]", '[{"name": "a", "value": 1, "references": [1]}]', '{"a": 1}', '[{"value": 1}]'])
+def test_plot_names_a_damaged_summary(rockshed, finished, tmp_path, content):
+    shutil.copytree(finished[0], tmp_path / "run")
+    (tmp_path / "run/summary.json").write_text(content)
+    result = rockshed("plot", tmp_path / "run")
+    assert result.exit_code == 2
+    assert f"{tmp_path / 'run/summary.json'}: cannot be read" in in_one_line(result.stderr)
+
+
 @pytest.mark.parametrize(("name", "left", "status"), [("states.h5", PICTURES - {"overview.png", "sand.png"}, 0),
                                                       ("timeseries.parquet", set(), 2)])
 def test_plot_draws_what_a_damaged_file_leaves(rockshed, finished, tmp_path, name, left, status):
@@ -487,6 +505,12 @@ def test_plot_draws_what_a_damaged_file_leaves(rockshed, finished, tmp_path, nam
 
 def test_a_place_where_nothing_can_be_made_is_not_called_busy(rockshed):
     result = rockshed("run", "lab-impact", "--output-dir", "/proc/x", *SHORT)
+    assert result.exit_code == 2
+    assert "cannot be written" in in_one_line(result.stderr)
+
+
+def test_plot_into_a_folder_that_takes_no_file(rockshed, finished):
+    result = rockshed("plot", finished[0], "--output-dir", "/proc/self")
     assert result.exit_code == 2
     assert "cannot be written" in in_one_line(result.stderr)
 
