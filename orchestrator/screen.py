@@ -22,7 +22,7 @@ OK, RUN_FAILED, REFUSED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 WIDTH_ELSEWHERE = 160
 """Characters in a line where the results do not go to a terminal."""
 
-COLD_START = "compiling kernels, first run only (about 30 s)"
+COLD_START = "compiling kernels, first run only (about a minute)"
 
 
 _SURE_AFTER = 2.0
