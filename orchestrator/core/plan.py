@@ -29,6 +29,8 @@ MOST_VALUES = 100_000_000
 """Values that the time series of a run may have: at its end they are in memory at once (0.8 GB), and about 2 GB as text."""
 MOST_STATES = 20_000
 """Serialized states that a run may record."""
+MOST_INTERNAL_STEPS = 100_000
+"""Internal steps that a component may make in one communication step: it cannot be interrupted there, nor tell how far it is."""
 
 
 class End(NamedTuple):
@@ -121,6 +123,8 @@ class _Planner:
         self._check_states()
         if timing is not None and min(timing.output_every, timing.state_every) > 0:  # else refused already
             self._check_amount(timing, 1 + len(recorded) + 3 * len(bonds))
+        for name, values in starts.items():
+            self._check_internal_step(name, values)
         if self.problems or timing is None:
             raise InputRefused(self.problems)
         inputs = self._sorted(order, (target for _, target in links))
@@ -178,6 +182,14 @@ class _Planner:
         for name in wanted:
             if name in self.descriptions and not self.descriptions[name].serializes_state:
                 self._refuse(f"{name}.record_states", "the FMU cannot serialize its state", "leave it out")
+
+    def _check_internal_step(self, name: str, starts: Iterable[tuple[Port, float | str]]) -> None:
+        step = self.system.step(name)
+        for port, value in starts:
+            if port.name == "internal_step" and isinstance(value, float) and 0.0 < value * MOST_INTERNAL_STEPS < step:
+                self._refuse(f"{name}.internal_step", f"steps of {value:g} s are {step / value:.2g} in each communication step of "
+                             f"{step:g} s, and at most {MOST_INTERNAL_STEPS:,} can be made",
+                             f"raise it to {step / MOST_INTERNAL_STEPS:g} s or more")
 
     def _check_amount(self, timing: Timing, columns: int) -> None:
         """Refuse what would fill memory or disk hours later."""

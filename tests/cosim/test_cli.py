@@ -271,6 +271,8 @@ REFUSED = [
       "exchange_step = 3e-05, output_interval = 9e-05, state_interval = 0.00048, stop_time = 0.03999"]),
     (["lab-impact", "--exchange-step", "1e-20"], ["refused: exchange_step: 1e-20 s is no", "→ round it to 1e-12 s"]),
     (["lab-impact", "--exchange-step", "1e-3"], ["exchange_step = 0.001, output_interval = 0.001, state_interval = 0.001"]),
+    (["lab-impact", "--set", "sand.internal_step=1e-12"],
+     ["steps of 1e-12 s are 1e+07 in each communication step of 1e-05 s", "raise it to 1e-10 s"]),
     (["lab-impact", "--stop-time", "1e9"], ["stop_time: 1e+09 s is beyond the longest time, 4.61e+06 s", "make it shorter"]),
     (["lab-impact", "--stop-time", "1e6"],
      ["output_interval: 10,000,000,001 rows of 299 columns are 3e+12 values", "5 s or more will do",
