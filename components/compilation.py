@@ -54,19 +54,24 @@ class _PackageLocator:
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], _source: str) -> "_PackageLocator | None":
+        """A locator, if the cache can be kept."""
         folder = cache_directory()
         return None if folder is None else cls(function, folder)
 
     def ensure_cache_path(self) -> None:
+        """Make the folder."""
         self._folder.mkdir(parents=True, exist_ok=True)
 
     def get_cache_path(self) -> str:
+        """The folder of the cache."""
         return str(self._folder)
 
     def get_source_stamp(self) -> str:
+        """Changes with every change of any component's source: what was compiled before is stale then."""
         return source_stamp()
 
     def get_disambiguator(self) -> str:
+        """Part of the file's name that tells functions of one name apart."""
         return hashlib.sha256(f"{self._function.__module__}:{self._function.__code__.co_firstlineno}".encode()).hexdigest()[:12]
 
 

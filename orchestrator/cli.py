@@ -1,9 +1,12 @@
 """The command line ``rockshed``. Commands import what they need when they run, so that help is there at once."""
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from io import TextIOWrapper
 from pathlib import Path
+from shlex import quote as quoted
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,8 +20,12 @@ RESULTS = Path("results")
 """Folder of the runs that name no other."""
 
 app = typer.Typer(name="rockshed", no_args_is_help=True, add_completion=False, pretty_exceptions_show_locals=False,
-                  context_settings={"help_option_names": ["-h", "--help"]},
-                  help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.")
+                  rich_markup_mode=None,  # its help shows every flag as if it took a value
+                  context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+                  help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.",
+                  epilog="`rockshed run lab-impact` is where to begin; `rockshed COMMAND --help` tells the options. Exit codes: 0 "
+                         "done, 1 the run failed (what was computed is kept), 2 refused (nothing was computed or left behind), 3 a "
+                         "check failed, 130 interrupted with Ctrl-C (what was computed is kept).")
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no notes: results, warnings and errors only.")]
@@ -26,6 +33,8 @@ Set = Annotated[list[str] | None, typer.Option("--set", metavar="COMPONENT.PARAM
                                                help="Another value of a parameter or of a shared value. May be repeated.")]
 RunSize = Annotated[list[str] | None, typer.Option("--size", metavar="COMPONENT.SIZE=NUMBER",
                                                    help="Build a component in another size. May be repeated.")]
+Coupling = Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case; default paper.")]
+System = Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")]
 
 
 def _version(wanted: bool) -> None:
@@ -73,7 +82,7 @@ def list_() -> None:
     with _screen() as screen:
         table = plain_table("case", "")
         for case in cases().values():
-            table.add_row(case.name, case.summary)
+            table.add_row(" = ".join((case.name, *case.other_names)), case.summary)
         parts = plain_table("component", "", "sizes")
         for name in NAMES:
             found = component(name)
@@ -82,7 +91,7 @@ def list_() -> None:
 
 
 @app.command()
-def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPONENT]...", help="All of them by default.")] = None,
+def build(components: Annotated[list[str] | None, typer.Argument(metavar="COMPONENT", help="All of them by default.")] = None,
           size: Annotated[list[str] | None, typer.Option(metavar="NAME=NUMBER", help="A size other than the default. May be "
                                                          "repeated.")] = None,
           output_dir: Annotated[Path | None, typer.Option(help="Folder of the FMUs.")] = None, quiet: Quiet = False) -> None:
@@ -95,10 +104,11 @@ def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPO
 
 
 @app.command()
-def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
+def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml", help="An FMU, also a stranger's, a case, or a "
+                                                     "system file.")],
          toml: Annotated[bool, typer.Option("--toml", help="Print the system as a file that `rockshed run` takes.")] = False,
          ) -> None:
-    """What is in an FMU or in a system: ports, steps, values, connections."""
+    """What is in an FMU or a system: ports, values, connections."""
     from .export import system_text
     from .inspection import show_fmu, show_system
     from .job import Request, prepare
@@ -113,9 +123,8 @@ def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml")],
 
 
 @app.command()
-def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
-           folder: Annotated[Path, typer.Argument(help="A new or empty folder.")],
-           set_: Set = None, size: RunSize = None, coupling: Annotated[str | None, typer.Option()] = None) -> None:
+def export(target: System, folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="A new or empty folder.")],
+           set_: Set = None, size: RunSize = None, coupling: Coupling = None) -> None:
     """Write a system as TOML, with its FMUs, to change and run it."""
     from .export import export_system
     from .job import Request, prepare
@@ -126,7 +135,7 @@ def export(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml")],
 
 
 @app.command()
-def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")],
+def run(target: System,
         set_: Set = None, size: RunSize = None,
         output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")] = None,
         stop_time: Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")] = None,
@@ -136,12 +145,15 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
                                                              "sand.")] = None,
         master: Annotated[str | None, typer.Option(metavar="sequential|jacobi", help="One component after the other, or "
                                                      "all at once.")] = None,
-        coupling: Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case.")] = None,
+        coupling: Coupling = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
-    """Run a case or a system file, compare, draw; build what is missing."""
+    """Run a case or a system file, compare, draw.
+
+    FMUs of a case that are missing are built.
+    """
     from .job import Request
     from .screen import INTERRUPTED, RUN_FAILED
 
@@ -150,23 +162,25 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
     request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
-        _finish(done, screen, not no_figures)
+        if done.status == "failed":  # said before drawing, which takes its time and may be interrupted
+            screen.fail(str(done.provenance["error"]))
         if done.status == "interrupted":
             screen.warn(f"interrupted at t = {1e3 * done.series['time'][-1]:g} ms; the results until then are kept")
-            raise typer.Exit(INTERRUPTED)
+        drawn = _finish(done, screen, not no_figures)
         if done.status == "failed":
-            screen.fail(str(done.provenance["error"]))
             raise typer.Exit(RUN_FAILED)
+        if done.status == "interrupted" or not drawn:
+            raise typer.Exit(INTERRUPTED)
 
 
 def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool, screen: "Screen") -> "Run":
     """Prepare and carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
+        from . import comparison
         from .building import is_cold
         from .core.errors import RunFailed
         from .core.reading import add_figures, read_run
         from .core.run import simulate
-        from .headlines import headlines
         from .job import prepare
         from .screen import COLD_START
 
@@ -179,27 +193,36 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
                             facts=job.facts)
         except RunFailed:
             done = read_run(folder)  # status and reason are in it
-    figures = headlines(done)
+    figures = comparison.figures(done, comparison.known_of(done))
     add_figures(folder, figures)
     return replace(done, summary=[*done.summary, *figures])
 
 
-def _finish(done: "Run", screen: "Screen", with_figures: bool) -> None:
-    """Draw the figures, then show the table or its JSON; of a run that failed, only where its results are."""
+def _finish(done: "Run", screen: "Screen", with_figures: bool) -> bool:
+    """Draw the figures, then show the table or its JSON; of a run that failed, only where its results are.
+
+    False if Ctrl-C has ended the drawing; the results are shown all the same.
+    """
     from . import comparison
 
-    figures = _draw(done, done.folder / "figures", screen) if with_figures else []
-    known, warnings = comparison.known_of(done), comparison.warnings(done)
+    figures, drawn = list[Path](), True
+    try:
+        figures = _draw(done, done.folder / "figures", screen) if with_figures else []
+    except KeyboardInterrupt:
+        screen.warn(f"drawing was interrupted; `rockshed plot {quoted(str(done.folder))}` draws the pictures")
+        drawn = False
+    warnings = comparison.warnings(done)
     for text in warnings:
         screen.warn(text)
     if screen.as_json:
         screen.dump({"status": done.status, "folder": str(done.folder), "error": done.provenance.get("error"),
                      "warnings": warnings, "caption": comparison.caption(done),
-                     "figures": comparison.figures_with(done, known), "pictures": [str(file) for file in figures]})
-        return
+                     "figures": [figure.as_entry() for figure in done.summary], "pictures": [str(file) for file in figures]})
+        return drawn
     if done.status != "failed":
         _show_table(done, screen)
     screen.say(f"results in {done.folder}" + (f", {len(figures)} pictures in {figures[0].parent}" if figures else ""))
+    return drawn
 
 
 def _show_table(done: "Run", screen: "Screen") -> None:
@@ -217,18 +240,14 @@ def _draw(done: "Run", folder: Path, screen: "Screen") -> list[Path]:
     with screen.busy("drawing"):
         from .pictures import draw_all
 
-        try:
-            return draw_all(done, folder, screen.note, screen.warn)
-        except KeyboardInterrupt:
-            screen.note(f"the results are complete; `rockshed plot {done.folder}` draws the pictures")
-            raise
+        return draw_all(done, folder, screen.note, screen.warn)
 
 
 @app.command()
 def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run, finished or not.")],
          output_dir: Annotated[Path | None, typer.Option(help="Folder of the pictures; default RUN/figures.")] = None,
          quiet: Quiet = False) -> None:
-    """Draw a run again, also one that failed or was interrupted or killed."""
+    """Draw a run again, also one that failed or was killed."""
     with _screen(quiet) as screen:
         from .core.errors import InputRefused, Problem
         from .core.reading import read_run
@@ -248,11 +267,14 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
 
 
 @app.command()
-def bench(part: Annotated[list[str] | None, typer.Argument(metavar="[discs|coupling|start]...", help="All of them by "
+def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupling|start", help="All of them by "
                                                            "default.")] = None,
           rounds: Annotated[int, typer.Option(min=3, help="Rounds in which everything takes its turn.")] = 7,
           as_json: Json = False, quiet: Quiet = False) -> None:
-    """Measure speed and price of the coupling, in ratios within interleaved rounds. Takes about two minutes."""
+    """Measure speed and price of the coupling.
+
+    All figures are ratios within interleaved rounds. Takes about two minutes.
+    """
     with _screen(quiet, as_json) as screen:
         from .bench.table import PARTS
         from .core.errors import InputRefused, Problem
@@ -284,7 +306,10 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
               output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")] = None,
               workers: Annotated[int | None, typer.Option(min=1, help="Processes at a time; default: one for each core.")] = None,
               as_json: Json = False, quiet: Quiet = False) -> None:
-    """Run the studies of a paper and set computed beside printed and measured figures: table, JSON, figures, HTML page."""
+    """Carry out the studies of a paper.
+
+    Computed figures stand beside printed and measured ones: table, JSON, figures, HTML page.
+    """
     from .screen import INTERRUPTED
 
     with _screen(quiet, as_json) as screen:
@@ -310,7 +335,10 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
 
 def main() -> None:
     """The entry point of the command ``rockshed``."""
-    app()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a terminal that knows no Greek shows ? in its place
+            stream.reconfigure(errors="replace")
+    app(prog_name="rockshed")
 
 
 if __name__ == "__main__":

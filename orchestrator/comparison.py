@@ -1,7 +1,7 @@
 """The short table at the end of a run: what was computed beside what the paper and the experiment found."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from rich.table import Table
@@ -11,6 +11,7 @@ from components.units import cm, kgf, kN, mm, ms
 from . import headlines as h
 from .cases.registry import changes_of, references_of
 from .core.reading import Run
+from .core.results import Beside, Figure
 from .screen import plain_table
 
 
@@ -76,39 +77,40 @@ def known_of(run: Run) -> Mapping[str, h.Known]:
     return {} if h.still_sinking(run) else references_of(run.provenance).known
 
 
+def figures(run: Run, known: Mapping[str, h.Known]) -> list[Figure]:
+    """Every headline figure of a run, with what others found for it."""
+    return [replace(figure, references={
+        who: Beside(found.value, float(figure.value) / found.value - 1.0, found.note)
+        for who, found in known.get(figure.name, h.Known()).by().items()}) for figure in h.headlines(run)]
+
+
 def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
     """The rows of the table, in the order in which a designer asks for them; of a system without an impact, its summary."""
     if h.still_sinking(run):
         known = {}
-    computed = {figure.name: float(figure.value) for figure in h.headlines(run)}
+    computed = {figure.name: figure for figure in figures(run, known)}
     found = [row for name, (label, scales) in _ROWS.items() if name in computed
-             for row in _rows(label, scales, computed[name], known.get(name, h.Known()))]
+             for row in _rows(label, scales, computed[name])]
     if not found:
         return [Row(figure.name, "" if figure.unit == "1" else figure.unit, figure.value if isinstance(figure.value, str)
                     else f"{figure.value:.6g}") for figure in run.summary]
     return found + list(_couplings(run))
 
 
-def _rows(label: str, scales: tuple[Scale, ...], value: float, known: h.Known) -> Iterator[Row]:
+def _rows(label: str, scales: tuple[Scale, ...], figure: Figure) -> Iterator[Row]:
     """One row for each unit; the deviations stand in the first."""
     for number, scale in enumerate(scales):
-        def text(reference: h.Reference | None, scale: Scale = scale) -> str:
-            return "" if reference is None else ("≈ " if reference.note else "") + _written(reference.value, scale)
-
         first = number == 0
-        yield Row(label if first else "", scale.unit, _written(value, scale),
-                  text(known.paper), _deviation(value, known.paper) if first else None,
-                  text(known.experiment), _deviation(value, known.experiment) if first else None,
-                  text(known.handbook), _deviation(value, known.handbook) if first else None)
+        beside: dict[str, Any] = {}
+        for who, found in figure.references.items():
+            beside[who] = ("≈ " if found.note else "") + _written(found.value, scale)
+            beside[f"{who}_deviation"] = found.deviation if first else None
+        yield Row(label if first else "", scale.unit, _written(float(figure.value), scale), **beside)
 
 
 def _written(value: float, scale: Scale) -> str:
     shown = value / scale.size
     return f"{shown:{scale.sign}z.{scale.digits}f}" if abs(shown) < _HUGE else f"{shown:{scale.sign}.3g}"
-
-
-def _deviation(value: float, reference: h.Reference | None) -> float | None:
-    return None if reference is None else value / reference.value - 1.0
 
 
 def _couplings(run: Run) -> Iterator[Row]:
@@ -191,7 +193,7 @@ def model(run: Run) -> str:
     modulus = float(values["modulus"]) / kgf * cm**2
     resisted = f"rolling resistance {rolling:g}, " if rolling else ""
     return (f"{kind or 'modified'} sand: rotation {rotation}, stiffness factor {factor:g}, {resisted}{values['packing']} packing, "
-            f"E_bar {modulus:.1f} kgf/cm²")
+            f"fictitious modulus E_bar {modulus:.1f} kgf/cm²")
 
 
 def scheme(run: Run) -> str:
@@ -232,11 +234,3 @@ def table(run: Run, known: Mapping[str, h.Known]) -> Table:
 
 def _percent(deviation: float | None) -> str:
     return "" if deviation is None else f"{100.0 * deviation:+.0f} %"
-
-
-def figures_with(run: Run, known: Mapping[str, h.Known]) -> list[dict[str, Any]]:
-    """The summary as plain data, with what others found beside each figure."""
-    def beside(name: str) -> dict[str, float]:
-        return {who: reference.value for who, reference in known.get(name, h.Known()).by().items()}
-
-    return [{**asdict(figure), **beside(figure.name)} for figure in run.summary]

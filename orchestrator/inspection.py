@@ -87,7 +87,7 @@ def _start(port: Port) -> str:
 
 def _range(port: Port) -> str:
     if port.items:
-        return " | ".join(port.items)
+        return " | ".join(f"{number} = {name}" for name, number in port.items.items())
     if port.minimum is None and port.maximum is None:
         return "" if port.kind == REAL else port.kind
     low, high = ("" if bound is None else f"{bound:g}" for bound in (port.minimum, port.maximum))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -21,7 +22,43 @@ OK, RUN_FAILED, REFUSED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 WIDTH_ELSEWHERE = 160
 """Characters in a line where the results do not go to a terminal."""
 
-COLD_START = "compiling kernels, first run only (about 30 s)"
+COLD_START = "compiling kernels, first run only (about a minute)"
+
+
+_SURE_AFTER = 2.0
+"""Seconds after which the speed of a run says how long it will take."""
+_TOLD_AFTER = 5.0
+"""Seconds after which it is told where there is no bar; told again whenever the time that has gone has doubled."""
+
+
+class Estimate:
+    """How long a run will still take, from its own speed until now. clock: time (s)."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._began: tuple[float, float] | None = None
+
+    def gone(self, reached: float) -> float:
+        """Wall time (s) since the first call, when the run had reached its first time."""
+        now = self._clock()
+        self._began = self._began or (now, reached)
+        return now - self._began[0]
+
+    def left(self, reached: float, stop: float) -> str:
+        """The wall time from ``reached`` to ``stop`` (s) in words; nothing as long as that cannot be told."""
+        gone = self.gone(reached)
+        done = reached - self._began[1] if self._began else 0.0
+        return f"about {spoken(gone * (stop - reached) / done)} left" if gone >= _SURE_AFTER and done > 0.0 else ""
+
+
+_SPANS = (("s", 1.0, 90.0), ("min", 60.0, 5.4e3), ("h", 3.6e3, 1.8e5), ("days", 8.64e4, 6e7), ("years", 3.156e7, float("inf")))
+"""Unit, its length (s), and where it ends to be used (s)."""
+
+
+def spoken(seconds: float) -> str:
+    """A span of time to two digits, in the unit in which one would say it."""
+    unit, size, _ = next(span for span in _SPANS if seconds < span[2])
+    return f"{float(f'{seconds / size:.2g}'):,.10g} {unit}"
 
 
 @dataclass(frozen=True)
@@ -88,13 +125,14 @@ class Screen:
     @contextmanager
     def progress(self, preparing: str) -> "Iterator[Bar]":
         """A bar over the simulated time; ``preparing`` stands there until the first exchange."""
+        estimate = Estimate()
         if self.quiet or not self.err.is_terminal:
-            yield Bar(self.note)
+            yield Bar(self.note, self._told(estimate))
             return
-        from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
+        from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
         with Progress(SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[reached]}"),
-                      TimeRemainingColumn(), console=self.err, transient=True) as shown:
+                      console=self.err, transient=True) as shown:
             task = shown.add_task(preparing, total=None, reached="")
 
             def describe(text: str) -> None:
@@ -102,9 +140,21 @@ class Screen:
 
             def show(reached: float, stop: float) -> None:
                 shown.update(task, description="running", total=stop, completed=reached,
-                             reached=f"{1e3 * reached:.1f} of {1e3 * stop:g} ms")
+                             reached=f"{_reached(reached, stop)} {estimate.left(reached, stop)}")
 
             yield Bar(describe, show)
+
+    def _told(self, estimate: Estimate) -> Callable[[float, float], None]:
+        """Notes in the place of a bar, at ever longer intervals."""
+        due = _TOLD_AFTER
+
+        def show(reached: float, stop: float) -> None:
+            nonlocal due
+            if estimate.gone(reached) >= due:
+                due = 2.0 * estimate.gone(reached)
+                self.note(f"reached {_reached(reached, stop)}, {estimate.left(reached, stop)}")
+
+        return show
 
     @contextmanager
     def counting(self, text: str) -> "Iterator[Callable[[int, int], None]]":
@@ -135,8 +185,12 @@ class Screen:
         self.out.print(escape(text), soft_wrap=True)
 
     def dump(self, content: Any) -> None:
-        """Print results for a program."""
-        self.out.file.write(json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+        """Print results for a program, in letters that every encoding has."""
+        self.out.file.write(json.dumps(content, indent=2) + "\n")
+
+
+def _reached(reached: float, stop: float) -> str:
+    return f"{1e3 * reached:.1f} of {1e3 * stop:g} ms"
 
 
 def plain_table(*columns: str, right: Sequence[str] = ()) -> Table:

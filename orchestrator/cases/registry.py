@@ -22,6 +22,7 @@ Sizes = Mapping[str, Mapping[str, int]]
 class Case:
     """A ready-made system.
 
+    other_names: under which it is found too.
     models: component of the system -> component of the catalogue that its FMU is built from.
     sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
     couplings: schemes of exchange by name, the default first, with a description.
@@ -37,9 +38,7 @@ class Case:
     make: Callable[[Mapping[str, str], Sizes, str], System]
     one_size: tuple[str, ...] = ()
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
-
-
-_OTHER_NAMES = {"lab-impact-4": "lab-impact"}
+    other_names: tuple[str, ...] = ()
 
 
 @cache
@@ -56,7 +55,7 @@ def case(name: str) -> Case:
     Raises:
         InputRefused: there is none.
     """
-    found = cases().get(_OTHER_NAMES.get(name, name))
+    found = next((case for case in cases().values() if name in (case.name, *case.other_names)), None)
     if found is None:
         raise InputRefused([Problem(name, "there is no case of this name", nearest(name, cases()))])
     return found
@@ -113,17 +112,17 @@ def _laboratory(test: sonoda1993.Test) -> Case:
         return sonoda1993.lab_system(fmus, test, cast(sonoda1993.Coupling, coupling), sizes["sand"]["discs"],
                                      sizes["beam"]["elements"])
 
-    state = f"sand {test.sand}, {'compacted' if test.compaction else 'as poured'}, w = {test.water_content:g} %, box {test.box}"
+    name, numbered = sonoda1993.case_name(test.number), f"lab-impact-{test.number}"
     return Case(
-        sonoda1993.case_name(test.number),
-        f"Sonoda et al. 1993, laboratory, test {test.number}: {state}",
+        name, f"Sonoda et al. 1993, laboratory, test {test.number}: {test.state}",
         models={"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam"},
         sizes={"sand": {"discs": sonoda1993.discs_in(test.box), "elements": sonoda1993.ELEMENTS},
                "beam": {"elements": sonoda1993.ELEMENTS}},
         couplings={"paper": "sand first, inputs held, exchange every 0.01 ms",
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
                    "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
-        make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test))
+        make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test),
+        other_names=(numbered,) if numbered != name else ())
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:

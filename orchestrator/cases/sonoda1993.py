@@ -50,6 +50,12 @@ class Test:
     """fictitious modulus E_bar (Pa)"""
     modulus_in_table_4: bool
 
+    @property
+    def state(self) -> str:
+        """The sand as it lay in the box."""
+        how = f"compacted at {self.compaction / (kgf / cm**2):g} kgf/cm²" if self.compaction else "as poured"
+        return f"sand {self.sand}, {how}, water content {self.water_content:g} %, box {self.box}"
+
 
 def printed_rows(table: str) -> list[dict[str, str]]:
     """Rows of a table of the paper, as printed."""
@@ -162,7 +168,8 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
     rows = math.ceil((discs or discs_in(test.box)) / discs_across(test.box))
     return System(
         name=case_name(test.number),
-        description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand on an H-100x50x7 beam of 120 cm",
+        description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand on an H-100x50x7 beam of 120 cm"
+                    f"; {test.state}",
         components={
             "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
                 "modulus": test.modulus, "box.left": 0.5 * (SPAN - width), "box.width": width,

@@ -11,17 +11,17 @@ import numpy as np
 from .clock import to_seconds
 from .loop import (
     CHANNEL,
-    EXTREME,
     MOVE,
     NOT_FINITE,
     OPERATION,
+    WATCHED,
     Records,
     Tables,
     advance,
     first_not_finite,
     is_bad,
     post,
-    widen,
+    watch,
 )
 from .plan import End, Plan
 from .schedule import Action, Operation
@@ -76,21 +76,22 @@ def make_channels(plan: Plan) -> Records:
     return channels
 
 
-def make_extremes(plan: Plan) -> Records:
-    """Extremes of the watched outputs, before the first value."""
-    extremes = np.zeros(plan.watched.size, EXTREME)
-    extremes["place"], extremes["low"], extremes["high"] = plan.watched, np.inf, -np.inf
-    return extremes
+def make_watched(plan: Plan) -> Records:
+    """Extremes and integrals of the watched outputs, before the first value."""
+    watched = np.zeros(plan.watched.size, WATCHED)
+    watched["place"], watched["low"], watched["high"] = plan.watched, np.inf, -np.inf
+    return watched
 
 
 class State:
-    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, the extremes."""
+    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, what is
+    watched."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.inputs, self.outputs = np.zeros(len(plan.inputs)), np.zeros(len(plan.outputs))
         self.setters, self.getters = make_blocks(plan.inputs), make_blocks(plan.outputs)
-        self.channels, self.extremes = make_channels(plan), make_extremes(plan)
+        self.channels, self.watched = make_channels(plan), make_watched(plan)
 
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values. Returns the worst status."""
@@ -114,12 +115,12 @@ class State:
         return self.plan.outputs[place] if place >= 0 else None
 
     def open_accounts(self) -> None:
-        """Take the values at the start as those from which work and extremes are counted."""
+        """Take the values at the start as those from which work, extremes and integrals are counted."""
         channels = self.channels
         shown = channels["seen"] >= 0
         channels["last_seen"][shown] = self.inputs[channels["seen"][shown]]
         channels["last_force"], channels["last_position"] = self.outputs[channels["force"]], self.outputs[channels["position"]]
-        widen(self.extremes, self.outputs, 0)
+        watch(self.watched, self.outputs, 0)
 
 
 class Driver(Protocol):
@@ -145,7 +146,7 @@ class PlainDriver:
                 if is_bad(status):
                     return Fault(n, operation, status)
             post(state.channels, state.inputs, state.outputs)
-            widen(state.extremes, state.outputs, n + 1)
+            watch(state.watched, state.outputs, n + 1)
         return None
 
     def _operate(self, operation: Operation, origin: int) -> int:
@@ -168,7 +169,7 @@ class CompiledDriver:
         self._tables = Tables(
             plan.timing.start, plan.schedule.exchange, np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
             operations, moves, state.inputs, state.outputs, plan.source,
-            np.zeros(max(len(plan.inputs), len(plan.outputs)), np.int32), state.channels, state.extremes)
+            np.zeros(max(len(plan.inputs), len(plan.outputs)), np.int32), state.channels, state.watched)
         advance(self._tables, 0, 0)  # compiles, or loads what was compiled before
 
     def advance(self, first: int, count: int) -> Fault | None:

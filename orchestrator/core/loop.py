@@ -56,8 +56,9 @@ CHANNEL = _record("given seen force position", "last_seen last_force last_positi
 """A force of a power bond. Places as in :class:`orchestrator.core.plan.Bond`. taken, given_back: work (J) on the taker, and on the
 giver by what it was shown."""
 
-EXTREME = _record("place low_at high_at", "low high")
-"""Smallest and largest value of a watched output, and the exchanges after which they were reached."""
+WATCHED = _record("place low_at high_at", "low high last area")
+"""Smallest and largest value of a watched output, and the exchanges after which they were reached; its newest value, and the area
+under it: its integral in units of the exchange step."""
 
 
 class Tables(NamedTuple):
@@ -78,7 +79,7 @@ class Tables(NamedTuple):
     source: NDArray[np.int64]
     integers: NDArray[np.int32]
     channels: Records
-    extremes: Records
+    watched: Records
 
 
 @compiled
@@ -102,17 +103,20 @@ def post(channels: Records, inputs: Floats, outputs: Floats) -> None:
 
 
 @compiled
-def widen(extremes: Records, outputs: Floats, exchange: int) -> None:
-    """Enter the values after ``exchange`` exchanges into the extremes."""
-    for i in range(extremes.size):
-        extreme = extremes[i]
-        value = outputs[extreme["place"]]
-        if value > extreme["high"]:
-            extreme["high"] = value
-            extreme["high_at"] = exchange
-        if value < extreme["low"]:
-            extreme["low"] = value
-            extreme["low_at"] = exchange
+def watch(watched: Records, outputs: Floats, exchange: int) -> None:
+    """Enter the values after ``exchange`` exchanges into extremes and integrals (trapezoidal rule)."""
+    for i in range(watched.size):
+        entry = watched[i]
+        value = outputs[entry["place"]]
+        if value > entry["high"]:
+            entry["high"] = value
+            entry["high_at"] = exchange
+        if value < entry["low"]:
+            entry["low"] = value
+            entry["low_at"] = exchange
+        if exchange > 0:
+            entry["area"] += 0.5 * (entry["last"] + value)
+        entry["last"] = value
 
 
 @compiled
@@ -215,5 +219,5 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
             if is_bad(status):
                 return n - first, o, status
         post(tables.channels, tables.inputs, tables.outputs)
-        widen(tables.extremes, tables.outputs, n + 1)
+        watch(tables.watched, tables.outputs, n + 1)
     return count, 0, 0

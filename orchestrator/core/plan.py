@@ -3,6 +3,7 @@
 Nothing runs here. All problems of a system are found at once.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import schedule
+from .clock import to_seconds
 from .description import Description, Port, Unit
 from .errors import InputRefused, Problem
 from .fmu_slave import read_description
@@ -22,6 +24,13 @@ from .timing import Timing, make_timing
 from .values import value_for
 
 _JOULE = {"kg": 1, "m": 2, "s": -2}
+
+MOST_VALUES = 100_000_000
+"""Values that the time series of a run may have: at its end they are in memory at once (0.8 GB), and about 2 GB as text."""
+MOST_STATES = 20_000
+"""Serialized states that a run may record."""
+MOST_INTERNAL_STEPS = 100_000
+"""Internal steps that a component may make in one communication step: it cannot be interrupted there, nor tell how far it is."""
 
 
 class End(NamedTuple):
@@ -101,6 +110,7 @@ class _Planner:
     descriptions: dict[str, Description] = field(default_factory=dict)
 
     def plan(self) -> Plan:
+        """Go through the system part by part, then refuse it or return the plan."""
         self._describe()
         order = self._order()
         timing = make_timing(self.system, self.problems)
@@ -111,6 +121,10 @@ class _Planner:
         recorded = self._selected("record", self.system.record)
         reference = self._reference()
         self._check_states()
+        if timing is not None and min(timing.output_every, timing.state_every) > 0:  # else refused already
+            self._check_amount(timing, 1 + len(recorded) + 3 * len(bonds))
+        for name, values in starts.items():
+            self._check_internal_step(name, values)
         if self.problems or timing is None:
             raise InputRefused(self.problems)
         inputs = self._sorted(order, (target for _, target in links))
@@ -168,6 +182,27 @@ class _Planner:
         for name in wanted:
             if name in self.descriptions and not self.descriptions[name].serializes_state:
                 self._refuse(f"{name}.record_states", "the FMU cannot serialize its state", "leave it out")
+
+    def _check_internal_step(self, name: str, starts: Iterable[tuple[Port, float | str]]) -> None:
+        step = self.system.step(name)
+        for port, value in starts:
+            if port.name == "internal_step" and isinstance(value, float) and 0.0 < value * MOST_INTERNAL_STEPS < step:
+                self._refuse(f"{name}.internal_step", f"steps of {value:g} s are {step / value:.2g} in each communication step of "
+                             f"{step:g} s, and at most {MOST_INTERNAL_STEPS:,} can be made",
+                             f"raise it to {step / MOST_INTERNAL_STEPS:g} s or more")
+
+    def _check_amount(self, timing: Timing, columns: int) -> None:
+        """Refuse what would fill memory or disk hours later."""
+        rows = timing.exchanges // timing.output_every + 1
+        if rows * columns > MOST_VALUES:
+            self._refuse("output_interval", f"{rows:,} rows of {columns:,} columns are {rows * columns:.2g} values "
+                         f"({8e-9 * rows * columns:.2g} GB), and at most {MOST_VALUES:.0e} can be kept",
+                         f"{_longer(timing, MOST_VALUES // columns)} or more will do; or shorten stop_time, or record less")
+        framed = sum(spec.record_states for spec in self.system.components.values())
+        states = (timing.exchanges // timing.state_every + 1) * framed
+        if states > MOST_STATES:
+            self._refuse("state_interval", f"{states:,} states would be recorded, and at most {MOST_STATES:,} can be kept",
+                         f"{_longer(timing, MOST_STATES // framed)} or more will do; or shorten stop_time")
 
     # ------------------------------------------------------------------ names
 
@@ -342,6 +377,14 @@ class _BondEnds(NamedTuple):
     given: list[End]
     seen: list[End]
     work: End | None
+
+
+def _longer(timing: Timing, most: int) -> str:
+    """The shortest interval of 1, 2 or 5 times a power of ten exchanges that gives at most so many rows or states."""
+    least = timing.exchanges / max(1, most - 1)
+    power = 10 ** math.floor(math.log10(max(1.0, least)))
+    every = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least)
+    return f"{to_seconds(every * timing.exchange):g} s"
 
 
 def _bond(name: str, ends: _BondEnds, output: Mapping[str, int], given: Mapping[str, int]) -> Bond:

@@ -4,7 +4,7 @@ import csv
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +86,7 @@ def read_run(folder: Path) -> Run:
     with _undamaged(found / COLUMNS), (found / COLUMNS).open(encoding="utf-8", newline="") as file:
         columns = [Column(**entry) for entry in csv.DictReader(file)]
     with _undamaged(found / SUMMARY):
-        summary = [Figure(**entry) for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
+        summary = [Figure.from_entry(entry) for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
                    ] if (found / SUMMARY).is_file() else []
     return Run(found, provenance, summary, columns, _read_series(found, columns))
 
@@ -96,7 +96,7 @@ def _undamaged(path: Path) -> Iterator[None]:
     """Read a file of a run; what is wrong with its content becomes a refusal that names it."""
     try:
         yield
-    except (ValueError, TypeError, KeyError, OSError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise InputRefused([Problem(str(path), f"cannot be read: {reason}", "the results are damaged; run it again")]) from error
 
@@ -118,4 +118,4 @@ def add_figures(folder: Path, figures: Sequence[Figure]) -> None:
     """Add figures to the summary of a finished run; one with a name that is there already replaces it."""
     path = folder / SUMMARY
     present = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}
-    write_json(path, list({**present, **{figure.name: asdict(figure) for figure in figures}}.values()))
+    write_json(path, list({**present, **{figure.name: figure.as_entry() for figure in figures}}.values()))

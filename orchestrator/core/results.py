@@ -6,7 +6,7 @@ happens, and are turned into the final files at the end.
 
 ==================  =====================================================================================================
 run.json            status (running, complete, interrupted, failed), error, warnings, provenance
-summary.json        list of {name, value, unit}
+summary.json        list of {name, value, unit}, with {references} where an application knows of any
 timeseries.parquet  columns ``time`` and ``component.variable``; unit and description in the metadata of each field
 timeseries.csv      the same, ``time`` first, one line of names
 columns.csv         name, unit and description of each column
@@ -20,7 +20,7 @@ import os
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
@@ -49,12 +49,37 @@ class Column:
 
 
 @dataclass(frozen=True)
+class Beside:
+    """What another source gives for a figure: its value, by how much the figure deviates (figure / value - 1), how it was found."""
+
+    value: float
+    deviation: float
+    note: str = ""
+
+
+@dataclass(frozen=True)
 class Figure:
-    """A headline figure of the summary."""
+    """A headline figure of the summary. references: what others found, by who found it."""
 
     name: str
     value: float | int | str
     unit: str = "1"
+    references: Mapping[str, Beside] = field(default_factory=dict)
+
+    def as_entry(self) -> dict[str, Any]:
+        """As plain data; references only where there are any."""
+        return {key: value for key, value in asdict(self).items() if key != "references" or value}
+
+    @classmethod
+    def from_entry(cls, entry: Mapping[str, Any]) -> "Figure":
+        """The figure in an entry of a summary; what other programs have added to the entry is passed over.
+
+        Raises:
+            KeyError, TypeError: it is no entry of a summary.
+        """
+        references = {who: Beside(found["value"], found["deviation"], found.get("note", ""))
+                      for who, found in entry.get("references", {}).items()}
+        return cls(entry["name"], entry["value"], entry.get("unit", "1"), references)
 
 
 class RunFolder:
@@ -69,6 +94,7 @@ class RunFolder:
     def __init__(self, folder: Path) -> None:
         self.folder = folder.absolute()
         self.running = running_folder(self.folder)
+        self._old = self.folder.parent / f".{self.folder.name}.old"
         self._made = [parent for parent in (self.folder.parent, *self.folder.parent.parents) if not parent.exists()]
         self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
         self._rows: _Stream | None = None
@@ -80,7 +106,8 @@ class RunFolder:
         try:
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self._lock.acquire(timeout=0)
-            shutil.rmtree(self.running, ignore_errors=True)
+            for left in filter(Path.exists, (self.running, self._old)):  # by a run that was killed
+                shutil.rmtree(left)
             self.running.mkdir()
         except Timeout:
             if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
@@ -161,7 +188,7 @@ class RunFolder:
         self._flush()
         for stream in filter(None, (self._rows, self._states)):
             stream.close()
-        write_json(self.running / SUMMARY, [asdict(figure) for figure in figures])
+        write_json(self.running / SUMMARY, [figure.as_entry() for figure in figures])
         _convert_rows(self.running)
         _convert_states(self.running)
         self.write_provenance({**self.provenance, "status": status, **facts})
@@ -169,12 +196,10 @@ class RunFolder:
 
     def _swap(self) -> None:
         """The new folder takes the place of the old one. Renaming is one step each for the file system."""
-        old = self.folder.with_name(f".{self.folder.name}.old")
-        shutil.rmtree(old, ignore_errors=True)
         if self.folder.exists():
-            self.folder.rename(old)
+            self.folder.rename(self._old)
         self.running.rename(self.folder)
-        shutil.rmtree(old, ignore_errors=True)
+        shutil.rmtree(self._old, ignore_errors=True)
 
 
 class _Stream:
@@ -188,6 +213,7 @@ class _Stream:
         self._file.flush()
 
     def append(self, columns: Sequence[Any]) -> None:
+        """Write a batch, given by columns of equal length."""
         import pyarrow as pa
 
         self._writer.write_batch(pa.record_batch([pa.array(c, f.type) for c, f in zip(columns, self._schema, strict=True)],
@@ -195,6 +221,7 @@ class _Stream:
         self._file.flush()
 
     def close(self) -> None:
+        """End the stream, so that it is complete."""
         self._writer.close()
         self._file.close()
 

@@ -64,6 +64,7 @@ class _Session:
     initialised: bool = False
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
+        """Make and initialise the slaves, then open the results."""
         began = time.perf_counter()
         self.slaves = instantiate(self.plan, self.sources)
         state = State(self.plan)
@@ -71,12 +72,13 @@ class _Session:
         self.initialised = True
         self.accounts = Accounts(self.plan, self.slaves, state)
         recorder = Recorder(self.plan, self.slaves, state, self.accounts, self.results)
-        self.extremes = state.extremes
+        self.watched = state.watched
         self.master = Master(self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder)
         self.preparation = time.perf_counter() - began
         self.results.begin(recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts})
 
     def run(self, interruption: Interruption, progress: Progress | None) -> None:
+        """Carry out the exchanges and finish the results, also those of a run that fails."""
         failure: RunFailed | None = None
         try:
             status = "complete" if self.master.run(interruption, progress) else "interrupted"
@@ -89,12 +91,14 @@ class _Session:
             raise failure
 
     def _figures(self) -> list[Figure]:
-        timing, extremes, figures = self.plan.timing, self.extremes, []
-        for extreme in extremes:
-            end = self.plan.outputs[extreme["place"]]
+        timing, figures = self.plan.timing, list[Figure]()
+        for entry in self.watched:
+            end = self.plan.outputs[entry["place"]]
             for which, bound in (("maximum", "high"), ("minimum", "low")):
-                figures += [Figure(f"{end.name} {which}", float(extreme[bound]), end.port.unit_name),
-                            Figure(f"{end.name} {which} at", timing.seconds(int(extreme[bound + "_at"])), "s")]
+                figures += [Figure(f"{end.name} {which}", float(entry[bound]), end.port.unit_name),
+                            Figure(f"{end.name} {which} at", timing.seconds(int(entry[bound + "_at"])), "s")]
+            figures.append(Figure(f"{end.name} integral", float(entry["area"]) * to_seconds(timing.exchange),
+                                  "s" if end.port.unit_name == "1" else f"{end.port.unit_name}.s"))
         simulated = to_seconds(self.master.exchanges * timing.exchange)
         return [*figures, *self.accounts.figures(), Figure("simulated time", simulated, "s"),
                 Figure("exchanges", self.master.exchanges), Figure("wall time of the exchanges", self.master.wall_time, "s")]

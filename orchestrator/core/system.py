@@ -117,7 +117,7 @@ class System(_Data):
     state_interval: time between two recorded states (s) of the components with ``record_states``.
     record: variables in the results, ``component.port``; ``*`` stands for any text, and then selects outputs. Default: all
         outputs.
-    watch: outputs whose extremes over all exchanges go into the summary, in the same notation.
+    watch: outputs whose extremes and integral over all exchanges go into the summary, in the same notation.
     """
 
     name: str
@@ -164,15 +164,23 @@ def load_system(path: Path) -> System:
         InputRefused: no such file, not TOML, or :func:`system_from` refuses the content.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputRefused([Problem(str(path), f"cannot be read: {error}", "correct the path")]) from error
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise InputRefused([Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]) from error
+    except UnicodeDecodeError as error:
+        raise InputRefused([_not_utf_8(path)]) from error
     except tomllib.TOMLDecodeError as error:
         raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
     system = system_from(data, str(path))
     folder = path.resolve().parent
     return system.model_copy(update={"components": {
         name: spec.model_copy(update={"fmu": str(folder / spec.fmu)}) for name, spec in system.components.items()}})
+
+
+def _not_utf_8(path: Path) -> Problem:
+    utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
+    return Problem(str(path), f"is {'written in UTF-16' if utf_16 else 'no text in UTF-8'}, and TOML is UTF-8",
+                   "save it again with the encoding UTF-8")
 
 
 def with_values(system: System, values: Mapping[str, Value]) -> System:

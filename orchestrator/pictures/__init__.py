@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from components.component import ComponentError
 
@@ -87,6 +88,7 @@ def _pictures(run: Run) -> list[_Picture]:
 def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        TemporaryFile(dir=folder).close()
     except OSError as error:
         raise InputRefused([Problem(str(folder), f"cannot be written: {error.strerror or error}",
                                     "name another folder with --output-dir")]) from error

@@ -93,10 +93,10 @@ def penetration(run: Run, known: Known, file: Path) -> None:
 def beam(run: Run, known: Known, file: Path) -> None:
     """Deflection and energy of the beam."""
     name, time = h.roles(run).beam, run.series["time"] / ms
-    energies = (("energy.elastic", "$U = U_N + U_M$, eqs (5), (6)", INK, "-"),
-                ("energy.bending", "$U_M$, bending", "#8cc28a", (0, (3, 3))),
-                ("energy.axial", "$U_N$, axial", ROCK, "-"),
-                ("energy.strain_estimate", "eq. (7), from the midspan strain", TRANSMITTED, "-"))
+    energies = (("energy.elastic", "elastic, all: the paper's eqs (5), (6)", INK, "-"),
+                ("energy.bending", "of it in bending", "#8cc28a", (0, (3, 3))),
+                ("energy.axial", "of it axial", ROCK, "-"),
+                ("energy.strain_estimate", "from the midspan strain: its eq. (7)", TRANSMITTED, "-"))
     with figure(run, file, WIDTH, 4.8) as made:
         upper, lower = made.subplots(2, sharex=True, height_ratios=(2, 3))
         deflection = run.series[f"{name}.midspan.deflection"] / mm

@@ -12,15 +12,20 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from components.sand_cushion.reader import Discs, SandState, read, sizes_of
-from components.units import cm, kN, mm, ms
+from components.units import cm, kN, ms
 from fmus.python_fmu import component_state
 
 from .. import headlines as h
+from ..comparison import caption
 from ..core.reading import Run
 from .curves import Known, force_axes
-from .style import BEAM, GREY, INK, figure
+from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
+_READ_AS = ("lines: forces in the contacts, by width and colour; deep: the rock's lowest point below the surface that the sand had "
+            "at the start; transmitted: vertical force of the sand on its base")
+_BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
 DEFLECTION_SCALES = (30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0)
 """Deflections of the beam's axis are drawn so many times too large: the largest of these that keeps them within a disc."""
 _INTERESTING = 0.25
@@ -73,7 +78,7 @@ def snapshots(run: Run, file: Path) -> None:
     columns = min(3, len(shown))
     lines = -(-len(shown) // columns)
     width = 3.5 * columns + 0.6
-    with figure(run, file, width, (3.5 * _shape(shown) + 0.3) * lines + 0.5) as made:
+    with captioned([_READ_AS, *caption(run)], file, width, (3.5 * _shape(shown) + 0.3) * lines + 0.6) as made:
         panels = list(made.subplots(lines, columns, squeeze=False).ravel())
         for axes in panels[len(shown):]:
             axes.set_axis_off()
@@ -84,7 +89,7 @@ def overview(run: Run, known: Known, file: Path) -> None:
     """Three instants and the forces over time in one wide picture."""
     shown = frames(run, _moments(run))
     above = 9.3 / len(shown) * _shape(shown) + 0.3
-    with figure(run, file, 10.0, above + 3.7) as made:
+    with captioned([_READ_AS, *caption(run)], file, 10.0, above + 3.8) as made:
         grid = made.add_gridspec(2, len(shown), height_ratios=(above, 3.2))
         draw(run, shown, made, [made.add_subplot(grid[0, i]) for i in range(len(shown))])
         axes = made.add_subplot(grid[1, :])
@@ -107,6 +112,7 @@ def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes])
         _panel(run, frame, axes, largest / kN, window)
     if h.roles(run).beam:
         _name_axis(panels[0], deflection_scale(run))
+    _scale_bar(panels[0], shown[0].state.box.width / cm)
     bar = made.colorbar(ScalarMappable(Normalize(0.0, largest / kN), _CHAINS), ax=list(panels), shrink=0.8, aspect=25, pad=0.01)
     bar.set_label("contact force (kN)", fontsize=8)
     bar.outline.set_linewidth(0.5)
@@ -126,6 +132,17 @@ def _name_axis(axes: Axes, scale: float) -> None:
     axes.annotate(f"beam axis, deflections × {scale:g}", (0.0, 0.0), xycoords="axes fraction", xytext=(2, 1),
                   textcoords="offset points", fontsize=6.5, color=BEAM, zorder=5,
                   bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75})
+
+
+def _scale_bar(axes: Axes, box: float) -> None:
+    """A length (cm) to measure by, in the upper right corner, where the rock leaves room."""
+    length = max((bar for bar in _BARS if bar <= 0.25 * box), default=0.25 * box)
+    (_, right), (_, top) = axes.get_xlim(), axes.get_ylim()
+    end = right - 0.12 * (right - axes.get_xlim()[0])
+    axes.annotate("", (end - length, 0.94 * top), (end, 0.94 * top), arrowprops={
+        "arrowstyle": "|-|,widthA=0.25,widthB=0.25", "color": INK, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}, zorder=5)
+    axes.annotate(f"{length:g} cm", (end - 0.5 * length, 0.94 * top), xytext=(0, -3), textcoords="offset points", ha="center",
+                  va="top", fontsize=7.5, zorder=5)
 
 
 def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
@@ -153,7 +170,7 @@ def _panel(run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[flo
     axes.axhline(state.box.base / cm, color=GREY, linewidth=0.5, zorder=2)
     _axis_of_beam(run, frame, axes)
     axes.set_title(f"{frame.time / ms:g} ms")
-    axes.set_title(_words(run, frame), loc="right", fontsize=8, color=GREY)
+    axes.set_title(_words(run, frame), loc="right", fontsize=7.5, color=GREY)
 
 
 def _on_floor(run: Run) -> bool:
@@ -195,5 +212,5 @@ def _words(run: Run, frame: Frame) -> str:
     """Depth of the rock and transmitted force at the time of the frame."""
     sand, row = h.roles(run).sand, int(abs(run.series["time"] - frame.time).argmin())
     depth, force = run.series[f"{sand}.penetration"][row], run.series[f"{sand}.transmitted_force"][row]
-    place = f"{depth / cm:.1f} cm deep" if depth > 0.0 else f"{-depth / mm:.1f} mm above"
-    return f"rock {place}, P = {force / kN:.2f} kN"
+    place = f"{abs(depth) / cm:.1f} cm {'deep' if depth > 0.0 else 'above'}"
+    return f"rock {place}, {force / kN:.{2 if abs(force) < 10.0 * kN else 0}f} kN transmitted"

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from orchestrator.cli import app
 from orchestrator.core.reading import read_run
 from orchestrator.core.system import load_system
+from orchestrator.screen import spoken
 
 PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
 SHORT = ["--stop-time", "0.001", "--no-figures"]
@@ -64,11 +65,35 @@ def test_help_is_there_without_the_heavy_libraries():
     assert done.stdout.strip() == "set()"
 
 
+def test_help_tells_every_command_in_one_line_and_the_exit_codes(rockshed):
+    lines = [line.strip() for line in rockshed("--help").stdout.splitlines()]
+    for command in ("list", "build", "info", "export", "run", "plot", "bench", "reproduce"):
+        line, = (line for line in lines if line.startswith(f"{command} "))
+        assert line.endswith(".")
+        assert "..." not in line
+    assert "2 refused (nothing was computed or left behind)" in in_one_line(rockshed("--help").stdout)
+
+
+def test_help_tells_every_option_and_flags_take_no_value(rockshed):
+    text = in_one_line(rockshed("run", "--help").stdout)
+    assert "--json Print" in text
+    assert "--no-figures Draw" in text
+    assert "--coupling paper|impulse|jacobi Scheme" in text
+
+
 def test_list_names_every_case_and_component(rockshed):
     text = rockshed("list").stdout
     for number in (*range(1, 4), *range(5, 17)):
         assert f"lab-impact-{number} " in text
-    assert all(name in text for name in ("lab-impact ", "FallingRock", "SandCushion", "RBSMBeam", "discs = 370"))
+    assert all(name in text for name in ("lab-impact = lab-impact-4 ", "FallingRock", "SandCushion", "RBSMBeam", "discs = 370"))
+
+
+def test_a_terminal_that_knows_few_letters_shows_what_it_can(finished):
+    for command, said in ((["list"], "kgf/cm?"), (["plot", str(finished[0]), "--output-dir", str(finished[0].parent / "ü")], "")):
+        done = subprocess.run([sys.executable, "-m", "orchestrator.cli", *command], capture_output=True,
+                              cwd=Path(__file__).parents[2], env={**os.environ, "PYTHONIOENCODING": "ascii"})
+        assert done.returncode == 0, done.stderr
+        assert said in done.stdout.decode("ascii")
 
 
 def test_version(rockshed):
@@ -85,7 +110,7 @@ def test_build_in_another_size_and_look_into_it(rockshed, tmp_path):
     seen = in_one_line(rockshed("info", file).stdout)
     assert "beam.force.y[1..3] N" in seen
     assert "modulus Pa 2.98122e+06 1e-06 .." in seen
-    assert "rotation locked free | locked" in seen
+    assert "rotation locked 1 = free | 2 = locked" in seen
     assert "canGetAndSetFMUstate" in seen
     assert "GUID {" in seen
 
@@ -112,6 +137,7 @@ def test_a_run_leaves_results_and_pictures(finished):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in (folder / "figures").iterdir())
     assert "peak transmitted force" in result.stdout
     assert "calibrated sand: rotation locked" in result.stdout
+    assert "sand A, compacted at 0.4 kgf/cm², water content 6.98 %, box 1" in result.stdout.splitlines()[0]
 
 
 def test_the_table_compares_with_paper_and_experiment_when_the_impact_is_over(rockshed):
@@ -147,9 +173,15 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     content = json.loads(result.stdout)
     assert content["status"] == "complete"
     by_name = {figure["name"]: figure for figure in content["figures"]}
-    assert by_name["peak transmitted force"]["experiment"] == pytest.approx(519.1 * 9.80665)
-    stored = {f["name"]: f["value"] for f in json.loads((tmp_path / "results/lab-impact/summary.json").read_text())}
-    assert stored == {name: figure["value"] for name, figure in by_name.items()}
+    peak = by_name["peak transmitted force"]
+    measured, computed = peak["references"]["experiment"], peak["references"]["paper"]
+    assert measured == {"value": pytest.approx(519.1 * 9.80665), "note": "",
+                        "deviation": pytest.approx(peak["value"] / (519.1 * 9.80665) - 1.0)}
+    assert "interpolated to E_bar" in computed["note"]
+    assert "references" not in by_name["impact energy"]
+    assert json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["figures"]
+    read = read_run(tmp_path / "results/lab-impact").figure("peak transmitted force")
+    assert (read.references["paper"].value, read.references["paper"].note) == (computed["value"], computed["note"])
     assert result.stderr == ""
 
 
@@ -235,13 +267,64 @@ REFUSED = [
     (["lab-impact", "--set", "beam.span=0.3"], ["narrower than the cushion", "make the beam longer"]),
     (["lab-impact", "--set", "beam.internal_step=1e-5"], ["1e-05 s", "stable_step = 6.14", "beam.internal_step"]),
     (["lab-impact", "--exchange-step", "3e-5"],
-     ["output_interval: 0.0001 s is no whole number of steps of 3e-05 s", "nearest are 9e-05 s"]),
+     ["output_interval: 0.0001 s is no whole number of steps of 3e-05 s", "nearest are 9e-05 s",
+      "exchange_step = 3e-05, output_interval = 9e-05, state_interval = 0.00048, stop_time = 0.03999"]),
+    (["lab-impact", "--exchange-step", "1e-20"], ["refused: exchange_step: 1e-20 s is no", "→ round it to 1e-12 s"]),
+    (["lab-impact", "--exchange-step", "1e-3"], ["exchange_step = 0.001, output_interval = 0.001, state_interval = 0.001"]),
+    (["lab-impact", "--set", "sand.internal_step=1e-12"],
+     ["steps of 1e-12 s are 1e+07 in each communication step of 1e-05 s", "raise it to 1e-10 s"]),
+    (["lab-impact", "--stop-time", "1e9"], ["stop_time: 1e+09 s is beyond the longest time, 4.61e+06 s", "make it shorter"]),
+    (["lab-impact", "--stop-time", "1e6"],
+     ["output_interval: 10,000,000,001 rows of 299 columns are 3e+12 values", "5 s or more will do",
+      "state_interval: 2,000,000,001 states would be recorded", "100 s or more will do"]),
     (["lab-impact", "--stop-time", "-1"], ["stop_time", "is not after start_time"]),
     (["lab-impact", "--stop-time", "nan"], ["stop_time", "finite"]),
     (["lab-impact", "--coupling", "magic"], ["'magic' is unknown", "paper, impulse, jacobi"]),
     (["lab-impact", "--master", "boss"], ["'sequential' or 'jacobi'"]),
     (["missing.toml"], ["missing.toml", "cannot be read"]),
 ]
+
+
+def test_times_that_a_refusal_proposes_together_are_accepted(rockshed):
+    said = in_one_line(rockshed("run", "lab-impact", "--exchange-step", "3e-5").stderr).partition("this will do: ")[2]
+    options = [part for text in said.split(", ") for part in ("--" + text.split(" = ")[0].replace("_", "-"), text.split(" = ")[1])]
+    assert options[:2] == ["--exchange-step", "3e-05"]
+    assert rockshed("run", "lab-impact", *options, "--no-figures").exit_code == 0
+
+
+def test_the_interval_that_a_refusal_proposes_is_accepted(rockshed):
+    from orchestrator.core.plan import make_plan
+    from orchestrator.core.run import sources_of
+    from orchestrator.job import Request, prepare
+
+    system = prepare(Request("lab-impact", options={"stop_time": 1e6, "output_interval": 5.0, "state_interval": 100.0})).system
+    assert make_plan(system, sources_of(system)).timing.exchanges == 10**11
+
+
+@pytest.mark.parametrize(("encoding", "said"), [("utf-16", "is written in UTF-16, and TOML is UTF-8"),
+                                                ("latin-1", "is no text in UTF-8"), ("utf-8-sig", "")])
+def test_the_encoding_of_a_system_file(rockshed, tmp_path, encoding, said):
+    text = rockshed("info", "lab-impact", "--toml").stdout
+    (tmp_path / "lab.toml").write_bytes(f"# Größe\n{text}".encode(encoding))
+    result = rockshed("info", "lab.toml")
+    assert result.exit_code == (2 if said else 0)
+    assert said in in_one_line(result.stderr)
+
+
+def test_a_long_run_tells_how_long_it_will_take(capsys):
+    from orchestrator.screen import Estimate, Screen
+
+    now = [0.0]
+    estimate = Estimate(lambda: now[0])
+    assert estimate.left(0.0, 10.0) == ""
+    for now[0], reached, said in ((1.0, 0.1, ""), (3.0, 0.5, "about 57 s left"), (10.0, 0.6, "about 2.6 min left")):
+        assert estimate.left(reached, 10.0) == said
+    show = Screen()._told(estimate)
+    for now[0] in (4.0, 6.0, 8.0, 11.0, 12.5):
+        show(now[0] / 1e3, 10.0)
+    told = [line.split(",")[0] for line in capsys.readouterr().err.splitlines()]
+    assert told == ["reached 6.0 of 10000 ms", "reached 12.5 of 10000 ms"]
+    assert [spoken(seconds) for seconds in (3.21, 600.0, 12345.0, 6.6e9)] == ["3.2 s", "10 min", "3.4 h", "210 years"]
 
 
 @pytest.mark.parametrize(("arguments", "said"), REFUSED, ids=lambda value: " ".join(value)[:60])
@@ -343,6 +426,29 @@ def test_an_unstable_run_fails_with_component_and_time(rockshed, tmp_path):
     assert (tmp_path / "results/lab-impact/figures/energy.png").is_file()
 
 
+@pytest.fixture
+def impatient(monkeypatch):
+    """Ctrl-C as soon as drawing begins."""
+    def stop(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("orchestrator.pictures.draw_all", stop)
+
+
+def test_ctrl_c_while_a_failed_run_is_drawn_does_not_hide_why_it_failed(rockshed, impatient):
+    result = rockshed("run", "lab-impact", "--allow-unstable", "--set", "beam.internal_step=1e-5", "--output-dir", "my run")
+    assert result.exit_code == 1
+    said = in_one_line(result.stderr)
+    assert 0 <= said.index("failed: beam at t = 0.0") < said.index("drawing was interrupted; `rockshed plot 'my run'")
+
+
+def test_ctrl_c_while_a_run_is_drawn_leaves_its_figures(rockshed, impatient, tmp_path):
+    result = rockshed("run", "lab-impact", "--stop-time", "0.001")
+    assert result.exit_code == 130
+    assert "peak transmitted force" in result.stdout
+    assert read_run(tmp_path / "results/lab-impact").status == "complete"
+
+
 def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
     folder, _ = finished
     result = rockshed("plot", folder, "--output-dir", tmp_path / "again", "--quiet")
@@ -352,6 +458,24 @@ def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
         assert (tmp_path / "again" / name).read_bytes() == (folder / "figures" / name).read_bytes()
 
 
+def test_pictures_of_the_sand_have_a_scale_and_one_unit_of_length(finished):
+    from matplotlib.figure import Figure
+    from matplotlib.text import Annotation, Text
+
+    from orchestrator.pictures import sand
+
+    run, made = read_run(finished[0]), Figure()
+    panels = list(made.subplots(1, 2))
+    sand.draw(run, sand.frames(run, [0.0, 0.004]), made, panels)
+    words = [text.get_text() for text in made.findobj(Text) if text.get_text()]
+    assert "rock 0.1 cm above, 0.05 kN transmitted" in words
+    assert any(text.startswith("rock 3.0 cm deep, ") for text in words)
+    assert not [text for text in words if " mm" in text or "P =" in text]
+    bars = [text for text in panels[0].texts if isinstance(text, Annotation) and text.arrow_patch]
+    assert [abs(bar.xy[0] - bar.xyann[0]) for bar in bars] == [pytest.approx(5.0)]  # the axes are in cm
+    assert "5 cm" in words
+
+
 @pytest.mark.parametrize("content", ["{", "[]", "{}", ""])
 def test_plot_names_a_damaged_file(rockshed, finished, tmp_path, content):
     shutil.copytree(finished[0], tmp_path / "run")
@@ -359,6 +483,15 @@ def test_plot_names_a_damaged_file(rockshed, finished, tmp_path, content):
     result = rockshed("plot", tmp_path / "run")
     assert result.exit_code == 2
     assert f"{tmp_path / 'run/run.json'}: cannot be read" in in_one_line(result.stderr)
+
+
+@pytest.mark.parametrize("content", ["[1]", '[{"name": "a", "value": 1, "references": [1]}]', '{"a": 1}', '[{"value": 1}]'])
+def test_plot_names_a_damaged_summary(rockshed, finished, tmp_path, content):
+    shutil.copytree(finished[0], tmp_path / "run")
+    (tmp_path / "run/summary.json").write_text(content)
+    result = rockshed("plot", tmp_path / "run")
+    assert result.exit_code == 2
+    assert f"{tmp_path / 'run/summary.json'}: cannot be read" in in_one_line(result.stderr)
 
 
 @pytest.mark.parametrize(("name", "left", "status"), [("states.h5", PICTURES - {"overview.png", "sand.png"}, 0),
@@ -378,6 +511,12 @@ def test_a_place_where_nothing_can_be_made_is_not_called_busy(rockshed):
     assert "cannot be written" in in_one_line(result.stderr)
 
 
+def test_plot_into_a_folder_that_takes_no_file(rockshed, finished):
+    result = rockshed("plot", finished[0], "--output-dir", "/proc/self")
+    assert result.exit_code == 2
+    assert "cannot be written" in in_one_line(result.stderr)
+
+
 def test_plot_into_a_folder_that_cannot_be_written(rockshed, finished, tmp_path):
     (tmp_path / "file").write_text("mine")
     result = rockshed("plot", finished[0], "--output-dir", tmp_path / "file/x")
@@ -391,7 +530,7 @@ def long_run(tmp_path):
     processes = []
 
     def start(folder):
-        command = ["run", "lab-impact", "--stop-time", "100", "--output-dir", str(folder), "--no-figures"]
+        command = ["run", "lab-impact", "--stop-time", "9", "--output-dir", str(folder), "--no-figures"]
         process = subprocess.Popen([sys.executable, "-m", "orchestrator.cli", *command], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
         processes.append(process)

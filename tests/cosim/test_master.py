@@ -202,3 +202,12 @@ def test_extremes_of_watched_outputs_count_every_exchange(tmp_path):
     assert (result.figure("a.y maximum").value, result.figure("a.y maximum at").value) == pytest.approx((1.0, 0.25))
     assert (result.figure("a.y minimum").value, result.figure("a.y minimum at").value) == pytest.approx((-1.0, 0.75))
     assert result.figure("a.y maximum").unit == "m"
+
+
+def test_integrals_of_watched_outputs_count_every_exchange(tmp_path):
+    """A ramp to 2 and a jump back to 0, in 1 s; two rows, which miss it."""
+    ramp = Mock([out("y", "N")], lambda v, t, h: v.update(y=2.0 * (t + h) if t + h < 0.995 else 0.0))
+    result = run(tmp_path, [], {"a": ramp}, exchange_step=0.01, output_interval=1.0, watch=["a.y"])
+    assert result.series["a.y"].tolist() == [0.0, 0.0]
+    assert result.figure("a.y integral").value == pytest.approx(0.99**2 + 0.5 * 0.01 * 1.98)
+    assert result.figure("a.y integral").unit == "N.s"

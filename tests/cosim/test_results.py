@@ -76,6 +76,14 @@ def test_figures_can_be_added_and_replaced(result):
     assert len([figure for figure in again.summary if figure.name == "exchanges"]) == 1
 
 
+def test_what_other_programs_add_to_a_summary_is_passed_over(result):
+    path = result.folder / "summary.json"
+    path.write_text(json.dumps([{"name": "theirs", "value": 2.0, "unit": "m", "checked": True,
+                                 "references": {"paper": {"value": 4.0, "deviation": -0.5, "page": 7}}}]))
+    theirs = read_run(result.folder).figure("theirs")
+    assert (theirs.value, theirs.references["paper"].value, theirs.references["paper"].deviation) == (2.0, 4.0, -0.5)
+
+
 def test_integers_and_inputs_can_be_recorded(tmp_path):
     count = Mock([out("n", kind="Integer"), out("x")], lambda v, t, h: v.update(n=v["n"] + 1))
     system, sources = wired({"a": count, "m": mass()}, [], record=["a.n", "m.mass", "m.force"])

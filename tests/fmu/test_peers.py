@@ -134,6 +134,15 @@ def test_simulate_fmu_runs_the_rock_alone(alone):
     assert alone["fall"]["position.y"] == pytest.approx(10.0 - 8.0 * t - 0.5 * g * t * (t + dt), rel=1e-12)
 
 
+def test_the_readmes_first_lines_for_fmpy_print_why_a_value_is_refused(folder, python, tmp_path):
+    readme = (Path(package.__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    code, = (code for code in re.findall(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE) if "fmpy" in code)
+    code = code.replace("fmus/dist", str(folder))
+    fell = "print(len(result), result['velocity.y'][-1] < -8.9)"
+    assert python(f"{code}\n{fell}", TMPDIR=str(tmp_path)).split() == ["101", "True"]
+    assert "mass = -4 kg: allowed is 1e-06 kg or more" in python(code.replace("1000.0", "-4.0"), TMPDIR=str(tmp_path))
+
+
 def test_simulate_fmu_runs_the_sand_alone(alone):
     """The same bits as the component itself with the inputs and steps that fmpy has set."""
     press = alone["press"]

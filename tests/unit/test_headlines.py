@@ -138,7 +138,7 @@ def test_models_of_the_sand_have_their_names():
     run = made_up()
     sand = run.provenance["components"]["sand"]["parameters"]
     assert comparison.model(run) == ("calibrated sand: rotation locked, stiffness factor 0.42, "
-                                     "square packing, E_bar 30.0 kgf/cm²")
+                                     "square packing, fictitious modulus E_bar 30.0 kgf/cm²")
     sand["rotation"]["value"], sand["stiffness_factor"]["value"] = "free", 1.0
     assert comparison.model(run).startswith("literal sand: rotation free")
     sand["rolling_resistance"]["value"] = 0.3
