@@ -18,9 +18,8 @@ LAYOUT = Layout((
            ("sphere", "disc", "given"), "sphere"),
     param("moment_of_inertia", "moment of inertia about the centre; used when shape is given", 0.4 * _BALL_MASS * _BALL_RADIUS ** 2,
           "kg.m2", minimum=1e-15),
-    choice("motion", "free: moves under force, torque and weight; driven: keeps the velocities given for the start whatever acts on "
-           "it, as in a testing machine", ("free", "driven"), "free",
-           source="driven: Sonoda et al. 1993, fig. 12"),
+    choice("motion", "free: moves under force, torque and weight; driven: keeps the velocities given for the start whatever acts "
+           "on it, as in a testing machine", ("free", "driven"), "free", source="driven: Sonoda et al. 1993, fig. 12"),
     param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
     param("position0.x", "position of the centre at the start, to the right", 0.0, "m"),
     param("position0.y", "position of the centre at the start, upwards", 1.0, "m"),
