@@ -31,7 +31,7 @@ _SHARE = (Scale("%", 0.01, 3),)
 _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.STATIC_LOAD: ("load at 4 cm", _FORCE),
     h.STATIC_STIFFNESS: ("secant spring constant k", (Scale("kN/m", kN, 1), Scale("kgf/cm", kgf / cm, 1))),
-    h.STATIC_DEPARTURE: ("departure from the secant line / load", (Scale("%", 0.01, 1),)),
+    h.STATIC_DEPARTURE: ("departure from the secant line", (Scale("%", 0.01, 1),)),
     h.MACHINE_WORK: ("work of the machine", _ENERGY),
     h.RESIDUAL_WORK_SHARE: ("energy residual / work of the machine", (Scale("%", 0.01, 3, "+"),)),
     h.PEAK_TRANSMITTED: ("peak transmitted force", _FORCE),

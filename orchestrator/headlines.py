@@ -41,7 +41,7 @@ RESIDUAL = "largest energy residual of the system"
 RESIDUAL_SHARE = "largest energy residual of the system / impact energy"
 STATIC_LOAD = "load at 4 cm"
 STATIC_STIFFNESS = "secant spring constant k"
-STATIC_DEPARTURE = "departure of the load from the secant line / load at 4 cm"
+STATIC_DEPARTURE = "departure of the load from the secant line / largest load"
 MACHINE_WORK = "work of the machine"
 RESIDUAL_WORK_SHARE = "largest energy residual of the system / work of the machine"
 

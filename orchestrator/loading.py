@@ -36,10 +36,14 @@ class LoadCurve:
         return (np.interp(high, self.depth, work) - np.interp(low, self.depth, work)) / (high - low)
 
     def departure(self, depth: float) -> float:
-        """How far the load is from the secant line up to ``depth`` (m): root mean square over the penetration / load at the end."""
+        """How far the load is from the secant line up to ``depth`` (m): root mean square over the penetration / largest load.
+
+        Infinite where the sand carries nothing.
+        """
         places = np.linspace(0.0, depth, round(depth / WINDOW) + 1)[1:]
-        end = float(self.at(depth))
-        return float(np.sqrt(np.mean((self.at(places) - end * places / depth) ** 2)) / abs(end)) if end else np.inf
+        loads, end = self.at(places), float(self.at(depth))
+        largest = float(loads.max())
+        return float(np.sqrt(np.mean((loads - end * places / depth) ** 2))) / largest if largest > 0.0 else np.inf
 
 
 def load_curve(series: Mapping[str, Values], sand: str) -> LoadCurve | None:

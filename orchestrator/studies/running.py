@@ -27,8 +27,8 @@ Done = Callable[[int, int], None]
 COLUMNS = ("sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "beam.midspan.deflection", "beam.energy.elastic",
            "beam.energy.strain_estimate", "rock.energy.kinetic")
 """What is recorded of a run, besides the energy of its interfaces."""
-_MODEL = ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "packing", "lattice_shift", "seed",
-          "kinematics", "forces", "internal_step")
+_MODEL = ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "packing", "disc.spread", "lattice_shift",
+          "seed", "kinematics", "forces", "internal_step")
 """Parameters of the sand that say which model it is."""
 
 

@@ -13,8 +13,8 @@ def curve(load, depth=0.042, points=843):
 
 def test_a_straight_line_is_its_own_secant():
     line = curve(lambda x: 3e4 * x)
-    assert float(line.at(DEPTH)) == pytest.approx(1200.0)
-    assert line.departure(DEPTH) < 1e-9
+    assert float(line.at(DEPTH)) == pytest.approx(1200.0, rel=1e-5)
+    assert line.departure(DEPTH) < 1e-5
 
 
 def test_departure_of_a_parabola():
