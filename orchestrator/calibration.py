@@ -256,18 +256,18 @@ def _ended(outcome: Outcome) -> Outcome:
     return outcome
 
 
-def by_misfit(candidates: Sequence[Callable[[], Calibration]]) -> tuple[list[Calibration], list[Unreachable]]:
-    """Calibrations of several models to one curve, the best fit first, and why others have none.
+def by_misfit(candidates: Mapping[str, Callable[[], Calibration]]) -> tuple[list[Calibration], dict[str, Unreachable]]:
+    """Calibrations of several models, by their names, to one curve: the best fit first; and why others have none.
 
     Raises:
         Unreachable: no model has such loads.
     """
-    made, lost = [], []
-    for candidate in candidates:
+    made, lost = [], {}
+    for name, candidate in candidates.items():
         try:
             made.append(candidate())
         except Unreachable as reason:
-            lost.append(reason)
+            lost[name] = reason
     if not made:
-        raise Unreachable([problem for reason in lost for problem in reason.problems])
+        raise Unreachable([problem for reason in lost.values() for problem in reason.problems])
     return sorted(made, key=lambda calibration: calibration.fits[0].misfit), lost

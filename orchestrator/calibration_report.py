@@ -46,7 +46,7 @@ class Found:
 
     asked: Asked
     calibrations: Sequence[Calibration]
-    lost: Sequence[Unreachable] = ()
+    lost: Mapping[str, Unreachable] = field(default_factory=dict)
 
     def fits(self) -> "list[tuple[Calibration, Fit]]":
         """Each measurement with each model."""
@@ -88,8 +88,8 @@ def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Done) 
         As :func:`orchestrator.calibration.calibrate`.
     """
     models = list(ROTATIONS) if asked.rotation == BEST else [asked.rotation]
-    made, lost = by_misfit([partial(calibrate, asked.measurements, model, asked.settings, seeds, workers, note, done)
-                            for model in models])
+    made, lost = by_misfit({model: partial(calibrate, asked.measurements, model, asked.settings, seeds, workers, note, done)
+                            for model in models})
     return Found(asked, made, lost)
 
 
@@ -121,13 +121,14 @@ def table(found: Found) -> Table:
 def notes(found: Found) -> list[str]:
     """What a reader has to know of the figures."""
     best = found.calibrations[0]
-    said = [f"sand: {', '.join(best.settings)}; {len(best.pushes)} static tests with each model, "
+    said = [f"rotation {best.rotation}: {', '.join(best.settings)}; {len(best.pushes)} static tests, "
             f"{len({push.seed for push in best.pushes})} samples",
             "±: standard deviation of the E_bar that single samples ask for" + (
                 ", and error of the curve, together" if best.fits[0].measured.is_curve else "")]
     if found.asked.rotation == BEST:
         said.append(f"rotation {best.rotation} fits best, by the error of the curve")
-    return said + [f"rotation not possible: {problem.what}" for reason in found.lost for problem in reason.problems]
+    return said + [f"rotation {name} not possible: {problem.what}" for name, reason in found.lost.items()
+                   for problem in reason.problems]
 
 
 def as_data(found: Found) -> dict[str, Any]:

@@ -71,9 +71,9 @@ def test_the_model_with_the_smaller_error_is_chosen_and_the_other_kept():
     measured = Measurement("curve", depth, 38e3 * depth)
     bent, straight = (Calibration(name, (), [fit(measured, pushes(power=power))], ())
                       for name, power in (("bent", 1.3), ("straight", 1.0)))
-    made, lost = by_misfit([lambda: bent, lambda: straight])
+    made, lost = by_misfit({"bent": lambda: bent, "straight": lambda: straight})
     assert [c.rotation for c in made] == ["straight", "bent"]
-    assert lost == []
+    assert lost == {}
 
 
 def test_a_model_that_cannot_have_the_load_leaves_it_to_the_other():
@@ -83,10 +83,10 @@ def test_a_model_that_cannot_have_the_load_leaves_it_to_the_other():
         fit(measured, pushes(factor=0.0))
 
     fine = Calibration("fine", (), [fit(measured, pushes())], ())
-    made, lost = by_misfit([never, lambda: fine])
-    assert ([c.rotation for c in made], len(lost)) == (["fine"], 1)
+    made, lost = by_misfit({"never": never, "fine": lambda: fine})
+    assert ([c.rotation for c in made], list(lost)) == (["fine"], ["never"])
     with pytest.raises(Unreachable):
-        by_misfit([never, never])
+        by_misfit({"never": never, "nor this": never})
 
 
 # ------------------------------------------------------------------ around the fit, with made-up runs
