@@ -333,6 +333,44 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
             raise typer.Exit(INTERRUPTED)
 
 
+@app.command()
+def calibrate(target: Annotated[str | None, typer.Argument(metavar="[CURVE.csv|sonoda1993]", show_default=False, help="Measured "
+                                                           "load-penetration curve, columns `penetration (cm)` and `load (kgf)` "
+                                                           "or other units; or table 4 of the paper.")] = None,
+              stiffness: Annotated[str | None, typer.Option(metavar="'NUMBER UNIT'", help="Measured secant spring constant at 4 cm "
+                                                            "instead: '39.1 kgf/cm', '38.3 kN/m'.")] = None,
+              rotation: Annotated[str, typer.Option(metavar="locked|free|fit", help="Rotation model of the sand; fit: the one that "
+                                                    "has the curve.")] = "locked",
+              set_: Set = None,
+              seeds: Annotated[int, typer.Option(min=2, help="Samples of the sand for each E_bar.")] = 5,
+              output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/calibration.")] = None,
+              workers: Annotated[int | None, typer.Option(min=1, help="Processes at a time; default: one for each core.")] = None,
+              as_json: Json = False, quiet: Quiet = False) -> None:
+    """Find E_bar of a sand from a measured spring constant or load-penetration curve, by the static test."""
+    from .screen import RUN_FAILED
+
+    with _screen(quiet, as_json) as screen:
+        from .calibration_report import as_data, asked_for, find, notes, table, write
+        from .core.errors import RunFailed
+
+        asked = asked_for(target, stiffness, rotation, set_ or [])
+        folder = output_dir or RESULTS / "calibration"
+        try:
+            with screen.counting("static tests") as done:
+                found = find(asked, seeds, workers, screen.note, done)
+        except RunFailed as failure:
+            screen.fail(str(failure))
+            raise typer.Exit(RUN_FAILED) from None
+        files = write(found, folder)
+        if as_json:
+            screen.dump({"status": "complete", **as_data(found), "files": [str(file) for file in files]})
+            return
+        screen.show(table(found), "")
+        for text in notes(found):
+            screen.say(text)
+        screen.say(f"results in {folder}: " + ", ".join(file.name for file in files))
+
+
 def main() -> None:
     """The entry point of the command ``rockshed``."""
     for stream in (sys.stdout, sys.stderr):

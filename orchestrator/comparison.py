@@ -30,6 +30,11 @@ _ENERGY = (Scale("J", 1.0, 2), Scale("kgf cm", kgf * cm, 1))
 _TIME = (Scale("ms", ms, 2),)
 _SHARE = (Scale("%", 0.01, 3),)
 _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
+    h.STATIC_LOAD: ("load at 4 cm", _FORCE),
+    h.STATIC_STIFFNESS: ("secant spring constant k", (Scale("kN/m", kN, 1), Scale("kgf/cm", kgf / cm, 1))),
+    h.STATIC_DEPARTURE: ("departure from the secant line", (Scale("%", 0.01, 1),)),
+    h.MACHINE_WORK: ("work of the machine", _ENERGY),
+    h.RESIDUAL_WORK_SHARE: ("energy residual / work of the machine", (Scale("%", 0.01, 3, "+"),)),
     h.PEAK_TRANSMITTED: ("peak transmitted force", _FORCE),
     h.PEAK_TRANSMITTED_AT: ("  at", _TIME),
     h.PEAK_ROCK: ("peak force on the rock", _FORCE),
@@ -54,6 +59,7 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
 _HUGE = 1e7
 """Numbers from here on, of runs that went astray, are written with an exponent."""
 _TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compared"
+_TOO_SHALLOW = "the rock is not driven 4 cm deep: there is no secant spring constant; raise --stop-time"
 _STILL = "the force on the rock has not ended: impulse and duration would be larger with a later stop time"
 
 
@@ -129,7 +135,7 @@ def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
     """What a reader has to know of the figures: where references that are only about right (≈) come from, what is cut off."""
     remarks = list(references_of(run.provenance).remarks)
     if h.still_sinking(run):
-        return [*remarks, _TOO_SHORT]
+        return [*remarks, _TOO_SHALLOW if h.driven(run) else _TOO_SHORT]
     found = [f"≈ {who}: {reference.note}" for entry in known.values()
              for who, reference in entry.by().items() if reference.note]
     return remarks + list(dict.fromkeys(found)) + ([_STILL] if h.still_in_contact(run) else [])
@@ -148,10 +154,11 @@ _UNREST_LIMIT = 1e-3
 
 def _doubts(run: Run) -> Iterator[str]:
     """An energy balance that does not close, sand that was moving before the impact."""
-    share = _computed(run, h.RESIDUAL_SHARE)
+    name, whole = (h.RESIDUAL_WORK_SHARE, "work of the machine") if h.driven(run) else (h.RESIDUAL_SHARE, "impact energy")
+    share = _computed(run, name)
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
-        yield (f"the balance of energy does not close: {100.0 * share:+.3g} % of the impact energy; do not trust the figures, "
-               "reduce the steps")
+        yield (f"the balance of energy does not close: {100.0 * share:+.3g} % of the {whole}; do not trust the figures, reduce "
+               "the steps")
     sand = h.roles(run).sand
     if sand is None or f"{sand}.unrest" not in run.series:
         return

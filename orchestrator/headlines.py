@@ -1,4 +1,4 @@
-"""Headline figures of an impact on a rock shed, and what a case has to compare them with.
+"""Headline figures of an impact on a rock shed, or of a static test of its cushion, and what a case has to compare them with.
 
 The figures follow from a run's results alone, whatever system it was: components are found by the model of their FMU, and a
 figure whose component or column is missing is left out.
@@ -39,6 +39,11 @@ DURATION = "duration of the force on the rock"
 IMPACT_ENERGY = "impact energy"
 RESIDUAL = "largest energy residual of the system"
 RESIDUAL_SHARE = "largest energy residual of the system / impact energy"
+STATIC_LOAD = "load at 4 cm"
+STATIC_STIFFNESS = "secant spring constant k"
+STATIC_DEPARTURE = "departure of the load from the secant line / largest load"
+MACHINE_WORK = "work of the machine"
+RESIDUAL_WORK_SHARE = "largest energy residual of the system / work of the machine"
 
 SETTLING = 0.5
 """Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one contact."""
@@ -96,6 +101,12 @@ def roles(run: "Run") -> Roles:
     return Roles(only("FallingRock"), only("SandCushion"), only("RBSMBeam"))
 
 
+def driven(run: "Run") -> bool:
+    """Whether the rock is driven by a machine: a static test, no impact."""
+    rock = roles(run).rock
+    return rock is not None and run.provenance["components"][rock]["parameters"].get("motion", {}).get("value") == "driven"
+
+
 def extreme(run: "Run", column: str) -> tuple[float, float]:
     """Largest value of an output and its time (s): over all exchanges if the run watched it and has ended, else over the rows."""
     known = {figure.name: figure.value for figure in run.summary}
@@ -105,18 +116,26 @@ def extreme(run: "Run", column: str) -> tuple[float, float]:
     return float(run.series[column][at]), float(run.series["time"][at])
 
 
+_OUTSIDE = ".energy.work.drive"
+
+
+def machine_work(run: "Run") -> "NDArray[np.float64] | None":
+    """Work (J) of the machine on a driven rock since the start, at each row; None without one."""
+    return run.series.get(f"{roles(run).rock}{_OUTSIDE}") if driven(run) else None
+
+
 def system_residual(run: "Run") -> "NDArray[np.float64] | None":
     """Energy (J) that the whole system has made since the start, at each row: what is stored and dissipated less what came in.
 
     A component's residual is the change of its energies less the work done on it. The works of both sides of an interface
-    cancel but for what the coupling makes; with them the sum over all components is the balance of the system. None if a
-    component gives no balance.
+    cancel but for what the coupling makes; with them the sum over all components is the balance of the system. The work of a
+    machine comes from outside and stays in the balance. None if a component gives no balance.
     """
     total = None
     for name in run.provenance["components"]:
         if f"{name}.energy.residual" not in run.series:
             return None
-        works = [column for column in run.series if column.startswith(f"{name}.energy.work.")]
+        works = [column for column in run.series if column.startswith(f"{name}.energy.work.") and not column.endswith(_OUTSIDE)]
         for column in [f"{name}.energy.residual", *works]:
             part = run.series[column] - run.series[column][0]
             total = part if total is None else total + part
@@ -124,14 +143,32 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
 
 
 def impact_energy(run: "Run") -> float | None:
-    """Kinetic energy (J) of the rock at the start."""
+    """Kinetic energy (J) of the rock at the start; None where a machine drives it."""
     column = f"{roles(run).rock}.energy.kinetic"
-    return float(run.series[column][0]) if column in run.series else None
+    return float(run.series[column][0]) if column in run.series and not driven(run) else None
 
 
 def headlines(run: "Run") -> list[Figure]:
     """Every headline figure that the results give."""
-    return [*_forces(run), *_settled(run), *_cushion(run), *_beam(run), *_energy(run)]
+    forces = _static(run) if driven(run) else [*_forces(run), *_settled(run)]
+    return [*forces, *_cushion(run), *_beam(run), *_energy(run)]
+
+
+def _static(run: "Run") -> Iterator[Figure]:
+    """Load and secant spring constant at 4 cm."""
+    from .loading import DEPTH, load_curve
+
+    curve, work = load_curve(run.series, str(roles(run).sand)), machine_work(run)
+    if curve is not None and curve.reaches(DEPTH):
+        load = float(curve.at(DEPTH))
+        yield Figure(STATIC_LOAD, load, "N")
+        yield Figure(STATIC_STIFFNESS, load / DEPTH, "N/m")
+        yield Figure(STATIC_DEPARTURE, curve.departure(DEPTH))
+    if work is not None:
+        yield Figure(MACHINE_WORK, float(work[-1]), "J")
+        residual = system_residual(run)
+        if residual is not None and work[-1]:
+            yield Figure(RESIDUAL_WORK_SHARE, float(max(residual, key=abs)) / float(work[-1]))
 
 
 def _forces(run: "Run") -> Iterator[Figure]:
@@ -200,13 +237,15 @@ def _settled(run: "Run") -> Iterator[Figure]:
 
 
 def still_in_contact(run: "Run") -> bool:
-    """Whether the force on the rock has not ended with the run."""
+    """Whether the force on the rock has not ended with the run, as it does after an impact."""
     column = f"{roles(run).sand}.rock.force.y"
-    return column in run.series and bool(run.series[column][-1] > CONTACT_SHARE * extreme(run, column)[0])
+    return column in run.series and not driven(run) and bool(run.series[column][-1] > CONTACT_SHARE * extreme(run, column)[0])
 
 
 def still_sinking(run: "Run") -> bool:
-    """Whether the rock had not come to a stop when the run ended."""
+    """Whether the rock had not come to a stop when the run ended; of a driven rock, whether it was not 4 cm deep."""
+    if driven(run):
+        return not any(figure.name == STATIC_STIFFNESS for figure in _static(run))
     depth = run.series.get(f"{roles(run).sand}.penetration")
     return depth is not None and (int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0)
 

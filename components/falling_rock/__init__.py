@@ -14,7 +14,7 @@ COMPONENT = Component(
     evaluate=kernel.evaluate,
     step=kernel.step,
     folder=Path(__file__).parent,
-    faults={kernel.DIVERGED: "the position is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
+    faults={kernel.DIVERGED: "position or work is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
                              "reduce the exchange step or the step of the component that computes it"},
     default_step=1e-5,
 )

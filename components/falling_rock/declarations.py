@@ -5,6 +5,7 @@ from ..stepping import internal_step, stable_step
 from ..units import cm
 
 SPHERE, DISC, GIVEN = 1, 2, 3
+FREE, DRIVEN = 1, 2
 
 _BALL_MASS = 4.0
 _BALL_RADIUS = 4.95 * cm
@@ -17,6 +18,8 @@ LAYOUT = Layout((
            ("sphere", "disc", "given"), "sphere"),
     param("moment_of_inertia", "moment of inertia about the centre; used when shape is given", 0.4 * _BALL_MASS * _BALL_RADIUS ** 2,
           "kg.m2", minimum=1e-15),
+    choice("motion", "free: moves under force, torque and weight; driven: keeps the velocities given for the start whatever acts "
+           "on it, as in a testing machine", ("free", "driven"), "free", source="driven: Sonoda et al. 1993, fig. 12"),
     param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
     param("position0.x", "position of the centre at the start, to the right", 0.0, "m"),
     param("position0.y", "position of the centre at the start, upwards", 1.0, "m"),
@@ -38,6 +41,7 @@ LAYOUT = Layout((
     out("energy.kinetic", "kinetic energy, translation and rotation", "J"),
     out("energy.gravity", "potential energy in gravity, zero at y = 0", "J"),
     out("energy.work.contact", "work that the inputs force and torque have done on the rock", "J"),
-    out("energy.residual", "kinetic + gravity - work, minus their sum at the start: the error of the integration", "J"),
+    out("energy.work.drive", "work that the machine has done on a driven rock: against its weight, force and torque", "J"),
+    out("energy.residual", "kinetic + gravity - works, minus their sum at the start: the error of the integration", "J"),
     out("energy.start", "kinetic + gravity at the start", "J"),
 ))

@@ -1,11 +1,11 @@
-"""Motion of a rigid body in the plane under gravity and outside forces, semi-implicit Euler."""
+"""Motion of a rigid body in the plane under gravity and outside forces, semi-implicit Euler; or driven with given velocities."""
 
 import math
 
 from ..compilation import kernel
 from ..component import OK
 from ..stepping import substep_count, substep_length
-from .declarations import DISC, LAYOUT, SPHERE
+from .declarations import DISC, DRIVEN, LAYOUT, SPHERE
 
 V = LAYOUT.scalar
 
@@ -42,13 +42,25 @@ def move(mass, moment_of_inertia, gravity, force_x, force_y, torque, dt, w):
 
 
 @kernel
+def drive(dt, w):
+    """One step dt (s) with constant velocities. What force, torque and weight do to the rock, the machine undoes."""
+    contact = dt * (w[V.force_x] * w[V.velocity_x] + w[V.force_y] * w[V.velocity_y] + w[V.torque] * w[V.angular_velocity])
+    w[V.position_x] += w[V.velocity_x] * dt
+    w[V.position_y] += w[V.velocity_y] * dt
+    w[V.angle] += w[V.angular_velocity] * dt
+    w[V.energy_work_contact] += contact
+    w[V.energy_work_drive] += w[V.mass] * w[V.gravity] * w[V.velocity_y] * dt - contact
+
+
+@kernel
 def energies(w):
     """Refresh kinetic and potential energy and the residual."""
     speed2 = w[V.velocity_x] * w[V.velocity_x] + w[V.velocity_y] * w[V.velocity_y]
     spin2 = w[V.angular_velocity] * w[V.angular_velocity]
     w[V.energy_kinetic] = 0.5 * w[V.mass] * speed2 + 0.5 * inertia(w) * spin2
     w[V.energy_gravity] = w[V.mass] * w[V.gravity] * w[V.position_y]
-    w[V.energy_residual] = w[V.energy_kinetic] + w[V.energy_gravity] - w[V.energy_work_contact] - w[V.energy_start]
+    works = w[V.energy_work_contact] + w[V.energy_work_drive]
+    w[V.energy_residual] = w[V.energy_kinetic] + w[V.energy_gravity] - works - w[V.energy_start]
 
 
 @kernel
@@ -58,7 +70,7 @@ def initialise(w, x, k):
     w[V.velocity_x], w[V.velocity_y] = w[V.velocity0_x], w[V.velocity0_y]
     w[V.angular_velocity] = w[V.angular_velocity0]
     w[V.stable_step] = UNBOUNDED_STEP
-    w[V.energy_work_contact] = 0.0
+    w[V.energy_work_contact], w[V.energy_work_drive] = 0.0, 0.0
     w[V.energy_start] = 0.0
     energies(w)
     w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_gravity]
@@ -74,11 +86,14 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s) with constant force and torque."""
+    """Advance by h (s) with constant force and torque, or with constant velocities."""
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     moment_of_inertia = inertia(w)
     for _ in range(n):
+        if w[V.motion] == DRIVEN:
+            drive(dt, w)
+            continue
         w[V.energy_work_contact] += move(w[V.mass], moment_of_inertia, w[V.gravity], w[V.force_x], w[V.force_y], w[V.torque], dt, w)
     energies(w)
-    return OK if math.isfinite(w[V.position_x] + w[V.position_y] + w[V.angle]) else DIVERGED
+    return OK if math.isfinite(w[V.position_x] + w[V.position_y] + w[V.angle] + w[V.energy_work_contact]) else DIVERGED

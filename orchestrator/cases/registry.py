@@ -12,7 +12,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
 from ..core.system import System, Value
 from ..headlines import References
-from . import full_scale, sonoda1993
+from . import full_scale, sonoda1993, static_test
 
 Sizes = Mapping[str, Mapping[str, int]]
 """Sizes by component of the system: ``{"sand": {"discs": 370}}``. What is not named has its default."""
@@ -46,7 +46,7 @@ def cases() -> dict[str, Case]:
     """All cases by name."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
-    return {case.name: case for case in [*found, *map(_full_scale, full_scale.impacts().values())]}
+    return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values())]}
 
 
 def case(name: str) -> Case:
@@ -123,6 +123,19 @@ def _laboratory(test: sonoda1993.Test) -> Case:
                    "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
         make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test),
         other_names=(numbered,) if numbered != name else ())
+
+
+def _static_test() -> Case:
+    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+        return static_test.static_system(fmus, coupling, sizes["sand"]["discs"])
+
+    return Case(
+        static_test.NAME, "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, rigid floor",
+        models={"sand": "SandCushion", "rock": "FallingRock"},
+        sizes={"sand": {"discs": static_test.DISCS, "elements": 1}},
+        couplings={"impulse": "sand first, kinematics extrapolated, mean forces, exchange every 1 ms",
+                   "paper": "sand first, inputs held, exchange every 0.01 ms"},
+        make=make, references=static_test.references)
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:

@@ -11,7 +11,7 @@ from components.component import ComponentError
 from ..comparison import known_of
 from ..core.errors import InputRefused, Problem
 from ..core.reading import Run
-from ..headlines import roles
+from ..headlines import driven, roles
 
 Tell = Callable[[str], None]
 """Shows a line to the user."""
@@ -73,6 +73,9 @@ def _pictures(run: Run) -> list[_Picture]:
     known, who = known_of(run), roles(run)
     force, depth = [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], [f"{who.sand}.penetration"]
     of_sand = [] if who.sand is None else [
+        _Picture("load", partial(curves.load, run, known), [force[1], *depth]),
+        _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
+    ] if driven(run) else [
         _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),
         _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
         _Picture("forces", partial(curves.forces, run, known), force),

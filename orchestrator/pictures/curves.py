@@ -1,4 +1,4 @@
-"""Curves over time: forces, penetration, beam, energy balance."""
+"""Curves over time: forces, penetration, beam, energy balance; of a static test the load over the penetration."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -11,6 +11,7 @@ from components.units import cm, kgf, kN, mm, ms
 
 from .. import headlines as h
 from ..core.reading import Run
+from ..loading import DEPTH, load_curve
 from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, over_time, reference_line, second_scale
 
 Known = Mapping[str, h.Known]
@@ -90,6 +91,33 @@ def penetration(run: Run, known: Known, file: Path) -> None:
         axes.invert_yaxis()
 
 
+def load(run: Run, known: Known, file: Path) -> None:
+    """Load on a driven rock over its penetration, with the secant at 4 cm and the paper's."""
+    curve = load_curve(run.series, str(h.roles(run).sand))
+    assert curve is not None
+    with figure(run, file, WIDTH, 3.6) as made:
+        axes = made.subplots()
+        axes.plot(curve.depth / cm, curve.load / kN, color=ROCK, linewidth=0.5, alpha=0.45)
+        axes.plot(curve.depth / cm, curve.at(curve.depth) / kN, color=ROCK, label="load, mean over 0.5 mm")
+        if curve.reaches(DEPTH):
+            secant = float(curve.at(DEPTH)) / DEPTH
+            _secant(axes, secant, INK, "-", f"secant, k = {secant / kN:.1f} kN/m = {secant * cm / kgf:.1f} kgf/cm")
+        paper = known.get(h.STATIC_STIFFNESS, h.Known()).paper
+        if paper:
+            _secant(axes, paper.value, GREY, "--", f"paper, {paper.value / kN:.1f} kN/m = {paper.value * cm / kgf:.1f} kgf/cm")
+        axes.axhline(0.0, color=GREY, linewidth=0.7)
+        axes.set(xlabel="penetration (cm)", ylabel="load (kN)")
+        axes.set_xlim(left=0.0)
+        second_scale(axes, kN / kgf, "(kgf)")
+        axes.legend(loc="upper left")
+
+
+def _secant(axes: Axes, stiffness: float, colour: str, dashes: str, name: str) -> None:
+    """A line from the origin to 4 cm with a spring constant (N/m)."""
+    axes.plot([0.0, DEPTH / cm], [0.0, stiffness * DEPTH / kN], dashes, color=colour, linewidth=1.0, marker="o", markevery=[1],
+              markersize=3.5, label=name)
+
+
 def beam(run: Run, known: Known, file: Path) -> None:
     """Deflection and energy of the beam."""
     name, time = h.roles(run).beam, run.series["time"] / ms
@@ -135,23 +163,26 @@ _SHOWN = 1e-4
 
 
 def energy(run: Run, file: Path) -> None:
-    """Where the energy of the impact is at each time, and the error of the balance."""
-    time, layers = run.series["time"] / ms, list(_layers(run))
-    residual, impact = h.system_residual(run), h.impact_energy(run)
+    """Where the energy of the impact, or what a machine has put in, is at each time, and the error of the balance."""
+    time, layers, put_in = run.series["time"] / ms, list(_layers(run)), h.machine_work(run)
+    residual, whole, name = h.system_residual(run), h.impact_energy(run), "impact\nenergy"
+    if put_in is not None:
+        whole, name = float(abs(put_in[-1])), "work of\nthe machine"
     with figure(run, file, WIDTH, 5.2) as made:
         upper, lower = made.subplots(2, sharex=True, height_ratios=(4, 1))
         if layers:  # no part may have any energy
             upper.stackplot(time, [values for _, _, values in layers], colors=[colour for _, colour, _ in layers],
                             labels=[name for name, _, _ in layers], edgecolor="white", linewidth=0.3)
-        upper.axhline(sum(float(values[0]) for _, _, values in layers), color=INK, linewidth=0.9, linestyle="--",
-                      label="all energy at the start")
+        start = np.full(time.size, sum(float(values[0]) for _, _, values in layers))
+        upper.plot(time, start if put_in is None else start + put_in, color=INK, linewidth=0.9, linestyle="--",
+                   label="all energy at the start" + ("" if put_in is None else "\nand work of the machine"))
         upper.set(ylabel="energy (J)")
         over_time(upper, time)
         handles, labels = upper.get_legend_handles_labels()
         upper.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
-        if residual is not None and impact:
-            lower.plot(time, 100.0 * residual / impact, color=INK, linewidth=1.0)
-            lower.set_ylabel("error of the balance\n(% of the impact\nenergy)", fontsize=8)
+        if residual is not None and whole:
+            lower.plot(time, 100.0 * residual / whole, color=INK, linewidth=1.0)
+            lower.set_ylabel(f"error of the balance\n(% of the {name})", fontsize=8)
         lower.axhline(0.0, color=GREY, linewidth=0.7)
         lower.set_xlabel("time (ms)")
 

@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 Done = Callable[[int, int], None]
 """Told the number of runs that have ended, and of all."""
 
-COLUMNS = ("sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "beam.midspan.deflection", "beam.energy.elastic",
-           "beam.energy.strain_estimate", "rock.energy.kinetic")
+COLUMNS = ("sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "sand.surface_height", "sand.stable_step",
+           "beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate", "rock.energy.kinetic")
 """What is recorded of a run, besides the energy of its interfaces."""
-_MODEL = ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "packing", "lattice_shift", "seed",
-          "kinematics", "forces", "internal_step")
+_MODEL = ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "packing", "disc.spread", "lattice_shift",
+          "seed", "kinematics", "forces", "internal_step")
 """Parameters of the sand that say which model it is."""
 
 
@@ -58,6 +58,15 @@ def run_all(tasks: Sequence[Task], workers: int | None, note: Note, done: Done) 
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
     return {order.key: found.get(order.key, Outcome(order.key, INTERRUPTED, "not run")) for order in orders}
+
+
+def run_here(task: Task, note: Note = lambda text: None) -> Outcome:
+    """Carry out one task in this process.
+
+    Raises:
+        InputRefused: a task that cannot be prepared.
+    """
+    return run_one(_order(task, note))
 
 
 def _order(task: Task, note: Note) -> _Order:

@@ -14,6 +14,13 @@ def power_law(x: Sequence[float], y: Sequence[float]) -> tuple[float, float]:
     return float(np.exp(logarithm)), float(exponent)
 
 
+def line_through_origin(x: Sequence[float], y: Sequence[float]) -> tuple[float, float]:
+    """Slope of y = slope * x by least squares, and R2, the part of the variance of y that it explains."""
+    known, values = np.asarray(x, float), np.asarray(y, float)
+    slope = float(known @ values / (known @ known))
+    return slope, float(1.0 - np.sum((values - slope * known) ** 2) / np.sum((values - values.mean()) ** 2))
+
+
 def exponent_error(x: Sequence[float], y: Sequence[float]) -> float:
     """Standard error of the exponent of :func:`power_law`."""
     from scipy.stats import linregress

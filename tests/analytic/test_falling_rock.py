@@ -103,3 +103,34 @@ def test_thrown_rock_keeps_its_parabola(vx, vy, time):
     instance.step(0.0, time)
     x, y, dt = instance["position.x"], instance["position.y"], time / math.ceil(time / 1e-4 - 1e-9)
     assert y == pytest.approx(vy * x / vx - instance["gravity"] / 2 * (x / vx) * (x / vx + dt), rel=1e-9, abs=1e-9)
+
+
+# ------------------------------------------------------------------ driven
+
+
+@given(forces, forces, forces, speeds, speeds, speeds, steps)
+def test_a_driven_rock_keeps_its_velocities_and_the_machine_does_what_is_missing(force_x, force_y, torque, vx, vy, omega, step):
+    """Power of the machine: (m g - force_y) vy - force_x vx - torque omega; nothing else feeds the rock, and the balance closes."""
+    instance = rock(motion="driven", velocity0__x=vx, velocity0__y=vy, angular_velocity0=omega, internal_step=step / 3)
+    start = {name: instance[name] for name in ("position.x", "position.y", "angle")}
+    pushed(instance, force_x, force_y, torque).step(0.0, step)
+    assert (instance["velocity.x"], instance["velocity.y"], instance["angular_velocity"]) == (vx, vy, omega)
+    for name, speed in (("position.x", vx), ("position.y", vy), ("angle", omega)):
+        assert instance[name] - start[name] == pytest.approx(speed * step, rel=1e-9, abs=1e-12)
+    supplied = ((4.0 * 9.80665 - force_y) * vy - force_x * vx - torque * omega) * step
+    scale = (abs(force_x * vx) + abs(force_y * vy) + abs(torque * omega) + 40.0 * abs(vy)) * step + instance["energy.kinetic"] + 1.0
+    assert instance["energy.work.drive"] == pytest.approx(supplied, abs=1e-12 * scale)
+    assert instance["energy.residual"] == pytest.approx(0.0, abs=1e-11 * (scale + abs(instance["energy.gravity"])))
+
+
+def test_a_machine_that_lifts_a_rock_does_the_work_of_its_weight():
+    instance = rock(motion="driven", mass=5.0, gravity=10.0, velocity0__y=0.2)
+    instance.step(0.0, 3.0)
+    assert instance["energy.work.drive"] == pytest.approx(30.0, rel=1e-9)
+    assert instance["energy.work.contact"] == 0.0
+
+
+def test_no_machine_works_on_a_free_rock():
+    instance = pushed(rock(), 1e3, 1e4, 2.0)
+    instance.step(0.0, 0.1)
+    assert instance["energy.work.drive"] == 0.0

@@ -30,9 +30,11 @@ def test_bad_parameters_are_all_named():
     assert [problem.split(" = ")[0] for problem in error.value.problems] == ["mass", "radius", "velocity0.y"]
 
 
+@pytest.mark.parametrize("motion", ["free", "driven"])
 @pytest.mark.parametrize("force", [math.nan, math.inf])
-def test_a_force_that_is_no_number_stops_the_rock(force):
+def test_a_force_that_is_no_number_stops_the_rock(force, motion):
     rock = ROCK.instance()
+    rock["motion"], rock["velocity0.x"] = motion, 1.0
     rock.initialise()
     rock["force.x"] = force
     with pytest.raises(ComponentError, match=r"FallingRock: at t = 0\.5 s .*reduce the exchange step"):
