@@ -30,6 +30,7 @@ PENETRATION = "penetration"
 CLEARANCE = "least distance of rock and base"
 DEFLECTION = "peak midspan deflection"
 BEAM_ENERGY = "peak beam energy"
+"""Largest elastic energy less that at the start, under dead load; the one from the strain counts the strain from the start."""
 BEAM_ENERGY_FROM_STRAIN = "peak beam energy from the midspan strain"
 BEAM_SHARE = "peak beam energy / impact energy"
 BEAM_SHARE_FROM_STRAIN = "peak beam energy from the midspan strain / impact energy"
@@ -127,6 +128,14 @@ def impact_energy(run: "Run") -> float | None:
     """Kinetic energy (J) of the rock at the start."""
     column = f"{roles(run).rock}.energy.kinetic"
     return float(run.series[column][0]) if column in run.series else None
+
+
+def beam_energies(run: "Run") -> tuple[float | None, float | None]:
+    """Largest energy (J) that the impact has put into the beam: the springs' beyond that at the start, and by the strain."""
+    beam = roles(run).beam
+    elastic, by_strain = f"{beam}.energy.elastic", f"{beam}.energy.strain_estimate"
+    return (extreme(run, elastic)[0] - float(run.series[elastic][0]) if elastic in run.series else None,
+            extreme(run, by_strain)[0] if by_strain in run.series else None)
 
 
 def headlines(run: "Run") -> list[Figure]:
@@ -234,11 +243,12 @@ def base_height(run: "Run") -> float:
 
 
 def _beam(run: "Run") -> Iterator[Figure]:
-    beam = roles(run).beam
-    for name, output, unit in ((DEFLECTION, "midspan.deflection", "m"), (BEAM_ENERGY, "energy.elastic", "J"),
-                               (BEAM_ENERGY_FROM_STRAIN, "energy.strain_estimate", "J")):
-        if f"{beam}.{output}" in run.series:
-            yield Figure(name, extreme(run, f"{beam}.{output}")[0], unit)
+    column = f"{roles(run).beam}.midspan.deflection"
+    if column in run.series:
+        yield Figure(DEFLECTION, extreme(run, column)[0], "m")
+    for name, energy in zip((BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN), beam_energies(run)):
+        if energy is not None:
+            yield Figure(name, energy, "J")
 
 
 def _energy(run: "Run") -> Iterator[Figure]:
@@ -250,7 +260,6 @@ def _energy(run: "Run") -> Iterator[Figure]:
     if impact:
         if residual is not None:
             yield Figure(RESIDUAL_SHARE, float(max(residual, key=abs)) / impact)
-        for name, output in ((BEAM_SHARE, "energy.elastic"), (BEAM_SHARE_FROM_STRAIN, "energy.strain_estimate")):
-            column = f"{roles(run).beam}.{output}"
-            if column in run.series:
-                yield Figure(name, extreme(run, column)[0] / impact)
+        for name, energy in zip((BEAM_SHARE, BEAM_SHARE_FROM_STRAIN), beam_energies(run)):
+            if energy is not None:
+                yield Figure(name, energy / impact)

@@ -79,6 +79,9 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
     system = _changed(system, request, values, problems)
     if problems:
         raise InputRefused(problems + plan_problems(system, sources))
+    if "case" in facts:
+        system = with_values(system, {name: value for name, value in case(facts["case"]).derived(system, facts["sizes"]).items()
+                                      if name not in values})
     return Job(name, system, sources, {**facts, "changed": {**values, **request.options}})
 
 

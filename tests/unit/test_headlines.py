@@ -104,6 +104,20 @@ def test_sand_that_was_not_at_rest_is_warned_of():
     assert comparison.warnings(restless) == []
 
 
+def test_a_beam_bent_by_another_weight_than_the_sands_is_warned_of():
+    run = made_up(**{"rock.energy.residual": 2.0 * np.linspace(0.0, 1.0, 401)})
+    beam = run.provenance["components"]["beam"]["parameters"]
+    for weight, warned in ((52.0, False), (0.0, False), (60.0, True)):
+        beam["cushion.weight"] = {"value": weight}
+        assert any("set beam.cushion.weight=50" in text for text in comparison.warnings(run)) == warned
+
+
+def test_energy_of_the_beam_counts_from_the_start():
+    run = made_up(**{"beam.energy.elastic": 3.0 + 2.0 * np.linspace(0.0, 1.0, 401)})
+    assert figure(run, h.BEAM_ENERGY) == pytest.approx(2.0)
+    assert figure(run, h.BEAM_SHARE) == pytest.approx(0.02)
+
+
 def test_without_impact_energy_there_are_no_shares_of_it():
     still = made_up(**{"rock.energy.kinetic": np.zeros(401)})
     assert not [row.label for row in comparison.rows(still, {}) if "/ E0" in row.label]

@@ -65,16 +65,53 @@ def test_exchanging_four_times_less_often_changes_nothing():
 
 
 def test_elastic_sand_puts_far_too_much_energy_into_the_girders():
-    """Table 6 measures 5.6, 6.9, 7.6 percent. Calibrated sand: 46, 61, 63 percent by (5), (6), and 38, 48, 47 by (7)."""
-    for name, share, from_strain in zip(GIRDERS, (0.463, 0.613, 0.630), (0.380, 0.478, 0.469)):
+    """Table 6 measures 5.6, 6.9, 7.6 percent by (7). Calibrated sand: 34, 40, 37 percent by (7), and 46, 61, 64 by (5), (6)."""
+    for name, share, from_strain in zip(GIRDERS, (0.464, 0.613, 0.639), (0.337, 0.401, 0.366)):
         assert figure(run(name), h.BEAM_SHARE) == pytest.approx(share, abs=0.02)
         assert figure(run(name), h.BEAM_SHARE_FROM_STRAIN) == pytest.approx(from_strain, abs=0.02)
-        known = case(name).references({}).known[h.BEAM_SHARE]
-        assert figure(run(name), h.BEAM_SHARE) > 4.0 * max(known.paper.value, known.experiment.value)
+        known = case(name).references({}).known
+        assert figure(run(name), h.BEAM_SHARE) > 4.0 * known[h.BEAM_SHARE].paper.value
+        assert figure(run(name), h.BEAM_SHARE_FROM_STRAIN) > 4.0 * known[h.BEAM_SHARE_FROM_STRAIN].experiment.value
+
+
+def system(name, *settings):
+    return prepare(Request(name, settings, in_process=True)).system
+
+
+@pytest.mark.parametrize("name", GIRDERS)
+def test_girders_start_bent_under_the_sand_and_at_rest(name):
+    """6.5 t of sand; the beam's energy before the rock comes is 165 to 680 J, and less than 1 mJ of it is motion."""
+    done = run(name)
+    weight = done.provenance["components"]["beam"]["parameters"]["cushion.weight"]["value"]
+    assert done.series["sand.transmitted_force"][0] == pytest.approx(weight, rel=1e-3)
+    assert done.series["beam.energy.kinetic"][1] < 1e-3
+    static, peak = done.series["beam.energy.elastic"][0], done.series["beam.energy.elastic"].max()
+    assert static > 100.0
+    assert figure(done, h.BEAM_ENERGY) == pytest.approx(peak - static, rel=1e-3)
+
+
+def test_weight_of_the_cushion_follows_from_the_sand_unless_it_is_given():
+    def weight(*settings):
+        return system("girders-8", *settings).components["beam"].parameters["cushion.weight"]
+
+    plain = weight()
+    assert plain == pytest.approx(270 * 1800.0 * math.pi * 0.05**2 * 1.7 * 9.80665)
+    assert weight("sand.unit_weight=3600", "sand.depth=0.85") == pytest.approx(plain)
+    assert weight("sand.packing=random", "sand.disc.spread=0.3") == pytest.approx(1.03 * plain)
+    assert weight("sand.unit_weight=3600", "beam.cushion.weight=1000") == 1000.0
+
+
+def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_comparison():
+    """Assumed 200 kg/m and 2 t, of which the paper says nothing."""
+    heavy = run("girders-8", "impulse", ("beam.deck.mass=200", "beam.box.mass=2000"))
+    assert figure(heavy, h.BEAM_SHARE_FROM_STRAIN) < 0.95 * figure(run("girders-8", "impulse"), h.BEAM_SHARE_FROM_STRAIN)
+    found = case("girders-8").references({"beam.deck.mass": 200, "beam.box.mass": 2000})
+    assert found == case("girders-8").references({})
+    assert case("girders-8").references({"beam.density": 8000}).known == {}
 
 
 def test_literal_model_puts_as_much_into_the_girders():
-    """Measured 51 percent by (5), (6) and 38 by (7) at 8 m, ratio 1.06."""
+    """Measured 51 percent by (5), (6) at 8 m, ratio 1.06."""
     done = run("girders-8", settings=LITERAL)
     assert figure(done, h.BEAM_SHARE) == pytest.approx(0.51, abs=0.03)
     assert figure(done, h.SETTLED_RATIO) == pytest.approx(1.06, abs=0.1)
