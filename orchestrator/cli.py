@@ -138,6 +138,8 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
                                                      "all at once.")] = None,
         coupling: Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case.")] = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
+        load_cell: Annotated[float | None, typer.Option(metavar="HERTZ", help="Show the peak transmitted force also as a load "
+                                                        "cell with this cut-off frequency does.")] = None,
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
@@ -147,7 +149,8 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
 
     options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
                "state_interval": state_interval, "master": master}
-    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process)
+    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process,
+                      load_cell)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
         _finish(done, screen, not no_figures)

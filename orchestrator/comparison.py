@@ -31,6 +31,8 @@ _SHARE = (Scale("%", 0.01, 3),)
 _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.PEAK_TRANSMITTED: ("peak transmitted force", _FORCE),
     h.PEAK_TRANSMITTED_AT: ("  at", _TIME),
+    h.PEAK_LOAD_CELL: ("  through the load cell", _FORCE),
+    h.LOAD_CELL_CUT_OFF: ("  load cell: below", (Scale("Hz", 1.0, 0),)),
     h.PEAK_ROCK: ("peak force on the rock", _FORCE),
     h.PEAK_ROCK_AT: ("  at", _TIME),
     h.RATIO: ("ratio of the two peaks", (Scale("", 1.0, 2),)),

@@ -21,6 +21,8 @@ PEAK_TRANSMITTED = "peak transmitted force"
 PEAK_TRANSMITTED_AT = "peak transmitted force at"
 PEAK_ROCK = "peak force on the rock"
 PEAK_ROCK_AT = "peak force on the rock at"
+PEAK_LOAD_CELL = "peak transmitted force through the load cell"
+LOAD_CELL_CUT_OFF = "cut-off frequency of the load cell"
 RATIO = "peak transmitted force / peak force on the rock"
 SETTLED_TRANSMITTED = "settled maximum of the transmitted force"
 SETTLED_ROCK = "settled maximum of the force on the rock"
@@ -45,6 +47,10 @@ SETTLING = 0.5
 """Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one contact."""
 _ORDER = 4
 """Order of the low-pass filter; applied forwards and backwards."""
+
+_LOAD_CELL_ORDER = 2
+LOAD_CELL_ROWS = 5.0
+"""Rows for each period of a load cell's cut-off that are needed at least."""
 
 CONTACT_SHARE = 0.01
 """Part of its peak above which the force on the rock counts towards its duration."""
@@ -140,7 +146,7 @@ def beam_energies(run: "Run") -> tuple[float | None, float | None]:
 
 def headlines(run: "Run") -> list[Figure]:
     """Every headline figure that the results give."""
-    return [*_forces(run), *_settled(run), *_cushion(run), *_beam(run), *_energy(run)]
+    return [*_forces(run), *_load_cell(run), *_settled(run), *_cushion(run), *_beam(run), *_energy(run)]
 
 
 def _forces(run: "Run") -> Iterator[Figure]:
@@ -173,6 +179,31 @@ def cut_off(run: "Run") -> float:
     factor, modulus, density, radius = (float(sand[name]["value"]) for name in (
         "stiffness_factor", "modulus", "unit_weight", "disc.radius"))
     return SETTLING * math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
+
+
+def load_cell(time: "NDArray[np.float64]", force: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64]":
+    """What a load cell shows of a force (N) given at even times (s): a Butterworth low-pass of second order (scipy.signal), the
+    response of an oscillator with the damping ratio 1/sqrt(2). It looks back only, so it lags; at the start it is steady.
+
+    Raises:
+        ValueError: there are fewer than :data:`LOAD_CELL_ROWS` rows for each period of ``cut_off`` (Hz).
+    """
+    from scipy.signal import butter, sosfilt, sosfilt_zi
+
+    rate = (time.size - 1) / float(time[-1] - time[0])
+    if cut_off * LOAD_CELL_ROWS > rate * (1.0 + 1e-9):
+        raise ValueError(f"rows {1.0 / rate:.3g} s apart carry a cut-off of {rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}")
+    sections = butter(_LOAD_CELL_ORDER, cut_off, fs=rate, output="sos")
+    shown: NDArray[np.float64] = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]
+    return shown
+
+
+def _load_cell(run: "Run") -> Iterator[Figure]:
+    """Peak through the load cell that the run was asked to have."""
+    cut_off, column = run.provenance.get("load_cell"), f"{roles(run).sand}.transmitted_force"
+    if cut_off and column in run.series and run.series["time"].size > 1:
+        yield Figure(PEAK_LOAD_CELL, float(load_cell(run.series["time"], run.series[column], cut_off).max()), "N")
+        yield Figure(LOAD_CELL_CUT_OFF, cut_off, "1/s")
 
 
 def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":

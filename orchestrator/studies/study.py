@@ -128,14 +128,16 @@ class Study:
     notes: Sequence[str] = ()
 
 
-def row_of_runs(quantity: str, unit: str, scale: float, figure: str, tasks: Sequence[Task], found: Outcomes,
-                paper: float | None = None, experiment: float | None = None, note: str = "") -> Row:
+def row_of_runs(quantity: str, unit: str, scale: float, figure: str | Callable[[Outcome], float], tasks: Sequence[Task],
+                found: Outcomes, paper: float | None = None, experiment: float | None = None, note: str = "") -> Row:
     """A figure of one or several runs (seeds of one model) beside its references.
 
+    figure: name of the figure, or what finds it (SI) in an outcome that is complete.
     scale: size of ``unit`` in SI; references are given in ``unit``. Runs that failed are left out and named in the note.
     """
     outcomes = [found.of(task) for task in tasks]
-    values = [outcome.figures[figure] / scale for outcome in outcomes if outcome.status == COMPLETE]
+    value = (lambda outcome: outcome.figures[figure]) if isinstance(figure, str) else figure
+    values = [value(outcome) / scale for outcome in outcomes if outcome.status == COMPLETE]
     failures = list(dict.fromkeys(f"{o.status}: {o.error}".removesuffix(": ") for o in outcomes if o.status != COMPLETE))
     failed = [f"{len(outcomes) - len(values)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"] if failures else []
     mean = sum(values) / len(values) if values else None

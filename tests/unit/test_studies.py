@@ -8,6 +8,7 @@ from jsonschema import validate
 
 from components.units import kgf
 from orchestrator.core.errors import InputRefused
+from orchestrator.headlines import PEAK_TRANSMITTED
 from orchestrator.job import Request
 from orchestrator.studies import running
 from orchestrator.studies.reproduction import DATA, PAGE, chosen, reproduce, studies
@@ -142,6 +143,24 @@ def test_baselines_of_the_twelve_tests():
 def test_the_order_of_an_error_is_its_slope_and_needs_three_points():
     assert order([(h, 4.0 * h**2) for h in (1e-5, 1e-4, 1e-3)]) == pytest.approx(2.0)
     assert order([(1e-5, 1.0), (1e-4, 2.0), (1e-3, 0.0)]) is None
+
+
+def test_forces_through_a_load_cell_come_from_the_same_runs():
+    """Made-up runs of a short spike: the load cell lowers it, by the same part in every test."""
+    time = np.linspace(0.0, 0.03, 301)
+    spike = 4000.0 * np.exp(-((time - 0.01) / 2e-4) ** 2)
+    found = Outcomes({t.key: Outcome(t.key, COMPLETE, figures={PEAK_TRANSMITTED: 4000.0}, options={"modulus": 1.0},
+                                     series={"time": time, "sand.transmitted_force": spike}) for t in table2.tasks(True)}, True)
+    rows = {(row.quantity, row.model): row for row in table2.rows(found)}
+    seen = rows["peak transmitted force through a load cell of 1 kHz, test 4", "literal"]
+    plain = rows["peak transmitted force, test 4", "literal"]
+    assert seen.runs == plain.runs
+    assert 0.5 * plain.computed < seen.computed < 0.95 * plain.computed
+    assert seen.experiment == plain.experiment
+    for quantity in ("mean absolute error{}, tests 1 to 12", "trend exponent of P against k{}, tests 1 to 12"):
+        assert rows[quantity.format(" through a load cell of 1 kHz"), "literal"].computed is not None
+    assert rows["trend exponent of P against k through a load cell of 1 kHz, tests 1 to 12", "literal"].computed == pytest.approx(
+        0.0, abs=1e-9)
 
 
 # ------------------------------------------------------------------ claims of section 2
