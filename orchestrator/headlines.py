@@ -207,21 +207,25 @@ def _load_cell(run: "Run") -> Iterator[Figure]:
 
 
 def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":
-    """An output without what is faster than the cut-off: a Butterworth low-pass filter without shift in time (scipy.signal).
+    """An output of a run without what is faster than its cut-off: see :func:`low_pass`."""
+    return low_pass(run.series["time"], run.series[column], cut_off(run))
+
+
+def low_pass(time: "NDArray[np.float64]", values: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64] | None":
+    """Values without what is faster than the cut-off (Hz): a Butterworth low-pass filter without shift in time (scipy.signal).
 
     None where the rows are too few or too far apart for it.
     """
     import numpy as np
     from scipy.signal import butter, sosfiltfilt
 
-    time, values = run.series["time"], run.series[column]
     if time.size < 2:
         return None
     rate = (time.size - 1) / (time[-1] - time[0])
-    if time.size * cut_off(run) < rate or rate <= 2.0 * cut_off(run):
+    if time.size * cut_off < rate or rate <= 2.0 * cut_off:
         return None
     even = np.linspace(time[0], time[-1], time.size)
-    filtered = sosfiltfilt(butter(_ORDER, cut_off(run), fs=rate, output="sos"), np.interp(even, time, values))
+    filtered = sosfiltfilt(butter(_ORDER, cut_off, fs=rate, output="sos"), np.interp(even, time, values))
     return np.interp(time, even, filtered)
 
 

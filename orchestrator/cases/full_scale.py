@@ -170,6 +170,16 @@ def handbook_force(mass: float, height: float, lame: float = HANDBOOK_LAME) -> f
     return 2.108 * (mass * kgf / kN) ** (2 / 3) * (lame / kN) ** 0.4 * height**0.6 * kN
 
 
+def hertz_force(mass: float, radius: float, speed: float, lame: float = HANDBOOK_LAME, poisson: float = 0.25) -> float:
+    """Largest force (N) on a rigid sphere that strikes an elastic half-space (Hertz): P = K^(2/5) (5/4 m v^2)^(3/5),
+    K = 4/3 E / (1 - nu^2) sqrt(R), from P = K d^(3/2) and 2/5 K d^(5/2) = m v^2 / 2. ``lame`` (Pa) gives
+    E = lame (1 + nu)(1 - 2 nu) / nu.
+    """
+    modulus = lame * (1.0 + poisson) * (1.0 - 2.0 * poisson) / poisson
+    stiffness = 4.0 / 3.0 * modulus / (1.0 - poisson**2) * math.sqrt(radius)
+    return float(stiffness**0.4 * (1.25 * mass * speed**2) ** 0.6)
+
+
 ASSUMED = ("beam.deck.mass", "beam.box.mass", "beam.cushion.weight")
 """What of the girders' load the paper does not give."""
 

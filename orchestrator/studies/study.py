@@ -1,7 +1,7 @@
 """What a study is made of: tasks (runs), their outcomes, rows, and figures."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +41,7 @@ class Outcome:
     """What a run gave. A run that failed has the rows until then, and no figures.
 
     figures: summary and headlines (SI) by name. series: columns of the results by name. fmus: SHA-256 by component.
-    options: parameters of the sand that make up its model. failed_at: time (s) of a failure in the run.
+    options: parameters of sand and beam that make up the model. failed_at: time (s) of a failure in the run.
     """
 
     key: str
@@ -143,6 +143,11 @@ def row_of_runs(quantity: str, unit: str, scale: float, figure: str | Callable[[
     mean = sum(values) / len(values) if values else None
     said = "; ".join([note] * bool(note) + failed)
     return Row(quantity, unit, paper, experiment, mean, _spread(values), tasks[0].model, note=said, **origin(tasks, found))
+
+
+def detail(row: Row) -> Row:
+    """The row, left out of the table on the screen."""
+    return replace(row, detail=True)
 
 
 def origin(tasks: Sequence[Task], found: Outcomes) -> dict[str, Any]:
