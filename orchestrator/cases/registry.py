@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, cast
@@ -134,7 +135,9 @@ def _full_scale(impact: full_scale.Impact) -> Case:
                                             sizes["sand"]["elements"])
 
     def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
-        return {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])} if impact.span else {}
+        with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
+            return {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])} if impact.span else {}
+        return {}
 
     beam = {"beam": "RBSMBeam"} if impact.span else {}
     elements = {"elements": impact.elements}

@@ -101,6 +101,7 @@ def test_weight_of_the_cushion_follows_from_the_sand_unless_it_is_given():
     assert weight("sand.unit_weight=3600", "sand.depth=0.85") == pytest.approx(plain)
     assert weight("sand.packing=random", "sand.disc.spread=0.3") == pytest.approx(1.03 * plain)
     assert weight("sand.unit_weight=3600", "beam.cushion.weight=1000") == 1000.0
+    assert system("girders-8", "sand.unit_weight=heavy").components["sand"].parameters["unit_weight"] == "heavy"
 
 
 def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_comparison():
