@@ -147,6 +147,8 @@ def run(target: System,
                                                      "all at once.")] = None,
         coupling: Coupling = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
+        load_cell: Annotated[float | None, typer.Option(metavar="HERTZ", help="Show the peak transmitted force also as a load "
+                                                        "cell with this cut-off frequency does.")] = None,
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
@@ -159,7 +161,8 @@ def run(target: System,
 
     options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
                "state_interval": state_interval, "master": master}
-    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process)
+    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process,
+                      load_cell)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
         if done.status == "failed":  # said before drawing, which takes its time and may be interrupted

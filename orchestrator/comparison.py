@@ -37,6 +37,8 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     h.RESIDUAL_WORK_SHARE: ("energy residual / work of the machine", (Scale("%", 0.01, 3, "+"),)),
     h.PEAK_TRANSMITTED: ("peak transmitted force", _FORCE),
     h.PEAK_TRANSMITTED_AT: ("  at", _TIME),
+    h.PEAK_LOAD_CELL: ("  through the load cell", _FORCE),
+    h.LOAD_CELL_CUT_OFF: ("  load cell: below", (Scale("Hz", 1.0, 0),)),
     h.PEAK_ROCK: ("peak force on the rock", _FORCE),
     h.PEAK_ROCK_AT: ("  at", _TIME),
     h.RATIO: ("ratio of the two peaks", (Scale("", 1.0, 2),)),
@@ -150,6 +152,8 @@ def warnings(run: Run) -> list[str]:
 _RESIDUAL_LIMIT = 0.01
 """Part of the impact energy that may be missing in the balance."""
 _UNREST_LIMIT = 1e-3
+_WEIGHT_LIMIT = 0.1
+"""Random packs differ from their mean weight, and walls carry some of it."""
 
 
 def _doubts(run: Run) -> Iterator[str]:
@@ -159,12 +163,25 @@ def _doubts(run: Run) -> Iterator[str]:
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
         yield (f"the balance of energy does not close: {100.0 * share:+.3g} % of the {whole}; do not trust the figures, reduce "
                "the steps")
+    yield from _other_weight(run)
     sand = h.roles(run).sand
     if sand is None or f"{sand}.unrest" not in run.series:
         return
     unrest, gravity = run.series[f"{sand}.unrest"][0], run.provenance["components"][sand]["parameters"]["gravity"]["value"]
     if gravity and not unrest <= _UNREST_LIMIT:  # it is counted in gravity
         yield f"the sand was not at rest at the start (unrest {unrest:.2g}, at most {_UNREST_LIMIT:g}): raise settling.time"
+
+
+def _other_weight(run: Run) -> Iterator[str]:
+    """A beam that was bent by another weight than that of the sand on it."""
+    sand, beam = h.roles(run).sand, h.roles(run).beam
+    if sand is None or beam is None or f"{sand}.transmitted_force" not in run.series:
+        return
+    assumed = float(run.provenance["components"][beam]["parameters"].get("cushion.weight", {}).get("value", 0.0))
+    pressing = float(run.series[f"{sand}.transmitted_force"][0])
+    if assumed and not abs(pressing / assumed - 1.0) <= _WEIGHT_LIMIT:
+        yield (f"the beam does not start at rest: it was bent by {assumed / kN:.4g} kN and the sand presses with "
+               f"{pressing / kN:.4g} kN; set {beam}.cushion.weight={pressing:.6g}")
 
 
 def _computed(run: Run, name: str) -> float | None:

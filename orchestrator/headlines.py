@@ -21,6 +21,8 @@ PEAK_TRANSMITTED = "peak transmitted force"
 PEAK_TRANSMITTED_AT = "peak transmitted force at"
 PEAK_ROCK = "peak force on the rock"
 PEAK_ROCK_AT = "peak force on the rock at"
+PEAK_LOAD_CELL = "peak transmitted force through the load cell"
+LOAD_CELL_CUT_OFF = "cut-off frequency of the load cell"
 RATIO = "peak transmitted force / peak force on the rock"
 SETTLED_TRANSMITTED = "settled maximum of the transmitted force"
 SETTLED_ROCK = "settled maximum of the force on the rock"
@@ -30,6 +32,7 @@ PENETRATION = "penetration"
 CLEARANCE = "least distance of rock and base"
 DEFLECTION = "peak midspan deflection"
 BEAM_ENERGY = "peak beam energy"
+"""Largest elastic energy less that at the start, under dead load; the one from the strain counts the strain from the start."""
 BEAM_ENERGY_FROM_STRAIN = "peak beam energy from the midspan strain"
 BEAM_SHARE = "peak beam energy / impact energy"
 BEAM_SHARE_FROM_STRAIN = "peak beam energy from the midspan strain / impact energy"
@@ -49,6 +52,10 @@ SETTLING = 0.5
 """Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one contact."""
 _ORDER = 4
 """Order of the low-pass filter; applied forwards and backwards."""
+
+_LOAD_CELL_ORDER = 2
+LOAD_CELL_ROWS = 5.0
+"""Rows for each period of a load cell's cut-off that are needed at least."""
 
 CONTACT_SHARE = 0.01
 """Part of its peak above which the force on the rock counts towards its duration."""
@@ -148,9 +155,17 @@ def impact_energy(run: "Run") -> float | None:
     return float(run.series[column][0]) if column in run.series and not driven(run) else None
 
 
+def beam_energies(run: "Run") -> tuple[float | None, float | None]:
+    """Largest energy (J) that the impact has put into the beam: the springs' beyond that at the start, and by the strain."""
+    beam = roles(run).beam
+    elastic, by_strain = f"{beam}.energy.elastic", f"{beam}.energy.strain_estimate"
+    return (extreme(run, elastic)[0] - float(run.series[elastic][0]) if elastic in run.series else None,
+            extreme(run, by_strain)[0] if by_strain in run.series else None)
+
+
 def headlines(run: "Run") -> list[Figure]:
     """Every headline figure that the results give."""
-    forces = _static(run) if driven(run) else [*_forces(run), *_settled(run)]
+    forces = _static(run) if driven(run) else [*_forces(run), *_load_cell(run), *_settled(run)]
     return [*forces, *_cushion(run), *_beam(run), *_energy(run)]
 
 
@@ -204,22 +219,51 @@ def cut_off(run: "Run") -> float:
     return SETTLING * math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
 
 
+def load_cell(time: "NDArray[np.float64]", force: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64]":
+    """What a load cell shows of a force (N) given at even times (s): a Butterworth low-pass of second order (scipy.signal), the
+    response of an oscillator with the damping ratio 1/sqrt(2). It looks back only, so it lags; at the start it is steady.
+
+    Raises:
+        ValueError: there are fewer than :data:`LOAD_CELL_ROWS` rows for each period of ``cut_off`` (Hz).
+    """
+    from scipy.signal import butter, sosfilt, sosfilt_zi
+
+    rate = (time.size - 1) / float(time[-1] - time[0])
+    if cut_off * LOAD_CELL_ROWS > rate * (1.0 + 1e-9):
+        raise ValueError(f"rows {1.0 / rate:.3g} s apart carry a cut-off of {rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}")
+    sections = butter(_LOAD_CELL_ORDER, cut_off, fs=rate, output="sos")
+    shown: NDArray[np.float64] = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]
+    return shown
+
+
+def _load_cell(run: "Run") -> Iterator[Figure]:
+    """Peak through the load cell that the run was asked to have."""
+    cut_off, column = run.provenance.get("load_cell"), f"{roles(run).sand}.transmitted_force"
+    if cut_off and column in run.series and run.series["time"].size > 1:
+        yield Figure(PEAK_LOAD_CELL, float(load_cell(run.series["time"], run.series[column], cut_off).max()), "N")
+        yield Figure(LOAD_CELL_CUT_OFF, cut_off, "1/s")
+
+
 def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":
-    """An output without what is faster than the cut-off: a Butterworth low-pass filter without shift in time (scipy.signal).
+    """An output of a run without what is faster than its cut-off: see :func:`low_pass`."""
+    return low_pass(run.series["time"], run.series[column], cut_off(run))
+
+
+def low_pass(time: "NDArray[np.float64]", values: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64] | None":
+    """Values without what is faster than the cut-off (Hz): a Butterworth low-pass filter without shift in time (scipy.signal).
 
     None where the rows are too few or too far apart for it.
     """
     import numpy as np
     from scipy.signal import butter, sosfiltfilt
 
-    time, values = run.series["time"], run.series[column]
     if time.size < 2:
         return None
     rate = (time.size - 1) / (time[-1] - time[0])
-    if time.size * cut_off(run) < rate or rate <= 2.0 * cut_off(run):
+    if time.size * cut_off < rate or rate <= 2.0 * cut_off:
         return None
     even = np.linspace(time[0], time[-1], time.size)
-    filtered = sosfiltfilt(butter(_ORDER, cut_off(run), fs=rate, output="sos"), np.interp(even, time, values))
+    filtered = sosfiltfilt(butter(_ORDER, cut_off, fs=rate, output="sos"), np.interp(even, time, values))
     return np.interp(time, even, filtered)
 
 
@@ -279,11 +323,12 @@ def base_height(run: "Run") -> float:
 
 
 def _beam(run: "Run") -> Iterator[Figure]:
-    beam = roles(run).beam
-    for name, output, unit in ((DEFLECTION, "midspan.deflection", "m"), (BEAM_ENERGY, "energy.elastic", "J"),
-                               (BEAM_ENERGY_FROM_STRAIN, "energy.strain_estimate", "J")):
-        if f"{beam}.{output}" in run.series:
-            yield Figure(name, extreme(run, f"{beam}.{output}")[0], unit)
+    column = f"{roles(run).beam}.midspan.deflection"
+    if column in run.series:
+        yield Figure(DEFLECTION, extreme(run, column)[0], "m")
+    for name, energy in zip((BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN), beam_energies(run)):
+        if energy is not None:
+            yield Figure(name, energy, "J")
 
 
 def _energy(run: "Run") -> Iterator[Figure]:
@@ -295,7 +340,6 @@ def _energy(run: "Run") -> Iterator[Figure]:
     if impact:
         if residual is not None:
             yield Figure(RESIDUAL_SHARE, float(max(residual, key=abs)) / impact)
-        for name, output in ((BEAM_SHARE, "energy.elastic"), (BEAM_SHARE_FROM_STRAIN, "energy.strain_estimate")):
-            column = f"{roles(run).beam}.{output}"
-            if column in run.series:
-                yield Figure(name, extreme(run, column)[0] / impact)
+        for name, energy in zip((BEAM_SHARE, BEAM_SHARE_FROM_STRAIN), beam_energies(run)):
+            if energy is not None:
+                yield Figure(name, energy / impact)

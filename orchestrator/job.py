@@ -9,11 +9,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from components.units import ms
+
 from .building import Note, assignments, case_fmus, case_sizes
 from .cases.registry import Case, case
 from .core.errors import InputRefused, Problem
 from .core.slave import Source
 from .core.system import System, Value, load_system, system_from, with_values
+from .headlines import LOAD_CELL_ROWS
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,7 @@ class Request:
     target: name of a case, or path of a system file (TOML).
     settings: ``component.parameter=value``; sizes: ``component.size=value``.
     options: keys of the system that are replaced, ``stop_time`` for instance.
+    load_cell: cut-off frequency (Hz) of a load cell through which the transmitted force is to be seen as well.
     """
 
     target: str
@@ -31,6 +35,7 @@ class Request:
     coupling: str | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     in_process: bool = False
+    load_cell: float | None = None
 
 
 @dataclass(frozen=True)
@@ -77,9 +82,28 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
         name = case(request.target).name
         system, sources, facts = _from_case(case(request.target), request, numbers, problems, note)
     system = _changed(system, request, values, problems)
+    problems += _load_cell_problems(request, system)
     if problems:
         raise InputRefused(problems + plan_problems(system, sources))
-    return Job(name, system, sources, {**facts, "changed": {**values, **request.options}})
+    if "case" in facts:
+        system = with_values(system, {name: value for name, value in case(facts["case"]).derived(system, facts["sizes"]).items()
+                                      if name not in values})
+    seen = {"load_cell": request.load_cell} if request.load_cell else {}
+    return Job(name, system, sources, {**facts, **seen, "changed": {**values, **request.options}})
+
+
+def _load_cell_problems(request: Request, system: System) -> list[Problem]:
+    """A load cell whose cut-off is no frequency, or faster than the rows of the results can show."""
+    if request.load_cell is None:
+        return []
+    interval = system.output_interval or system.exchange_step
+    fastest = 1.0 / (LOAD_CELL_ROWS * interval)
+    if 0.0 < request.load_cell <= fastest * (1.0 + 1e-9):
+        return []
+    return [Problem("--load-cell", f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 and up to "
+                    f"{fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
+                    "give a lower one" + (f", or --output-interval {1.0 / (LOAD_CELL_ROWS * request.load_cell):.2g} or less"
+                                          if request.load_cell > 0.0 else ""))]
 
 
 def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem]:

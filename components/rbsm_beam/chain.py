@@ -3,7 +3,8 @@
 Arrays over the discs have one more place at each end: the mirror image of the end disc in the support. With it every disc has the
 same formula, and the end half-bar has the angle (v[1] - v[0]) / R like any other. Hidden arrays: displacements ``u`` to the right
 and ``v`` upwards (m), their rates (m/s), ``u_shape``, ``v_shape`` the shape that the springs are given and ``hinge_moment`` (N m)
-what follows from it, ``load.x``, ``load.y`` held forces with the couples of the torques (N), ``support.height`` (m).
+what follows from it, ``mass`` of the discs (kg) and ``kick``, their change of rate in a step under a unit force (m/s/N),
+``load.x``, ``load.y`` held forces with the couples of the torques (N), ``support.height`` (m).
 """
 
 from collections import namedtuple
@@ -18,8 +19,8 @@ WALL_HINGE, END_HINGE = 4.0, 4.0 / 3.0
 """Stiffness of the hinges at a fixed support and at the disc beside it, in units of EI/R: the beam's length that bends in them is
 R/4 and 3R/4 (all others: R)."""
 
-Chain = namedtuple("Chain", "n fixed spacing mass bending axial drag viscosity gravity")
-"""Constants: number of discs, whether supports are fixed, R (m), mass of a disc (kg), EI/R2 (N), EA/R (N/m), Rayleigh factors of
+Chain = namedtuple("Chain", "n fixed spacing bending axial drag viscosity gravity")
+"""Constants: number of discs, whether supports are fixed, R (m), EI/R2 (N), EA/R (N/m), Rayleigh factors of
 mass (1/s) and stiffness (s), gravity (m/s2)."""
 
 
@@ -28,10 +29,34 @@ def chain(w, k):
     """The constants that follow from the parameters."""
     n = k[A.force_x + 1]
     spacing = w[V.span] / n
-    return Chain(n, w[V.supports] == FIXED, spacing, (w[V.density] * w[V.section_area] + w[V.added_mass]) * spacing,
+    return Chain(n, w[V.supports] == FIXED, spacing,
                  w[V.elastic_modulus] * w[V.section_second_moment] / (spacing * spacing),
                  w[V.elastic_modulus] * w[V.section_area] / spacing,
                  w[V.damping_mass], w[V.damping_stiffness], w[V.gravity])
+
+
+@kernel
+def distribute(c, w, x, k):
+    """Give each disc its mass: its length of beam and deck, and of the box what stands on it."""
+    mass, own = view(x, k, A.mass), (w[V.density] * w[V.section_area] + w[V.deck_mass]) * c.spacing
+    for i in range(c.n):
+        mass[i] = own + w[V.box_mass] * box_share(c, i, w)
+
+
+@kernel
+def box_share(c, i, w):
+    """Part of the box's width that stands on disc i (from 0)."""
+    left, disc = w[V.box_left], w[V.axis_x] + i * c.spacing
+    overlap = min(left + w[V.box_width], disc + c.spacing) - max(left, disc)
+    return max(0.0, overlap) / w[V.box_width]
+
+
+@kernel
+def box_stands_on_beam(w):
+    """Whether a box that has mass or sand in it stands within the span, but for rounding."""
+    margin, from_left = 1e-9 * w[V.span], w[V.box_left] - w[V.axis_x]
+    empty = w[V.box_mass] == 0.0 and w[V.cushion_weight] == 0.0
+    return empty or (from_left >= -margin and from_left + w[V.box_width] <= w[V.span] + margin)
 
 
 @kernel
@@ -111,9 +136,17 @@ def potential(c, w, x, k):
 
 
 @kernel
+def set_kicks(c, dt, x, k):
+    """What a force changes the rate of each disc by in a step dt (s), for :func:`move`."""
+    mass, kick = view(x, k, A.mass), view(x, k, A.kick)
+    for i in range(c.n):
+        kick[i] = dt / mass[i]
+
+
+@kernel
 def move(c, dt, w, x, k):
     """One step dt (s), semi-implicit Euler: rates from the shape and its moments, then displacements with the new rates."""
-    kick, keep = dt / c.mass, 1.0 - c.drag * dt
+    kick, keep = view(x, k, A.kick), 1.0 - c.drag * dt
     _move_discs(c.n, dt, kick, keep, 0.0, c.axial, view(x, k, A.u_shape), view(x, k, A.load_x),
                 view(x, k, A.u_rate), view(x, k, A.u))
     _move_discs(c.n, dt, kick, keep, c.gravity * dt, -1.0 / c.spacing, view(x, k, A.hinge_moment), view(x, k, A.load_y),
@@ -128,18 +161,18 @@ def _move_discs(n, dt, kick, keep, fall, stiffness, field, load, rate, displacem
     """In one direction: every disc is pulled by stiffness times the second difference of ``field``."""
     for i in range(n):
         force = load[i] + stiffness * ((field[i + 2] + field[i]) - 2.0 * field[i + 1])
-        rate[i + 1] = keep * rate[i + 1] + kick * force - fall
+        rate[i + 1] = keep * rate[i + 1] + kick[i] * force - fall
         displacement[i + 1] += dt * rate[i + 1]
 
 
 @kernel
 def kinetic_energy(c, x, k):
     """Kinetic energy of the discs (J); their rotation is no freedom and carries none."""
-    u_rate, v_rate = view(x, k, A.u_rate), view(x, k, A.v_rate)
+    u_rate, v_rate, mass = view(x, k, A.u_rate), view(x, k, A.v_rate), view(x, k, A.mass)
     total = 0.0
-    for i in range(1, c.n + 1):
-        total += u_rate[i] * u_rate[i] + v_rate[i] * v_rate[i]
-    return 0.5 * c.mass * total
+    for i in range(c.n):
+        total += mass[i] * (u_rate[i + 1] * u_rate[i + 1] + v_rate[i + 1] * v_rate[i + 1])
+    return 0.5 * total
 
 
 @kernel

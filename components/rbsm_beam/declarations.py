@@ -14,8 +14,8 @@ SIZES = {
 
 _SONODA = "Sonoda et al. 1993, sec. 4: H-100x50x7, span 120 cm, discs of 5 cm"
 _GEOMETRY = ("span", "axis.x")
-_AT_REST = ("span", "axis.y", "supports", "elastic_modulus", "section.area", "section.second_moment", "density", "added_mass",
-            "gravity", "support.position.y")
+_AT_REST = ("span", "axis.y", "supports", "elastic_modulus", "section.area", "section.second_moment", "density", "deck.mass",
+            "box.left", "box.width", "box.mass", "cushion.weight", "gravity", "support.position.y", "axis.x")
 
 
 def _per_element(name: str, description: str, unit: str, *depends: str):
@@ -39,9 +39,14 @@ LAYOUT = Layout((
     param("section.height", "height of the section, axis at half of it; for the strain only", 10 * cm, "m", minimum=1e-6,
           source=_SONODA),
     param("density", "density of the material; the default is structural steel", 7850.0, "kg/m3", minimum=1e-3),
-    param("added_mass", "mass per length that moves with the beam besides its own", 0.0, "kg/m", minimum=0.0),
-    param("gravity", "acceleration of gravity, downwards; 0 leaves the beam's weight out, deflections then count from the "
-          "position under it", 0.0, "m/s2", minimum=0.0),
+    param("deck.mass", "mass per length that moves with the beam over its whole span besides its own", 0.0, "kg/m", minimum=0.0),
+    param("box.left", "x of the left end of the box of sand that stands on the beam", 41.5 * cm, "m"),
+    param("box.width", "width of the box", 37 * cm, "m", minimum=1e-6, source="Sonoda et al. 1993, fig. 2"),
+    param("box.mass", "mass of the empty box, even over its width; moves with the beam", 0.0, "kg", minimum=0.0),
+    param("cushion.weight", "weight of the sand in the box, even over its width, under which the beam is bent and at rest at the "
+          "start; from then on the inputs act, and this no longer", 0.0, "N", minimum=0.0),
+    param("gravity", "acceleration of gravity, downwards; 0 leaves the weight of beam, deck and box out, deflections then count "
+          "from the position under it", 0.0, "m/s2", minimum=0.0),
     param("damping.mass", "Rayleigh damping, factor of the mass matrix", 0.0, "1/s", minimum=0.0),
     param("damping.stiffness", "Rayleigh damping, factor of the stiffness matrix", 0.0, "s", minimum=0.0),
     internal_step(1e-6),
@@ -72,7 +77,8 @@ LAYOUT = Layout((
     out("energy.elastic", "elastic energy, axial + bending", "J", source="Sonoda et al. 1993, eq. (5)"),
     out("energy.axial", "elastic energy of the axial springs", "J", source="Sonoda et al. 1993, eq. (6)"),
     out("energy.bending", "elastic energy of the bending springs", "J", source="Sonoda et al. 1993, eq. (6)"),
-    out("energy.strain_estimate", "elastic energy as estimated from the strain at midspan", "J",
+    out("midspan.start_strain", "midspan.strain at the start, at which gauges are set to zero", "1"),
+    out("energy.strain_estimate", "elastic energy as estimated from what the strain at midspan has gained since the start", "J",
         source="Sonoda et al. 1993, eq. (7)"),
     out("energy.gravity", "potential energy in gravity, zero for the unloaded axis", "J"),
     out("energy.damping", "energy that the damping has dissipated", "J"),
@@ -88,6 +94,8 @@ LAYOUT = Layout((
     State("u_shape", _padded),
     State("v_shape", _padded),
     State("hinge_moment", _padded),
+    State("mass", lambda sizes: sizes["elements"]),
+    State("kick", lambda sizes: sizes["elements"]),
     State("load.x", lambda sizes: sizes["elements"]),
     State("load.y", lambda sizes: sizes["elements"]),
     State("support.height", lambda sizes: sizes["support_count"]),

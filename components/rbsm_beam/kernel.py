@@ -4,19 +4,36 @@ from ..compilation import kernel
 from ..component import OK
 from ..ports import view
 from ..stepping import substep_count, substep_length
-from .chain import axial_energy, bending_energy, chain, deform, dissipation, hold, kinetic_energy, move, potential, reactions
+from .chain import (
+    axial_energy,
+    bending_energy,
+    box_stands_on_beam,
+    chain,
+    deform,
+    dissipation,
+    distribute,
+    hold,
+    kinetic_energy,
+    move,
+    potential,
+    reactions,
+    set_kicks,
+)
 from .declarations import LAYOUT
 from .statics import rest, stable_step
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-DIVERGED = 1
+DIVERGED, BOX_OFF_BEAM = 1, 2
 
 
 @kernel
 def initialise(w, x, k):
     """What follows from the parameters alone."""
+    if not box_stands_on_beam(w):
+        return BOX_OFF_BEAM
     c = chain(w, k)
+    distribute(c, w, x, k)
     w[V.radius] = 0.5 * c.spacing
     w[V.stable_step] = stable_step(c, w, x, k)
     return OK
@@ -24,13 +41,14 @@ def initialise(w, x, k):
 
 @kernel
 def evaluate(w, x, k):
-    """The state at the start: at rest, in equilibrium with the weight, on the supports as they stand. Forces act from then on."""
+    """The state at the start: at rest, in equilibrium with all weights, on the supports as they stand. Forces act from then on."""
     c = chain(w, k)
     _place(view(x, k, A.support_height), view(w, k, A.support_position_y))
-    rest(c, x, k)
+    rest(c, w, x, k)
     hold(c, w, x, k)
     w[V.energy_damping], w[V.energy_work_contact], w[V.energy_work_support], w[V.energy_start] = 0.0, 0.0, 0.0, 0.0
     status = publish(w, x, k)
+    w[V.midspan_start_strain], w[V.energy_strain_estimate] = w[V.midspan_strain], 0.0
     _place(view(w, k, A.support_mean_force_y), view(w, k, A.support_force_y))
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
     return status
@@ -57,6 +75,7 @@ def advance(n, dt, w, x, k):
     """
     c = chain(w, k)
     hold(c, w, x, k)
+    set_kicks(c, dt, x, k)
     before = potential(c, w, x, k)
     settle(c, w, x, k)
     left, right = _move_and_react(c, n, dt, w, x, k)
@@ -159,20 +178,21 @@ def _publish_midspan(c, w, x, k):
     w[V.midspan_deflection] = -0.5 * (v[one] + v[other])
     w[V.midspan_moment] = 0.5 * (moment[one] + moment[other])
     w[V.midspan_strain] = w[V.midspan_moment] * 0.5 * w[V.section_height] / stiffness
-    deflection = w[V.span] * w[V.span] * w[V.midspan_strain] / (6.0 * w[V.section_height])
+    gained = w[V.midspan_strain] - w[V.midspan_start_strain]
+    deflection = w[V.span] * w[V.span] * gained / (6.0 * w[V.section_height])
     w[V.energy_strain_estimate] = 24.0 * stiffness / w[V.span] ** 3 * deflection * deflection
 
 
 @kernel
 def _publish_energies(c, w, x, k):
-    v = view(x, k, A.v)
-    height = 0.0
-    for i in range(1, c.n + 1):
-        height += v[i]
+    v, mass = view(x, k, A.v), view(x, k, A.mass)
+    lifted = 0.0
+    for i in range(c.n):
+        lifted += mass[i] * v[i + 1]
     w[V.energy_kinetic] = kinetic_energy(c, x, k)
     w[V.energy_axial], w[V.energy_bending] = axial_energy(c, x, k), bending_energy(c, x, k)
     w[V.energy_elastic] = w[V.energy_axial] + w[V.energy_bending]
-    w[V.energy_gravity] = c.mass * c.gravity * height
+    w[V.energy_gravity] = c.gravity * lifted
     w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_gravity] + w[V.energy_damping]
                             - w[V.energy_work_contact] - w[V.energy_work_support] - w[V.energy_start])
 

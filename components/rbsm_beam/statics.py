@@ -1,43 +1,61 @@
-"""The beam at rest under its weight, and the largest step its integration can bear."""
+"""The beam at rest under all weights, and the largest step its integration can bear."""
 
 import math
 
 from ..compilation import kernel
 from ..ports import view
-from .chain import END_HINGE, WALL_HINGE, A, deform
+from .chain import END_HINGE, WALL_HINGE, A, V, box_share, deform
 
 POWER_ITERATIONS = 80
 """Each halves the error of the highest mode's shape, and quarters that of its frequency."""
 
 
 @kernel
-def rest(c, x, k):
-    """Put the chain at rest in equilibrium with its weight and with the supports where they stand."""
+def rest(c, w, x, k):
+    """Put the chain at rest in equilibrium with its weights and with the supports where they stand."""
     u, u_rate, v_rate, height = view(x, k, A.u), view(x, k, A.u_rate), view(x, k, A.v_rate), view(x, k, A.support_height)
     for i in range(c.n + 2):
         u[i] = u_rate[i] = v_rate[i] = 0.0
     rise = height[1] - height[0]
-    wall, tilt = _redundant_moments(c, rise)
-    _deflect(c, wall, tilt, rise, height[0], view(x, k, A.v))
+    moment = view(x, k, A.hinge_moment)
+    _weight_moments(c, w, x, k)
+    _add_redundant_moments(c, rise, moment)
+    _deflect(c, rise, height[0], moment, view(x, k, A.v))
 
 
 @kernel
-def _deflect(c, wall, tilt, rise, height, v):
-    """Deflections v from the moments: angles from bar to bar, then heights, from the left support on."""
-    n = c.n
-    slope = 0.5 * n * tilt / (WALL_HINGE * c.bending * c.spacing) if c.fixed else rise / (n * c.spacing)
+def _weight(c, i, w, x, k):
+    """Force (N, downwards) on disc i (from 0) at rest: weight of its mass, and of the cushion."""
+    return view(x, k, A.mass)[i] * c.gravity + w[V.cushion_weight] * box_share(c, i, w)
+
+
+@kernel
+def _weight_moments(c, w, x, k):
+    """Moments at the discs of a simply supported chain under its weights: the left reaction, then disc by disc."""
+    moment, n = view(x, k, A.hinge_moment), c.n
+    shear = 0.0
     for i in range(n):
-        slope -= 0.5 * (_weight_moment(c, i) + wall) * _flexibility(c, i)
+        shear += _weight(c, i, w, x, k) * (n - i - 0.5) / n
+    moment[1] = 0.5 * c.spacing * shear
+    for i in range(n - 1):
+        shear -= _weight(c, i, w, x, k)
+        moment[i + 2] = moment[i + 1] + c.spacing * shear
+
+
+@kernel
+def _deflect(c, rise, height, moment, v):
+    """Deflections v from the moments: angles from bar to bar, then heights, from the left support on.
+
+    The first bar's angle is the one with which the last ends at the right support.
+    """
+    n = c.n
+    slope = rise / (n * c.spacing)
+    for i in range(n):
+        slope -= moment[i + 1] * _flexibility(c, i) * (n - i - 0.5) / n
     v[1] = height + 0.5 * c.spacing * slope
     for i in range(n - 1):
-        slope += (_weight_moment(c, i) + wall + tilt * (0.5 * (n - 1) - i)) * _flexibility(c, i)
+        slope += moment[i + 1] * _flexibility(c, i)
         v[i + 2] = v[i + 1] + c.spacing * slope
-
-
-@kernel
-def _weight_moment(c, i):
-    """Moment at disc i (from 0) of a simply supported chain under its weight."""
-    return 0.5 * c.mass * c.gravity * c.spacing * (c.n * (i + 0.5) - i * (i + 1.0))
 
 
 @kernel
@@ -48,18 +66,21 @@ def _flexibility(c, i):
 
 
 @kernel
-def _redundant_moments(c, rise):
-    """What fixed supports add to the moments: a constant, so that both ends stay level under the weight, and the factor of
-    n/2 - x/R that holds them level when one support stands higher."""
+def _add_redundant_moments(c, rise, moment):
+    """What fixed supports add to the moments: constant + tilt * (n/2 - x/R), with which both ends stay level and the right one
+    stands higher by ``rise`` (m). Both are orthogonal, as the flexibilities are symmetric."""
     if not c.fixed:
-        return 0.0, 0.0
+        return
     n, stiffness = c.n, c.bending * c.spacing
-    turn, lever = 0.0, 0.5 * n * n / WALL_HINGE / stiffness
+    turn, lift, lever = 0.0, 0.0, 0.5 * n * n / WALL_HINGE / stiffness
     for i in range(n):
         arm = 0.5 * (n - 1) - i
-        turn += _weight_moment(c, i) * _flexibility(c, i)
+        turn += moment[i + 1] * _flexibility(c, i)
+        lift += moment[i + 1] * _flexibility(c, i) * arm
         lever += arm * arm * _flexibility(c, i)
-    return -turn * stiffness / n, rise / (c.spacing * lever)
+    tilt = (rise / c.spacing - lift) / lever
+    for i in range(n):
+        moment[i + 1] += tilt * (0.5 * (n - 1) - i) - turn * stiffness / n
 
 
 @kernel
@@ -68,28 +89,41 @@ def stable_step(c, w, x, k):
 
     Semi-implicit Euler with the damping force of the old velocity turns a mode of frequency omega and decay rate
     a = drag + viscosity omega2 by lambda2 - (2 - a dt - omega2 dt2) lambda + 1 - a dt = 0; both roots stay in the unit circle for
-    dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest frequency decides.
+    dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest frequency decides: that of a chain of discs as light as the lightest one,
+    which more mass can only lower. It is exact without a box or with one that leaves no disc free.
     """
-    omega2 = max(_axial_frequency2(c), _fixed_frequency2(c, w, x, k) if c.fixed else 16.0 * c.bending / (c.mass * c.spacing))
+    mass = _lightest(c, x, k)
+    bending = _fixed_frequency2(c, mass, w, x, k) if c.fixed else 16.0 * c.bending / (mass * c.spacing)
+    omega2 = max(_axial_frequency2(c, mass), bending)
     decay = c.drag + c.viscosity * omega2
     return 4.0 / (decay + math.sqrt(decay * decay + 4.0 * omega2))
 
 
 @kernel
-def _axial_frequency2(c):
+def _lightest(c, x, k):
+    """Least mass (kg) of a disc."""
+    mass = view(x, k, A.mass)
+    least = mass[0]
+    for i in range(1, c.n):
+        least = min(least, mass[i])
+    return least
+
+
+@kernel
+def _axial_frequency2(c, mass):
     """Square of the highest axial frequency: a chain held at both ends, or at the left one only."""
     factor = 1.0 if c.fixed else math.cos(0.25 * math.pi / c.n)
-    return 4.0 * c.axial / c.mass * factor * factor
+    return 4.0 * c.axial / mass * factor * factor
 
 
 @kernel
-def _fixed_frequency2(c, w, x, k):
+def _fixed_frequency2(c, mass, w, x, k):
     """Square of the highest bending frequency with fixed supports: symmetric and antisymmetric modes apart, as they lie close."""
-    return max(_highest_frequency2(c, 1.0, w, x, k), _highest_frequency2(c, -1.0, w, x, k))
+    return max(_highest_frequency2(c, mass, 1.0, w, x, k), _highest_frequency2(c, mass, -1.0, w, x, k))
 
 
 @kernel
-def _highest_frequency2(c, parity, w, x, k):
+def _highest_frequency2(c, mass, parity, w, x, k):
     """Power iteration on the chain's own deflections, from the end discs deflected. Overwrites the state."""
     v, moment, height = view(x, k, A.v), view(x, k, A.hinge_moment), view(x, k, A.support_height)
     height[0] = height[1] = 0.0
@@ -101,7 +135,7 @@ def _highest_frequency2(c, parity, w, x, k):
         deform(c, 1.0, 0.0, w, x, k)
         norm, product = 0.0, 0.0
         for i in range(1, c.n + 1):
-            restoring = ((moment[i + 1] + moment[i - 1]) - 2.0 * moment[i]) / (c.spacing * c.mass)
+            restoring = ((moment[i + 1] + moment[i - 1]) - 2.0 * moment[i]) / (c.spacing * mass)
             norm += v[i] * v[i]
             product += v[i] * restoring
             v[i] = restoring

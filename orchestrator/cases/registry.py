@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, cast
@@ -27,6 +28,7 @@ class Case:
     sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
     couplings: schemes of exchange by name, the default first, with a description.
     make(fmus, sizes, coupling): the system; ``fmus`` are the files of the FMUs by component.
+    derived(system, sizes): values, by ``component.parameter``, that follow from others where they are not given.
     references(changed): what others found, for a run with other values or sizes (by ``component.name``).
     """
 
@@ -37,6 +39,7 @@ class Case:
     couplings: Mapping[str, str]
     make: Callable[[Mapping[str, str], Sizes, str], System]
     one_size: tuple[str, ...] = ()
+    derived: Callable[[System, Sizes], Mapping[str, Value]] = lambda system, sizes: {}
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     other_names: tuple[str, ...] = ()
 
@@ -143,6 +146,11 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         return full_scale.full_scale_system(fmus, impact, cast(full_scale.Coupling, coupling), sizes["sand"]["discs"],
                                             sizes["sand"]["elements"])
 
+    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+        with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
+            return {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])} if impact.span else {}
+        return {}
+
     beam = {"beam": "RBSMBeam"} if impact.span else {}
     elements = {"elements": impact.elements}
     return Case(
@@ -151,4 +159,5 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         sizes={"sand": {"discs": impact.discs, **elements}, **dict.fromkeys(beam, elements)},
         couplings={"paper": "sand first, inputs held, exchange every 0.05 ms",
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms"},
-        make=make, one_size=("sand.elements", "beam.elements") if beam else (), references=partial(full_scale.references, impact))
+        make=make, one_size=("sand.elements", "beam.elements") if beam else (), derived=derived,
+        references=partial(full_scale.references, impact))

@@ -4,14 +4,14 @@ import os
 import signal
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..building import Note
 from ..core.system import System
@@ -27,9 +27,13 @@ Done = Callable[[int, int], None]
 COLUMNS = ("sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "sand.surface_height", "sand.stable_step",
            "beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate", "rock.energy.kinetic")
 """What is recorded of a run, besides the energy of its interfaces."""
-_MODEL = ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "packing", "disc.spread", "lattice_shift",
-          "seed", "kinematics", "forces", "internal_step")
-"""Parameters of the sand that say which model it is."""
+_MODEL = {
+    "sand": ("modulus", "damping", "rotation", "stiffness_factor", "base", "base.shape", "beam.disc_mass", "rolling_resistance",
+             "unloading_ratio", "cohesion", "packing", "disc.spread", "solid_fraction", "unit_weight", "unit_weight_of",
+             "lattice_shift", "seed", "kinematics", "forces", "internal_step"),
+    "beam": ("deck.mass", "box.mass"),
+}
+"""Parameters of sand and beam that say which model was computed."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +144,11 @@ def _outcome(key: str, run: "Run", error: str, failed_at: float | None, began: f
     complete = run.status == COMPLETE
     figures = {f.name: float(f.value) for f in [*run.summary, *headlines(run)] if not isinstance(f.value, str)} if complete else {}
     components = run.provenance["components"]
-    parameters = {name: entry["value"] for name, entry in components.get("sand", {}).get("parameters", {}).items()}
-    return Outcome(key, run.status, error, failed_at, figures, dict(run.series), {name: parameters[name] for name in _MODEL
-                                                                                  if name in parameters},
+    return Outcome(key, run.status, error, failed_at, figures, dict(run.series), _options(components),
                    {name: str(facts["sha256"]) for name, facts in components.items()}, time.perf_counter() - began)
+
+
+def _options(components: Mapping[str, Any]) -> dict[str, Any]:
+    """What of :data:`_MODEL` a run has; parameters of the sand without its name."""
+    return {name if owner == "sand" else f"{owner}.{name}": components[owner]["parameters"][name]["value"]
+            for owner, names in _MODEL.items() if owner in components for name in names if name in components[owner]["parameters"]}

@@ -1,7 +1,7 @@
 """What a study is made of: tasks (runs), their outcomes, rows, and figures."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +41,7 @@ class Outcome:
     """What a run gave. A run that failed has the rows until then, and no figures.
 
     figures: summary and headlines (SI) by name. series: columns of the results by name. fmus: SHA-256 by component.
-    options: parameters of the sand that make up its model. failed_at: time (s) of a failure in the run.
+    options: parameters of sand and beam that make up the model. failed_at: time (s) of a failure in the run.
     """
 
     key: str
@@ -128,19 +128,26 @@ class Study:
     notes: Sequence[str] = ()
 
 
-def row_of_runs(quantity: str, unit: str, scale: float, figure: str, tasks: Sequence[Task], found: Outcomes,
-                paper: float | None = None, experiment: float | None = None, note: str = "") -> Row:
+def row_of_runs(quantity: str, unit: str, scale: float, figure: str | Callable[[Outcome], float], tasks: Sequence[Task],
+                found: Outcomes, paper: float | None = None, experiment: float | None = None, note: str = "") -> Row:
     """A figure of one or several runs (seeds of one model) beside its references.
 
+    figure: name of the figure, or what finds it (SI) in an outcome that is complete.
     scale: size of ``unit`` in SI; references are given in ``unit``. Runs that failed are left out and named in the note.
     """
     outcomes = [found.of(task) for task in tasks]
-    values = [outcome.figures[figure] / scale for outcome in outcomes if outcome.status == COMPLETE]
+    value = (lambda outcome: outcome.figures[figure]) if isinstance(figure, str) else figure
+    values = [value(outcome) / scale for outcome in outcomes if outcome.status == COMPLETE]
     failures = list(dict.fromkeys(f"{o.status}: {o.error}".removesuffix(": ") for o in outcomes if o.status != COMPLETE))
     failed = [f"{len(outcomes) - len(values)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"] if failures else []
     mean = sum(values) / len(values) if values else None
     said = "; ".join([note] * bool(note) + failed)
     return Row(quantity, unit, paper, experiment, mean, _spread(values), tasks[0].model, note=said, **origin(tasks, found))
+
+
+def detail(row: Row) -> Row:
+    """The row, left out of the table on the screen."""
+    return replace(row, detail=True)
 
 
 def origin(tasks: Sequence[Task], found: Outcomes) -> dict[str, Any]:

@@ -96,7 +96,9 @@ def half_sine(time):
     return load
 
 
-@pytest.mark.parametrize("chosen", [{}, {"supports": "fixed", "damping.mass": 100.0, "damping.stiffness": 1e-6, "gravity": 9.81}])
+@pytest.mark.parametrize("chosen", [
+    {}, {"supports": "fixed", "damping.mass": 100.0, "damping.stiffness": 1e-6, "gravity": 9.81},
+    {"gravity": 9.81, "deck.mass": 9.0, "box.mass": 5.0, "box.left": 0.25, "box.width": 0.48, "damping.mass": 100.0}])
 def test_residual_of_an_impact(chosen):
     residuals = []
     for dt in (2e-6, 1e-6, 5e-7):

@@ -1,6 +1,7 @@
 """Frequencies, critical step and damping of the beam against closed forms with their discretisation terms."""
 
 import math
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -139,3 +140,26 @@ def test_decay_of_the_first_mode(damping):
     x0, x1, x2, x3 = history(instance, "v", mode(instance, 1), 1e-6, 1000, 3)
     _, q = np.linalg.solve([[x1, -x0], [x2, -x1]], [x2, x3])
     assert math.log(q) / 1000 == pytest.approx(math.log(1 - rate * 1e-6), rel=1e-6)
+
+
+def test_mass_that_is_even_over_the_span_slows_all_modes_alike():
+    """The same mass as deck, as box, or as steel: exact for the chain."""
+    plain, deck = beam(), beam(deck__mass=3 * MASS_PER_LENGTH)
+    box = beam(box__left=0.0, box__width=SPAN, box__mass=3 * MASS_PER_LENGTH * SPAN)
+    for heavy in (deck, box):
+        assert heavy["stable_step"] == pytest.approx(2 * plain["stable_step"], rel=1e-9)
+        assert frequency(heavy, "v", mode(heavy, 1), 1e-6, 1000) == pytest.approx(
+            frequency(beam(), "v", mode(plain, 1), 1e-6, 1000) / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("supports", ["simple", "fixed"])
+def test_stable_step_with_a_box_is_on_the_safe_side(supports):
+    """Nothing grows at it, and at 1.1 times it something does: the discs without the box decide."""
+    for factor, grows in ((0.999, False), (1.1, True)):
+        instance = beam(supports=supports, deck__mass=10.0, box__mass=20.0)
+        instance["internal_step"] = factor * instance["stable_step"]
+        instance.state("v")[1:-1] = 1e-9 * np.random.default_rng(1).uniform(-1, 1, 24)
+        with (pytest.raises(ComponentError, match="diverged") if grows else nullcontext()):
+            instance.step(0.0, 3000 * instance["internal_step"])
+        if not grows:
+            assert np.abs(instance["position.y"] + 0.025).max() < 1e-7

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from components.catalogue import component
+from components.component import ComponentError
 
 BEAM = component("RBSMBeam")
 EI = 2.1e6 * 9.80665e4 * 187e-8
@@ -134,7 +135,7 @@ def test_energy_of_a_midspan_load_and_its_estimate_from_the_strain(n):
 @pytest.mark.parametrize("supports", ["simple", "fixed"])
 @pytest.mark.parametrize("elements", [2, 3, 24])
 def test_nothing_moves_under_the_weight(supports, elements):
-    instance = beam(elements, supports=supports, gravity=9.81, added_mass=20.0)
+    instance = beam(elements, supports=supports, gravity=9.81, deck__mass=20.0)
     instance["support.position.y[1]"], instance["support.position.y[2]"] = -1e-3, 2e-3
     instance.initialise()
     at_start = instance["position.y"].copy()
@@ -146,6 +147,62 @@ def test_nothing_moves_under_the_weight(supports, elements):
     weight = (7850 * 11.85e-4 + 20) * SPAN * 9.81
     assert instance["support.force.y"].sum() == pytest.approx(-weight, rel=1e-6)
     assert instance["energy.damping"] == 0.0
+
+
+SHED = {"gravity": 9.81, "deck__mass": 30.0, "box__left": 0.13, "box__width": 0.37, "box__mass": 12.0, "cushion__weight": 900.0}
+
+
+@pytest.mark.parametrize("supports", ["simple", "fixed"])
+@pytest.mark.parametrize("elements", [2, 5, 24])
+def test_nothing_moves_under_a_cushion_whose_weight_the_inputs_go_on_with(elements, supports):
+    """A box that stands on one side, from within a disc to within another."""
+    instance = beam(elements, supports=supports, **SHED)
+    instance["support.position.y[1]"], instance["support.position.y[2]"] = -1e-3, 2e-3
+    edges = np.clip(np.arange(elements + 1) * SPAN / elements, 0.13, 0.5)
+    instance["force.y"] = -900.0 * np.diff(edges) / 0.37
+    instance.initialise()
+    at_start = instance["position.y"].copy()
+    assert np.ptp(at_start) > 1e-4
+    for count in range(100):
+        instance.step(count * 1e-5, 1e-5)
+    assert instance["position.y"] == pytest.approx(at_start, abs=1e-14)
+    assert np.abs(instance["velocity.y"]).max() < 1e-9
+    whole = (7850 * 11.85e-4 + 30) * SPAN * 9.81 + 12 * 9.81 + 900
+    assert instance["support.force.y"].sum() == pytest.approx(-whole, rel=1e-6)
+    assert instance["energy.strain_estimate"] < 1e-12
+
+
+def test_without_the_inputs_the_beam_springs_up_from_under_the_cushion():
+    """At the start it stores the work of the weight, of which nothing gets lost; the strain of the start counts as none."""
+    instance = beam(24, box__left=0.0, box__width=SPAN, cushion__weight=LOAD)
+    instance.initialise()
+    assert instance["midspan.deflection"] == pytest.approx(5 * LOAD * SPAN ** 3 / (384 * EI) * (1 + 4 / 5 / 576), rel=1e-9)
+    assert instance["midspan.start_strain"] == pytest.approx(LOAD * SPAN / 8 * 0.05 / EI, rel=1e-9)
+    assert instance["energy.strain_estimate"] == 0.0
+    stored, strain, lowest = instance["energy.start"], instance["midspan.start_strain"], 0.0
+    assert stored == pytest.approx(LOAD ** 2 * SPAN ** 3 / (240 * EI), rel=1e-2)
+    for count in range(500):
+        instance.step(count * 1e-5, 1e-5)
+        assert instance["energy.kinetic"] + instance["energy.elastic"] == pytest.approx(stored, rel=1e-2)
+        lowest = min(lowest, instance["midspan.strain"])
+        deflection = SPAN ** 2 * (instance["midspan.strain"] - strain) / (6 * 0.1)
+        assert instance["energy.strain_estimate"] == pytest.approx(24 * EI / SPAN ** 3 * deflection ** 2, rel=1e-9, abs=1e-12)
+    assert lowest == pytest.approx(-strain, rel=0.05)
+
+
+def test_a_box_on_one_half_by_the_lever_rule():
+    instance = beam(24, gravity=10.0, density=1e-3, box__left=0.0, box__width=SPAN / 2, box__mass=40.0, cushion__weight=400.0)
+    instance.initialise()
+    assert instance["support.force.y"] == pytest.approx([-600.0, -200.0], rel=1e-6)
+    assert instance["midspan.moment"] == pytest.approx(200.0 * SPAN / 2, rel=1e-3)
+
+
+@pytest.mark.parametrize(("left", "width"), [(-0.01, 0.3), (1.0, 0.3), (0.0, 1.3)])
+def test_a_box_beside_the_beam_is_refused(left, width):
+    for loaded in ({"box__mass": 1.0}, {"cushion__weight": 1.0}):
+        with pytest.raises(ComponentError, match=r"box\.left.*span.*1\.2 m"):
+            beam(box__left=left, box__width=width, **loaded).initialise()
+    beam(box__left=left, box__width=width).initialise()
 
 
 def test_deflection_under_the_weight():

@@ -126,6 +126,19 @@ def test_test_4_is_found_under_its_number_too(rockshed):
     assert rockshed("info", "lab-impact-4").stdout == rockshed("info", "lab-impact").stdout
 
 
+def test_a_load_cell_that_was_asked_for_is_in_the_results(rockshed, tmp_path):
+    arguments = ["run", "lab-impact", "--coupling", "impulse", "--stop-time", "0.012", "--no-figures", "--json"]
+    made = rockshed(*arguments, "--load-cell", "1000", "--output-dir", tmp_path / "run")
+    figures = {entry["name"]: entry for entry in json.loads(made.stdout)["figures"]}
+    peak, seen = (figures[f"peak transmitted force{through}"]["value"] for through in ("", " through the load cell"))
+    assert 0.98 * peak < seen < peak
+    assert read_run(tmp_path / "run").provenance["load_cell"] == 1000.0
+    refused = rockshed(*arguments, "--load-cell", "9999", "--output-dir", tmp_path / "none")
+    assert refused.exit_code == 2
+    assert "up to 2000 Hz" in in_one_line(refused.stderr)
+    assert not (tmp_path / "none").exists()
+
+
 # ------------------------------------------------------------------ runs
 
 

@@ -9,8 +9,10 @@ from orchestrator import comparison
 from orchestrator import headlines as h
 from orchestrator.cases import sonoda1993
 from orchestrator.cases.registry import case, cases, changes_of, references_of
+from orchestrator.core.errors import InputRefused
 from orchestrator.core.reading import Run
 from orchestrator.core.results import Figure
+from orchestrator.job import Request, prepare
 
 KGF = 9.80665
 
@@ -102,6 +104,69 @@ def test_sand_that_was_not_at_rest_is_warned_of():
     assert "raise settling.time" in comparison.warnings(restless)[0]
     restless.provenance["components"]["sand"]["parameters"]["gravity"]["value"] = 0.0
     assert comparison.warnings(restless) == []
+
+
+def test_a_load_cell_shows_a_step_as_an_oscillator_of_damping_ratio_0_7_does():
+    """Overshoot exp(-pi) at the time sqrt(2) pi / omega; nothing before the step; the level of the start is kept."""
+    time = np.linspace(0.0, 0.02, 4001)
+    force = np.where(time < 0.005, 300.0, 1300.0)
+    shown = h.load_cell(time, force, 1000.0)
+    assert shown[time < 0.005] == pytest.approx(300.0, rel=1e-9)
+    assert shown.max() == pytest.approx(1300.0 + 1000.0 * np.exp(-np.pi), rel=1e-3)
+    assert time[shown.argmax()] - 0.005 == pytest.approx(np.sqrt(2.0) * np.pi / (2.0 * np.pi * 1000.0), rel=0.02)
+    assert shown[-1] == pytest.approx(1300.0, rel=1e-6)
+
+
+def test_a_load_cell_passes_slow_forces_and_halves_the_power_at_its_cut_off():
+    time = np.linspace(0.0, 0.1, 20001)
+    for frequency, passed in ((20.0, 1.0), (1000.0, np.sqrt(0.5)), (4000.0, 1 / np.sqrt(1.0 + 4.0**4))):
+        shown = h.load_cell(time, np.sin(2.0 * np.pi * frequency * time), 1000.0)
+        assert np.ptp(shown[10000:]) / 2.0 == pytest.approx(passed, rel=0.01)
+
+
+def test_rows_that_are_too_far_apart_for_a_load_cell_are_refused():
+    time = np.linspace(0.0, 0.02, 201)
+    assert h.load_cell(time, time, 2000.0).size == 201
+    with pytest.raises(ValueError, match=r"0\.0001 s apart carry a cut-off of 2000 Hz, not 2001"):
+        h.load_cell(time, time, 2001.0)
+
+
+def test_the_load_cell_that_a_run_was_asked_for_stands_beside_the_measurement():
+    run = made_up()
+    assert h.PEAK_LOAD_CELL not in [f.name for f in h.headlines(run)]
+    run.provenance["load_cell"] = 1000.0
+    assert figure(run, h.LOAD_CELL_CUT_OFF) == 1000.0
+    assert figure(run, h.PEAK_LOAD_CELL) == pytest.approx(figure(run, h.PEAK_TRANSMITTED), rel=5e-3)
+    known = sonoda1993.known_of(sonoda1993.tests()[4])
+    row = next(row for row in comparison.rows(run, known) if "load cell" in row.label)
+    assert row.experiment == "5.09"
+
+
+@pytest.mark.parametrize(("cut_off", "options", "said"), [
+    (2500.0, {}, r"2500 Hz: rows every 0\.1 ms carry a cut-off above 0 and up to 2000 Hz.*--output-interval 8e-05"),
+    (1000.0, {"output_interval": 1e-3}, r"rows every 1 ms carry .* up to 200 Hz"), (-5.0, {}, "-5 Hz.*above 0")])
+def test_a_cut_off_that_the_rows_cannot_carry_is_refused_before_the_run(cut_off, options, said):
+    with pytest.raises(InputRefused, match=said):
+        prepare(Request("lab-impact", in_process=True, options=options, load_cell=cut_off))
+
+
+def test_a_request_for_a_load_cell_goes_into_the_facts_of_the_run():
+    assert prepare(Request("lab-impact", in_process=True, load_cell=1000.0)).facts["load_cell"] == 1000.0
+    assert "load_cell" not in prepare(Request("lab-impact", in_process=True)).facts
+
+
+def test_a_beam_bent_by_another_weight_than_the_sands_is_warned_of():
+    run = made_up(**{"rock.energy.residual": 2.0 * np.linspace(0.0, 1.0, 401)})
+    beam = run.provenance["components"]["beam"]["parameters"]
+    for weight, warned in ((52.0, False), (0.0, False), (60.0, True)):
+        beam["cushion.weight"] = {"value": weight}
+        assert any("set beam.cushion.weight=50" in text for text in comparison.warnings(run)) == warned
+
+
+def test_energy_of_the_beam_counts_from_the_start():
+    run = made_up(**{"beam.energy.elastic": 3.0 + 2.0 * np.linspace(0.0, 1.0, 401)})
+    assert figure(run, h.BEAM_ENERGY) == pytest.approx(2.0)
+    assert figure(run, h.BEAM_SHARE) == pytest.approx(0.02)
 
 
 def test_without_impact_energy_there_are_no_shares_of_it():

@@ -7,11 +7,12 @@ import pytest
 from jsonschema import validate
 
 from components.units import kgf
+from orchestrator import headlines as h
 from orchestrator.core.errors import InputRefused
 from orchestrator.job import Request
 from orchestrator.studies import running
 from orchestrator.studies.reproduction import DATA, PAGE, chosen, reproduce, studies
-from orchestrator.studies.sonoda1993 import section2, table2
+from orchestrator.studies.sonoda1993 import girders, rigid_base, section2, table2
 from orchestrator.studies.sonoda1993.fig19 import order
 from orchestrator.studies.statistics import by_power_law, constant, leave_one_out, mean_absolute_error, power_law
 from orchestrator.studies.study import COMPLETE, FAILED, INTERRUPTED, Outcome, Outcomes, Row, Task, row_of_runs
@@ -142,6 +143,52 @@ def test_baselines_of_the_twelve_tests():
 def test_the_order_of_an_error_is_its_slope_and_needs_three_points():
     assert order([(h, 4.0 * h**2) for h in (1e-5, 1e-4, 1e-3)]) == pytest.approx(2.0)
     assert order([(1e-5, 1.0), (1e-4, 2.0), (1e-3, 0.0)]) is None
+
+
+def test_forces_through_a_load_cell_come_from_the_same_runs():
+    """Made-up runs of a short spike: the load cell lowers it, by the same part in every test."""
+    time = np.linspace(0.0, 0.03, 301)
+    spike = 4000.0 * np.exp(-((time - 0.01) / 2e-4) ** 2)
+    found = Outcomes({t.key: Outcome(t.key, COMPLETE, figures={h.PEAK_TRANSMITTED: 4000.0}, options={"modulus": 1.0},
+                                     series={"time": time, "sand.transmitted_force": spike}) for t in table2.tasks(True)}, True)
+    rows = {(row.quantity, row.model): row for row in table2.rows(found)}
+    seen = rows["peak transmitted force through a load cell of 1 kHz, test 4", "literal"]
+    plain = rows["peak transmitted force, test 4", "literal"]
+    assert seen.runs == plain.runs
+    assert 0.5 * plain.computed < seen.computed < 0.95 * plain.computed
+    assert seen.experiment == plain.experiment
+    for quantity in ("mean absolute error{}, tests 1 to 12", "trend exponent of P against k{}, tests 1 to 12"):
+        assert rows[quantity.format(" through a load cell of 1 kHz"), "literal"].computed is not None
+    assert rows["trend exponent of P against k through a load cell of 1 kHz, tests 1 to 12", "literal"].computed == pytest.approx(
+        0.0, abs=1e-9)
+
+
+def test_energies_of_the_girders_are_shares_of_the_rocks_wherever_it_started():
+    """Made-up: the measured energies, of a rock of 98 kJ, doubled at 12 m; twice as much in the springs; one run lost."""
+    shares = {8.0: 0.056, 10.0: 0.069, 12.0: 2 * 0.076}
+    energies = {f"girders-{span:g}": share * 98e3 for span, share in shares.items()}
+    made = {task.key: Outcome(task.key, COMPLETE, options={}, figures={
+        h.BEAM_ENERGY_FROM_STRAIN: energies[task.request.target], h.BEAM_ENERGY: 2 * energies[task.request.target],
+        h.SETTLED_RATIO: 1.0, h.SETTLED_TRANSMITTED: 1.0, h.SETTLED_ROCK: 1.0}) for task in girders.tasks(False)}
+    rows = {row.quantity: row for row in girders.rows(Outcomes(made)) if row.model == "literal"}
+    energy = rows["girders' energy / rock's by eq. (7), span 12 m"]
+    assert (energy.computed, energy.spread) == (pytest.approx(15.2), pytest.approx(0.0, abs=1e-9))
+    assert (energy.experiment, energy.paper, len(energy.runs)) == (pytest.approx(7.6), None, 8)
+    springs = rows["girders' energy / rock's by eqs (5), (6), span 8 m"]
+    assert (springs.computed, springs.paper, springs.experiment) == (pytest.approx(11.2), pytest.approx(6.3), None)
+    assert rows["largest factor between computed and measured energy, eq. (7)"].computed == pytest.approx(2.0)
+    assert rows["girders' energy by eq. (7), longest / shortest span"].computed == pytest.approx(2 * 7.6 / 5.6)
+    assert rows["girders' energy by eq. (7), longest / shortest span"].experiment == pytest.approx(7.6 / 5.6)
+
+
+def test_models_differ_in_what_is_run_and_a_rigid_base_knows_no_girders():
+    for quick in (True, False):
+        on_girders, rigid = [[task.key for task in study.tasks(quick)] for study in (girders, rigid_base)]
+        assert len(set(on_girders)) == len(on_girders)
+        assert len(set(rigid)) == len(rigid)
+        assert not [key for key in rigid if "beam." in key]
+    assert {task.seed for task in rigid_base.tasks(False)} == set(range(1, 9))
+    assert sum("beam.deck.mass=200 beam.box.mass=2000" in key for key in on_girders) == 3 * 8
 
 
 # ------------------------------------------------------------------ claims of section 2

@@ -6,7 +6,7 @@ from pathlib import Path
 from components.units import cm, kgf, ms
 
 from ...cases import sonoda1993
-from ...headlines import BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN, BEAM_SHARE, PEAK_TRANSMITTED
+from ...headlines import BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN, BEAM_SHARE, BEAM_SHARE_FROM_STRAIN, PEAK_TRANSMITTED
 from ..study import COMPLETE, Outcomes, Row, Study, Task, row_of_runs, verdict
 from .laboratory import MODELS, impact
 
@@ -36,7 +36,8 @@ def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
         row_of_runs(f"peak beam energy, eqs (5) and (6), test {number}", "kgf cm", _ENERGY, BEAM_ENERGY, [task], found),
         row_of_runs(f"peak beam energy, eq. (7), test {number}", "kgf cm", _ENERGY, BEAM_ENERGY_FROM_STRAIN, [task], found,
                     experiment=measured, note="experiment: about, read from fig. 18"),
-        row_of_runs(f"peak beam energy / impact energy, test {number}", "%", 0.01, BEAM_SHARE, [task], found,
+        row_of_runs(f"peak beam energy, eqs (5) and (6) / impact energy, test {number}", "%", 0.01, BEAM_SHARE, [task], found),
+        row_of_runs(f"peak beam energy, eq. (7) / impact energy, test {number}", "%", 0.01, BEAM_SHARE_FROM_STRAIN, [task], found,
                     experiment=100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy()),
     ]
 

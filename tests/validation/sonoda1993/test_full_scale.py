@@ -6,12 +6,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from scipy.integrate import solve_ivp
 
 from orchestrator import headlines as h
-from orchestrator.cases.full_scale import DROP, ROCK_MASS, handbook_force, impacts
+from orchestrator.cases.full_scale import DROP, LAYER, ROCK_MASS, ROCK_RADIUS, handbook_force, hertz_force, impacts
 from orchestrator.cases.registry import case
 from orchestrator.core.run import simulate
 from orchestrator.job import Request, prepare
+from orchestrator.studies.sonoda1993 import full_scale
 
 RIGID = ("rigid-base-pit", "rigid-base-river", "rigid-base-crushed")
 GIRDERS = ("girders-8", "girders-10", "girders-12")
@@ -65,16 +67,54 @@ def test_exchanging_four_times_less_often_changes_nothing():
 
 
 def test_elastic_sand_puts_far_too_much_energy_into_the_girders():
-    """Table 6 measures 5.6, 6.9, 7.6 percent. Calibrated sand: 46, 61, 63 percent by (5), (6), and 38, 48, 47 by (7)."""
-    for name, share, from_strain in zip(GIRDERS, (0.463, 0.613, 0.630), (0.380, 0.478, 0.469)):
+    """Table 6 measures 5.6, 6.9, 7.6 percent by (7). Calibrated sand: 34, 40, 37 percent by (7), and 46, 61, 64 by (5), (6)."""
+    for name, share, from_strain in zip(GIRDERS, (0.464, 0.613, 0.639), (0.337, 0.401, 0.366)):
         assert figure(run(name), h.BEAM_SHARE) == pytest.approx(share, abs=0.02)
-        assert figure(run(name), h.BEAM_SHARE_FROM_STRAIN) == pytest.approx(from_strain, abs=0.02)
-        known = case(name).references({}).known[h.BEAM_SHARE]
-        assert figure(run(name), h.BEAM_SHARE) > 4.0 * max(known.paper.value, known.experiment.value)
+        assert figure(run(name), h.BEAM_SHARE_FROM_STRAIN) == pytest.approx(from_strain, abs=0.04)
+        known = case(name).references({}).known
+        assert figure(run(name), h.BEAM_SHARE) > 4.0 * known[h.BEAM_SHARE].paper.value
+        assert figure(run(name), h.BEAM_SHARE_FROM_STRAIN) > 4.0 * known[h.BEAM_SHARE_FROM_STRAIN].experiment.value
+
+
+def system(name, *settings):
+    return prepare(Request(name, settings, in_process=True)).system
+
+
+@pytest.mark.parametrize("name", GIRDERS)
+def test_girders_start_bent_under_the_sand_and_at_rest(name):
+    """6.5 t of sand; the beam's energy before the rock comes is 165 to 680 J, and less than 1 mJ of it is motion."""
+    done = run(name)
+    weight = done.provenance["components"]["beam"]["parameters"]["cushion.weight"]["value"]
+    assert done.series["sand.transmitted_force"][0] == pytest.approx(weight, rel=1e-3)
+    assert done.series["beam.energy.kinetic"][1] < 1e-3
+    static, peak = done.series["beam.energy.elastic"][0], done.series["beam.energy.elastic"].max()
+    assert static > 100.0
+    assert figure(done, h.BEAM_ENERGY) == pytest.approx(peak - static, rel=1e-3)
+
+
+def test_weight_of_the_cushion_follows_from_the_sand_unless_it_is_given():
+    def weight(*settings):
+        return system("girders-8", *settings).components["beam"].parameters["cushion.weight"]
+
+    plain = weight()
+    assert plain == pytest.approx(270 * 1800.0 * math.pi * 0.05**2 * 1.7 * 9.80665)
+    assert weight("sand.unit_weight=3600", "sand.depth=0.85") == pytest.approx(plain)
+    assert weight("sand.packing=random", "sand.disc.spread=0.3") == pytest.approx(1.03 * plain)
+    assert weight("sand.unit_weight=3600", "beam.cushion.weight=1000") == 1000.0
+    assert system("girders-8", "sand.unit_weight=heavy").components["sand"].parameters["unit_weight"] == "heavy"
+
+
+def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_comparison():
+    """Assumed 200 kg/m and 2 t, of which the paper says nothing."""
+    heavy = run("girders-8", "impulse", ("beam.deck.mass=200", "beam.box.mass=2000"))
+    assert figure(heavy, h.BEAM_SHARE_FROM_STRAIN) < 0.95 * figure(run("girders-8", "impulse"), h.BEAM_SHARE_FROM_STRAIN)
+    found = case("girders-8").references({"beam.deck.mass": 200, "beam.box.mass": 2000})
+    assert found == case("girders-8").references({})
+    assert case("girders-8").references({"beam.density": 8000}).known == {}
 
 
 def test_literal_model_puts_as_much_into_the_girders():
-    """Measured 51 percent by (5), (6) and 38 by (7) at 8 m, ratio 1.06."""
+    """Measured 51 percent by (5), (6) at 8 m, ratio 1.06."""
     done = run("girders-8", settings=LITERAL)
     assert figure(done, h.BEAM_SHARE) == pytest.approx(0.51, abs=0.03)
     assert figure(done, h.SETTLED_RATIO) == pytest.approx(1.06, abs=0.1)
@@ -93,16 +133,45 @@ def test_cushions_have_the_papers_number_of_discs():
 
 
 def test_handbook_formula_is_hertz_for_a_sphere():
-    """Hertz: P = K^(2/5) (5/4 m v^2)^(3/5), K = 4/3 E/(1 - nu^2) sqrt(r), with nu = 0.25 and rock of 2650 kg/m3.
-
-    609.5 kN is printed for 1 tf, 10 m, 1000 kN/m2 with g rounded.
-    """
-    force = handbook_force(ROCK_MASS, DROP)
-    assert force == pytest.approx(609.5e3, rel=1e-3)
-    nu, lame = 0.25, 1e6
-    modulus = lame * (1.0 + nu) * (1.0 - 2.0 * nu) / nu
+    """Rock of 2650 kg/m3, nu = 0.25. 609.5 kN is printed for 1 tf, 10 m, 1000 kN/m2 with g rounded."""
+    assert handbook_force(ROCK_MASS, DROP) == pytest.approx(609.5e3, rel=1e-3)
     for mass, height in ((1000.0, 10.0), (400.0, 25.0)):
         radius = (0.75 * mass / 2650.0 / math.pi) ** (1 / 3)
-        constant = 4.0 / 3.0 * modulus / (1.0 - nu**2) * math.sqrt(radius)
-        hertz = constant**0.4 * (1.25 * mass * 2.0 * 9.80665 * height) ** 0.6
-        assert handbook_force(mass, height, lame) == pytest.approx(hertz, rel=2e-3)
+        assert handbook_force(mass, height) == pytest.approx(hertz_force(mass, radius, math.sqrt(2 * 9.80665 * height)), rel=2e-3)
+
+
+def test_hertz_force_is_the_largest_of_a_sphere_that_is_stopped_by_its_half_space():
+    """The motion m d'' = -4/3 E/(1 - nu2) sqrt(R) d^(3/2), integrated; E and nu from the Lame constants lambda, G."""
+    mass, radius, speed, lame, shear = 1000.0, 0.456, 14.0, 1e6, 1.5e6
+    modulus, poisson = shear * (3 * lame + 2 * shear) / (lame + shear), 0.5 * lame / (lame + shear)
+
+    def force(depth):
+        return 4 / 3 * modulus / (1 - poisson**2) * math.sqrt(radius) * max(depth, 0.0) ** 1.5
+
+    path = solve_ivp(lambda t, y: (y[1], -force(y[0]) / mass), (0.0, 0.2), (0.0, speed), max_step=1e-4)
+    assert hertz_force(mass, radius, speed, lame, poisson) == pytest.approx(max(map(force, path.y[0])), rel=1e-4)
+
+
+def packed(name):
+    """The random pack with rolling resistance of the studies, its first seed."""
+    model = next(model for model in full_scale.MODELS if model.name == "random pack, rolling")
+    return run(name, "impulse", tuple(full_scale.impacts(name, model, True, 0.15)[0].request.settings))
+
+
+@pytest.mark.parametrize("name", ["girders-8", "girders-12", "rigid-base-crushed"])
+def test_a_random_pack_is_at_rest_and_the_rock_meets_it_with_its_speed(name):
+    done = packed(name)
+    assert done.series["sand.unrest"][0] <= 1e-6
+    surface, height = done.series["sand.surface_height"][0], done.series["rock.position.y"]
+    assert height[0] - ROCK_RADIUS > surface
+    before = height - ROCK_RADIUS > surface + 0.05
+    energy = done.series["rock.energy.kinetic"] + ROCK_MASS * 9.80665 * (height - LAYER - ROCK_RADIUS)
+    assert before[1:5].all()
+    assert energy[before] == pytest.approx(0.5 * ROCK_MASS * 14.0**2, rel=1e-4)
+    assert done.provenance["warnings"] == []
+
+
+def test_discs_that_turn_with_resistance_bring_table_6_near():
+    """Measured 5.6 and 7.6 percent by (7); one seed gives 6.2 and 7.7, others up to a third more. Calibrated sand: 34 and 37."""
+    for name, measured in (("girders-8", 0.056), ("girders-12", 0.076)):
+        assert figure(packed(name), h.BEAM_ENERGY_FROM_STRAIN) / 98e3 == pytest.approx(measured, rel=0.3)
