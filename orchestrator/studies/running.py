@@ -28,8 +28,9 @@ COLUMNS = ("sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "b
            "beam.energy.strain_estimate", "rock.energy.kinetic")
 """What is recorded of a run, besides the energy of its interfaces."""
 _MODEL = {
-    "sand": ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "packing", "disc.spread", "unit_weight",
-             "lattice_shift", "seed", "kinematics", "forces", "internal_step"),
+    "sand": ("modulus", "damping", "rotation", "stiffness_factor", "rolling_resistance", "unloading_ratio", "cohesion", "packing",
+             "disc.spread", "solid_fraction", "unit_weight", "unit_weight_of", "lattice_shift", "seed", "kinematics", "forces",
+             "internal_step"),
     "beam": ("deck.mass", "box.mass"),
 }
 """Parameters of sand and beam that say which model was computed."""
