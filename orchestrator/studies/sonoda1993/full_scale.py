@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from components.units import ms, tf
+from components.units import cm, kgf, ms, tf
 
 from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
 from ...headlines import SETTLED_CUT_OFF, low_pass
@@ -36,8 +36,15 @@ class Model:
 PACK = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.packing=random", "sand.disc.spread=0.25", "sand.settling.time=8")
 """A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
 ROLLING = (*PACK, "sand.rolling_resistance=0.3")
-BULK = f"sand.unit_weight={1800.0 / (math.pi / 4.0):.6g}"
-"""0.0018 kgf/cm3 as the unit weight of the layer, of which discs in a square lattice fill pi/4, instead of that of a disc."""
+POURED = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.packing=prepared", "sand.solid_fraction=0.74",
+          "sand.disc.spread=0.25", "sand.settling.time=8", "sand.rolling_resistance=0.3")
+"""The same brought to the solid fraction of poured sand, so that no pack is looser than another."""
+BULK = "sand.unit_weight_of=layer"
+"""0.0018 kgf/cm3 as the unit weight of the layer instead of that of a disc."""
+UNLOADING = {ratio: f"sand.unloading_ratio={ratio}" for ratio in (3, 20)}
+"""Unloading stiffness / loading stiffness of the contacts (Walton and Braun)."""
+COHESION = f"sand.cohesion={0.05 * kgf / cm**2:.6g}"
+"""0.05 kgf/cm2, by capillary bridges (Rumpf)."""
 DECK_AND_BOX = ("beam.deck.mass=200", "beam.box.mass=2000")
 """Assumed; the paper says nothing of them."""
 
@@ -45,9 +52,14 @@ MODELS = (
     Model("calibrated", LABORATORY["calibrated"], pack=False, quick=True),
     Model("literal", LABORATORY["literal"], pack=False),
     Model("random pack", PACK),
-    Model("random pack, rolling", ROLLING, quick=True),
-    Model("random pack, rolling, bulk weight", (*ROLLING, BULK)),
-    Model("random pack, rolling, deck and box", ROLLING, DECK_AND_BOX),
+    Model("random pack, rolling", ROLLING),
+    Model("poured", POURED, quick=True),
+    Model("poured, bulk weight", (*POURED, BULK)),
+    Model("poured, deck and box", POURED, DECK_AND_BOX),
+    Model("poured, unloading 3", (*POURED, UNLOADING[3])),
+    Model("poured, cohesion", (*POURED, COHESION)),
+    Model("poured, all together", (*POURED, BULK, UNLOADING[3], COHESION), DECK_AND_BOX),
+    Model("calibrated, unloading 20", (*LABORATORY["calibrated"], UNLOADING[20]), pack=False),
 )
 """One line a model."""
 SEEDS = range(1, 9)

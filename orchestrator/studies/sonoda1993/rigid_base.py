@@ -54,7 +54,7 @@ def formulas() -> list[Row]:
                                       "handbook's formula is this one, for a rock of ordinary density")]
 
 
-SHOWN = ("calibrated", "random pack, rolling")
+SHOWN = ("calibrated", "poured")
 """Models in the figure."""
 
 
