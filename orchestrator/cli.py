@@ -34,6 +34,8 @@ Set = Annotated[list[str] | None, typer.Option("--set", metavar="COMPONENT.PARAM
 RunSize = Annotated[list[str] | None, typer.Option("--size", metavar="COMPONENT.SIZE=NUMBER",
                                                    help="Build a component in another size. May be repeated.")]
 Coupling = Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case; default paper.")]
+Model = Annotated[str | None, typer.Option(metavar="calibrated|literal|one-law", help="Model of the sand of a case; default "
+                                           "calibrated.")]
 System = Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file.")]
 
 
@@ -107,7 +109,7 @@ def build(components: Annotated[list[str] | None, typer.Argument(metavar="COMPON
 def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml", help="An FMU, also a stranger's, a case, or a "
                                                      "system file.")],
          toml: Annotated[bool, typer.Option("--toml", help="Print the system as a file that `rockshed run` takes.")] = False,
-         ) -> None:
+         model: Model = None) -> None:
     """What is in an FMU or a system: ports, values, connections."""
     from .export import system_text
     from .inspection import show_fmu, show_system
@@ -117,20 +119,20 @@ def info(target: Annotated[str, typer.Argument(metavar="FMU|CASE|SYSTEM.toml", h
         if target.endswith(".fmu"):
             screen.show(*show_fmu(Path(target)))
         elif toml:
-            screen.out.file.write(system_text(prepare(Request(target)).system))
+            screen.out.file.write(system_text(prepare(Request(target, model=model)).system))
         else:
-            screen.show(*show_system(prepare(Request(target))))
+            screen.show(*show_system(prepare(Request(target, model=model))))
 
 
 @app.command()
 def export(target: System, folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="A new or empty folder.")],
-           set_: Set = None, size: RunSize = None, coupling: Coupling = None) -> None:
+           set_: Set = None, size: RunSize = None, coupling: Coupling = None, model: Model = None) -> None:
     """Write a system as TOML, with its FMUs, to change and run it."""
     from .export import export_system
     from .job import Request, prepare
 
     with _screen() as screen:
-        job = prepare(Request(target, set_ or [], size or [], coupling), screen.note)
+        job = prepare(Request(target, set_ or [], size or [], coupling, model=model), screen.note)
         screen.say(str(export_system(job.system, folder)))
 
 
@@ -145,6 +147,7 @@ def run(target: System,
                                                              "sand.")] = None,
         master: Annotated[str | None, typer.Option(metavar="sequential|jacobi", help="One component after the other, or "
                                                      "all at once.")] = None,
+        model: Model = None,
         coupling: Coupling = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
         load_cell: Annotated[float | None, typer.Option(metavar="HERTZ", help="Show the peak transmitted force also as a load "
@@ -162,7 +165,7 @@ def run(target: System,
     options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
                "state_interval": state_interval, "master": master}
     request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process,
-                      load_cell)
+                      load_cell, model)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
         if done.status == "failed":  # said before drawing, which takes its time and may be interrupted

@@ -10,6 +10,7 @@ from components.units import cm, kgf, kN, mm, ms
 
 from . import headlines as h
 from .cases.registry import changes_of, references_of
+from .cases.sand_models import model_of
 from .core.reading import Run
 from .core.results import Beside, Figure
 from .screen import plain_table
@@ -212,12 +213,19 @@ def model(run: Run) -> str:
     if name is None:
         return ""
     values = {key: entry["value"] for key, entry in run.provenance["components"][name]["parameters"].items()}
-    rotation, factor, rolling = values["rotation"], float(values["stiffness_factor"]), float(values["rolling_resistance"])
-    kind = {("locked", False, True): "calibrated", ("free", True, True): "literal"}.get((rotation, factor == 1.0, rolling == 0.0))
+    kind = model_of(values) or "modified"
     modulus = float(values["modulus"]) / kgf * cm**2
-    resisted = f"rolling resistance {rolling:g}, " if rolling else ""
-    return (f"{kind or 'modified'} sand: rotation {rotation}, stiffness factor {factor:g}, {resisted}{values['packing']} packing, "
-            f"fictitious modulus E_bar {modulus:.1f} kgf/cm²")
+    parts = [f"rotation {values['rotation']}", f"stiffness factor {float(values['stiffness_factor']):g}",
+             *(f"{words} {float(values[key]) / unit:g}{name}" for key, words, idle, unit, name in _OPTIONAL
+               if float(values[key]) != idle),
+             f"{values['packing']} packing" + (f" of {values['solid_fraction']}" if values["packing"] == "prepared" else ""),
+             f"fictitious modulus E_bar {modulus:.1f} kgf/cm²"]
+    return f"{kind} sand: {', '.join(parts)}"
+
+
+_OPTIONAL = (("rolling_resistance", "rolling resistance", 0.0, 1.0, ""), ("unloading_ratio", "unloading ratio", 1.0, 1.0, ""),
+             ("cohesion", "cohesion", 0.0, kgf / cm**2, " kgf/cm²"))
+"""Parameters that the caption names where they are not idle: in words, idle value, unit."""
 
 
 def scheme(run: Run) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 from components.units import ms
 
 from .building import Note, assignments, case_fmus, case_sizes
-from .cases.registry import Case, case
+from .cases.registry import Case, case, model_changes
 from .core.errors import InputRefused, Problem
 from .core.slave import Source
 from .core.system import System, Value, load_system, system_from, with_values
@@ -26,6 +26,7 @@ class Request:
     target: name of a case, or path of a system file (TOML).
     settings: ``component.parameter=value``; sizes: ``component.size=value``.
     options: keys of the system that are replaced, ``stop_time`` for instance.
+    model: of the sand, for cases; what is set otherwise goes before it.
     load_cell: cut-off frequency (Hz) of a load cell through which the transmitted force is to be seen as well.
     """
 
@@ -36,6 +37,7 @@ class Request:
     options: Mapping[str, Any] = field(default_factory=dict)
     in_process: bool = False
     load_cell: float | None = None
+    model: str | None = None
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
     if is_file(request.target):
         problems += [Problem(option, "is for cases only", reason) for option, reason, given in (
             ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
+            ("--model", "set the parameters of its sand", request.model),
             ("--coupling", "set --master, --exchange-step and the components' parameters", request.coupling),
             ("--in-process", "a system file names FMU files", request.in_process)) if given]
         if problems:
@@ -80,7 +83,7 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
         sources, facts = dict[str, Source](), dict[str, Any](system_file=request.target)
     else:
         name = case(request.target).name
-        system, sources, facts = _from_case(case(request.target), request, numbers, problems, note)
+        system, sources, facts = _from_case(case(request.target), request, values, numbers, problems, note)
     system = _changed(system, request, values, problems)
     problems += _load_cell_problems(request, system)
     if problems:
@@ -118,18 +121,21 @@ def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem
     return []
 
 
-def _from_case(chosen: Case, request: Request, numbers: Mapping[str, Value], problems: list[Problem],
-               note: Note) -> tuple[System, dict[str, Source], dict[str, Any]]:
+def _from_case(chosen: Case, request: Request, values: Mapping[str, Value], numbers: Mapping[str, Value],
+               problems: list[Problem], note: Note) -> tuple[System, dict[str, Source], dict[str, Any]]:
     coupling = request.coupling or next(iter(chosen.couplings))
     if coupling not in chosen.couplings:
         problems.append(Problem("--coupling", f"{coupling!r} is unknown", f"choose one of {', '.join(chosen.couplings)}"))
-    sizes = case_sizes(chosen, numbers, problems)
+    model = model_changes(chosen, request.model, values)
+    sizes = case_sizes(chosen, {**model.sizes, **numbers}, problems)
     if problems:
         raise InputRefused(problems)
     fmus = {} if request.in_process else case_fmus(chosen, sizes, note)
     sources = _in_process(chosen, sizes) if request.in_process else {}
-    system = chosen.make(fmus or {name: f"{model} (in process)" for name, model in chosen.models.items()}, sizes, coupling)
-    return system, sources, {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+    system = chosen.make(fmus or {name: f"{made} (in process)" for name, made in chosen.models.items()}, sizes, coupling)
+    system = system_from({**with_values(system, model.values).model_dump(), **model.options}, chosen.name)
+    facts = {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+    return system, sources, {**facts, **({"model": request.model} if request.model else {})}
 
 
 def _in_process(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> dict[str, Source]:

@@ -148,7 +148,8 @@ def inherit(rows, row, partner, spring, row_before, partner_before, spring_befor
 @kernel
 def inherit_pairs(n, spring, spring_before, k):
     """:func:`inherit` for the pairs of discs."""
-    inherit(n, view(k, k, A.row), view(k, k, A.second), spring, view(k, k, A.row_before), view(k, k, A.second_before), spring_before)
+    inherit(n, view(k, k, A.row), view(k, k, A.second), spring, view(k, k, A.row_before), view(k, k, A.second_before),
+            spring_before)
 
 
 @kernel

@@ -6,7 +6,7 @@ from collections import namedtuple
 from ..component import Size
 from ..ports import Layout, Sizes, State, choice, count, inp, out, param
 from ..stepping import internal_step, stable_step
-from ..units import cm, cm2, deg, kgf
+from ..units import cm, deg, kgf
 
 SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
 FREE, LOCKED = 1, 2
@@ -102,12 +102,12 @@ LAYOUT = Layout(
               minimum=0.0, maximum=0.5),
         param("depth", "effective depth dL of the cushion, into the picture", 10 * cm, "m", minimum=1e-6,
               source="Sonoda et al. 1993, sec. 3 (2)"),
-        param("unit_weight", "mass density of a disc, or of the layer with its voids (unit_weight_of)", 0.0018 * kgf / cm ** 3 / kgf,
-              "kg/m3", minimum=1e-6, source=_TABLE_3),
+        param("unit_weight", "mass density of a disc, or of the layer with its voids (unit_weight_of)",
+              0.0018 * kgf / cm ** 3 / kgf, "kg/m3", minimum=1e-6, source=_TABLE_3),
         choice("unit_weight_of", "what unit_weight is the density of: a disc; or the layer, discs are then heavier by 1 / "
                "solid_fraction", ("disc", "layer"), "disc"),
-        param("solid_fraction", "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion and "
-              "unit_weight_of = layer. The default is that of a square lattice", math.pi / 4.0, minimum=0.5, maximum=0.9),
+        param("solid_fraction", "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion "
+              "and unit_weight_of = layer. The default is that of a square lattice", math.pi / 4.0, minimum=0.5, maximum=0.9),
         param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
         choice("packing", "arrangement of the discs at the start; random: as they settle, prepared: settled until they have "
                "solid_fraction", ("square", "hexagonal", "random", "prepared"), "square"),
@@ -128,10 +128,12 @@ LAYOUT = Layout(
         param("friction_angle", "angle of friction phi; mu = tan(phi)", 30 * deg, "rad", minimum=0.0, maximum=1.5, source=_TABLE_3),
         param("rolling_resistance", "rolling friction: largest rolling moment / (normal force * radius); with free rotation", 0.0,
               minimum=0.0),
-        param("unloading_ratio", "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); 1 is elastic", 1.0,
-              minimum=1.0, maximum=1e3),
-        param("cohesion", "cohesion of the moist sand, by capillary forces between its discs (Rumpf); 0 is dry", 0.0, "Pa", minimum=0.0),
-        param("cohesion_range", "length at which a capillary bridge breaks / distance of the centres", 0.05, minimum=1e-3, maximum=0.25),
+        param("unloading_ratio", "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); 1 is elastic",
+              1.0, minimum=1.0, maximum=1e3),
+        param("cohesion", "cohesion of the moist sand, by capillary forces between its discs (Rumpf); 0 is dry", 0.0, "Pa",
+              minimum=0.0),
+        param("cohesion_range", "length at which a capillary bridge breaks / distance of the centres", 0.05, minimum=1e-3,
+              maximum=0.25),
         param("rock.stiffness_ratio", "k_n rock-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
         param("base.stiffness_ratio", "k_n base-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
         param("wall.stiffness_ratio", "k_n wall-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
@@ -140,9 +142,9 @@ LAYOUT = Layout(
         # what the cushion rests on and between
         choice("base", "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's discs as discs",
                ("floor", "beam_surface", "beam_discs"), "beam_discs"),
-        choice("base.shape", "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, for the beam's top is flat and its "
-               "discs are those of the computation; round: with the radius of the beam discs (base = beam_discs)", ("flat", "round"),
-               "flat"),
+        choice("base.shape", "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, the beam's top being flat and "
+               "its discs those of the computation; round: with the radius of the beam discs (base = beam_discs)",
+               ("flat", "round"), "flat"),
         choice("walls", "side walls fixed in space, or standing on the beam", ("fixed", "on_beam"), "fixed"),
         param("rock.radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6),
         param("rock.mass", "mass of the rock, for the dashpots of its contact with base and walls", 4.0, "kg", minimum=1e-6),

@@ -34,7 +34,8 @@ from .packing import disc_mass, mean_base, pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE, TOO_LOOSE, TOO_DENSE = range(1, 11)
+(LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE, TOO_LOOSE,
+ TOO_DENSE) = range(1, 11)
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""
@@ -51,13 +52,14 @@ _LOOSE_FRICTION, _LOOSE_ROLLING = 2.0, 1.0
 _PREPARATION_STEP = 0.8
 """Step of the preparation of a layer, in stable steps."""
 _PREPARATION_RATE, _PREPARATION_TIME = 0.7, 100.0
-"""Damping of all motion while a layer is prepared, times sqrt(r/g), and time that it may take to settle, and again in which friction
-falls to nothing, in sqrt(r/g)."""
+"""Damping of all motion while a layer is prepared, times sqrt(r/g), and time that it may take to settle, and again in which
+friction falls to nothing, in sqrt(r/g)."""
 _NEARLY_AT_REST = 1e-2
+"""Unrest with which a layer counts as settled while it is prepared."""
 _DENSITY_TOLERANCE = 0.01
 _COLLAPSE = 0.04
-"""How far from ``solid_fraction`` a prepared layer may be: too loose when it was compacted all it can, or too dense at rest, to which
-also capillary forces press it."""
+"""How far from ``solid_fraction`` a prepared layer may be: too loose when it was compacted all it can, or too dense at rest, to
+which also capillary forces press it."""
 _AT_REST = 1e-6
 """Sand is at rest when no disc is accelerated by more than this part of gravity, nor moves faster than this times sqrt(g r)."""
 _CHECK_EVERY = 50
@@ -139,9 +141,9 @@ def stable_step_of(w):
     """Step below which the integration of the lightest disc among six neighbours of its kind is stable.
 
     For a contact, (n.(u_j - u_i))^2 <= 2 (n.u_i)^2 + 2 (n.u_j)^2, and six neighbours have sum n n^T = 3 I: translation has
-    omega^2 <= 6 (k_n + k_s) / m. Discs that all turn the same way shear their contacts most: omega^2 <= 24 k_s / m, and rolling
-    resistance adds 12 of its stiffness / I among discs, up to 16 in a corner of planes. Dashpots likewise, with the velocity of half a step before:
-    dt <= 2 / omega (sqrt(1 + z^2) - z) with 2 z omega their bound.
+    omega^2 <= 6 (unloading stiffness + k_s) / m. Discs that all turn the same way shear their contacts most: omega^2 <= 24 k_s / m,
+    and rolling resistance adds 12 of its stiffness / I among discs, up to 16 in a corner of planes. Dashpots likewise, with the
+    velocity of half a step before: dt <= 2 / omega (sqrt(1 + z^2) - z) with 2 z omega their bound.
     """
     least = w[V.disc_radius] * (1.0 - (w[V.disc_spread] if w[V.packing] >= RANDOM else 0.0))
     mass = disc_mass(least, w)

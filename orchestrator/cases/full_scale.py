@@ -17,6 +17,7 @@ from .. import headlines as h
 from ..core.schedule import Scheme
 from ..core.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
 from ..headlines import Known, Reference, References
+from .sand_models import FULL_SCALE_SOIL, Layer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
 
 Coupling = Literal["paper", "impulse"]
@@ -155,6 +156,12 @@ def cushion_weight(system: System, discs: int) -> float:
     spread = float(sand["disc.spread"]) if sand["packing"] in ("random", "prepared") else 0.0
     area = math.pi * float(sand["disc.radius"]) ** 2 * (1.0 + spread**2 / 3.0)
     return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
+
+
+def layer(impact: Impact) -> Layer:
+    """The sand of an impact, for the models of it."""
+    return Layer(impact.width, LAYER, DISC_RADIUS, ROCK_RADIUS, ROCK_SPEED, FULL_SCALE_SOIL, impact.stop_time,
+                 on_beam=bool(impact.span))
 
 
 HANDBOOK_LAME = 1e6

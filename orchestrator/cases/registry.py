@@ -14,6 +14,7 @@ from ..core.names import nearest
 from ..core.system import System, Value
 from ..headlines import References
 from . import full_scale, sonoda1993, static_test
+from .sand_models import Changes, Layer, Soil, changes, sand_model
 
 Sizes = Mapping[str, Mapping[str, int]]
 """Sizes by component of the system: ``{"sand": {"discs": 370}}``. What is not named has its default."""
@@ -28,6 +29,7 @@ class Case:
     sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
     couplings: schemes of exchange by name, the default first, with a description.
     make(fmus, sizes, coupling): the system; ``fmus`` are the files of the FMUs by component.
+    layer: the sand, for the models of it.
     derived(system, sizes): values, by ``component.parameter``, that follow from others where they are not given.
     references(changed): what others found, for a run with other values or sizes (by ``component.name``).
     """
@@ -40,6 +42,7 @@ class Case:
     make: Callable[[Mapping[str, str], Sizes, str], System]
     one_size: tuple[str, ...] = ()
     derived: Callable[[System, Sizes], Mapping[str, Value]] = lambda system, sizes: {}
+    layer: Layer | None = None
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     other_names: tuple[str, ...] = ()
 
@@ -64,6 +67,23 @@ def case(name: str) -> Case:
     return found
 
 
+def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -> Changes:
+    """What a model of the sand changes in a case; ``values`` by ``component.name`` may ask for another state of the soil.
+
+    Raises:
+        InputRefused: there is no such model, or the case has no sand.
+    """
+    if name is None:
+        return Changes()
+    model, layer = sand_model(name), chosen.layer
+    if layer is None:
+        raise InputRefused([Problem(f"--model {name}", f"{chosen.name} has no sand that takes a model", "leave it out")])
+    with suppress(ValueError):  # a value that is no number: the FMU says so
+        cohesion, solid = (float(values.get(f"sand.{key}", own)) for key, own in vars(layer.soil).items())
+        return changes(model, layer, Soil(cohesion, solid))
+    return changes(model, layer)
+
+
 def references_of(facts: Mapping[str, Any]) -> References:
     """What others found for the case that a run's provenance names, as far as the run is theirs; nothing if it names none."""
     found = cases().get(facts.get("case", ""))
@@ -79,6 +99,9 @@ def changes_of(facts: Mapping[str, Any]) -> dict[str, Value]:
     if chosen is None:
         return given
     own = {name: component(model).with_sizes(chosen.sizes.get(name)) for name, model in chosen.models.items()}
+    for name, number in model_changes(chosen, facts.get("model"), given).sizes.items():
+        owner, _, size = name.partition(".")
+        own[owner][size] = number
     sizes = {owner: {**own[owner], **built} for owner, built in facts.get("sizes", {}).items()}
     system = chosen.make(chosen.models, {**own, **sizes}, facts.get("coupling", next(iter(chosen.couplings))))
     others = {f"{owner}.{size}": number for owner, built in sizes.items() for size, number in built.items()
@@ -125,6 +148,7 @@ def _laboratory(test: sonoda1993.Test) -> Case:
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
                    "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
         make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test),
+        layer=sonoda1993.layer(test),
         other_names=(numbered,) if numbered != name else ())
 
 
@@ -138,7 +162,7 @@ def _static_test() -> Case:
         sizes={"sand": {"discs": static_test.DISCS, "elements": 1}},
         couplings={"impulse": "sand first, kinematics extrapolated, mean forces, exchange every 1 ms",
                    "paper": "sand first, inputs held, exchange every 0.01 ms"},
-        make=make, references=static_test.references)
+        make=make, references=static_test.references, layer=static_test.LAYER_OF_SAND)
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:
@@ -160,4 +184,4 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         couplings={"paper": "sand first, inputs held, exchange every 0.05 ms",
                    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms"},
         make=make, one_size=("sand.elements", "beam.elements") if beam else (), derived=derived,
-        references=partial(full_scale.references, impact))
+        references=partial(full_scale.references, impact), layer=full_scale.layer(impact))

@@ -14,6 +14,7 @@ from components.units import cm, kgf, mm
 from ..core.schedule import Scheme
 from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System, Value
 from ..headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_LOAD_CELL, PEAK_TRANSMITTED, PENETRATION, Known, Reference, References
+from .sand_models import DENSE, LOOSE, Layer, Soil
 
 _DATA = Path(__file__).parent / "data"
 
@@ -58,7 +59,7 @@ class Test:
 
 
 def printed_rows(table: str) -> list[dict[str, str]]:
-    """Rows of a table of the paper, as printed."""
+    """Rows of a table of the paper, as printed, or of the soil."""
     lines = (_DATA / f"sonoda1993_{table}.csv").read_text(encoding="utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
@@ -199,6 +200,22 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
         watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "beam.midspan.deflection", "beam.energy.elastic",
                "beam.energy.strain_estimate"],
     )
+
+
+def layer(test: Test) -> Layer:
+    """The sand of a test, for the models of it."""
+    return Layer(BOX_WIDTH[test.box], LAYER, DISC_RADIUS, BALL_RADIUS, BALL_SPEED, soil(test), 0.04, on_beam=True)
+
+
+def soil(test: Test) -> Soil:
+    """State of a test's soil: solid fraction from the compaction, cohesion from the static spring constant."""
+    return Soil(_cohesions()[test.number], DENSE if test.compaction else LOOSE)
+
+
+@cache
+def _cohesions() -> dict[int, float]:
+    """Cohesion (Pa) by the number of the test."""
+    return {int(row["no"]): float(row["cohesion_kgf_per_cm2"]) * kgf / cm**2 for row in printed_rows("soil")}
 
 
 _MOTION = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity")

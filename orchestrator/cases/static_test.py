@@ -8,12 +8,14 @@ from ..core.schedule import Scheme
 from ..core.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
 from ..headlines import STATIC_LOAD, STATIC_STIFFNESS, Known, Reference, References
 from ..loading import DEPTH
+from .sand_models import Layer
 from .sonoda1993 import (
     BALL_MASS,
     BALL_RADIUS,
     BOX_WIDTH,
     DEFAULT_TEST,
     DISC_RADIUS,
+    LAYER,
     SAND,
     STATIC_RATIO,
     differs,
@@ -21,6 +23,7 @@ from .sonoda1993 import (
     impact_bonds,
     impact_connections,
     of_the_test,
+    soil,
     tests,
 )
 
@@ -46,6 +49,10 @@ _SAND_STEP = 5e-5
 """Stable up to E_bar = 200 kgf/cm2 with the calibrated sand, up to 60 with the literal one."""
 E_BAR = (20.0, 40.0, 60.0, 80.0, 100.0)
 """Fictitious moduli of fig. 13 (kgf/cm2)."""
+
+
+LAYER_OF_SAND = Layer(_WIDTH, LAYER, DISC_RADIUS, BALL_RADIUS, SPEED, soil(tests()[DEFAULT_TEST]), STOP, falling=False)
+"""The sand of test 4, for the models of it."""
 
 
 def rock_height(surface: float) -> float:

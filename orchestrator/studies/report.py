@@ -88,7 +88,8 @@ def row_data(row: Row) -> dict[str, Any]:
 
 
 def _run(task: Task, outcome: Outcome) -> dict[str, Any]:
-    return {"name": task.key, "case": task.request.target, "settings": list(task.request.settings),
+    return {"name": task.key, "case": task.request.target, "model": task.request.model,
+            "settings": list(task.request.settings),
             "coupling": task.request.coupling, "options": dict(task.request.options), "seed": task.seed,
             "status": outcome.status, "error": outcome.error, "wall_time": outcome.wall_time,
             "model_options": dict(outcome.options), "fmus": dict(outcome.fmus)}

@@ -32,8 +32,9 @@ class Task:
         """Case and everything that is changed in it, on one line."""
         options = [f"{name}={value}" for name, value in self.request.options.items()]
         coupling = [f"coupling={self.request.coupling}"] if self.request.coupling else []
+        model = [f"model={self.request.model}"] if self.request.model else []
         unstable = ["unstable"] if self.allow_unstable else []
-        return " ".join([self.request.target, *self.request.settings, *coupling, *options, *unstable])
+        return " ".join([self.request.target, *model, *self.request.settings, *coupling, *options, *unstable])
 
 
 @dataclass(frozen=True)

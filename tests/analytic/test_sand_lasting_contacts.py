@@ -57,7 +57,8 @@ def test_a_contact_that_was_open_begins_anew():
 
 def pull(sand):
     """Largest attraction between two discs (N): Rumpf with four contacts a disc."""
-    return math.pi * sand["cohesion"] * 2 * RADIUS * sand["depth"] / (4.0 * sand["solid_fraction"] * math.tan(sand["friction_angle"]))
+    area = math.pi * 2 * RADIUS * sand["depth"]
+    return sand["cohesion"] * area / (4.0 * sand["solid_fraction"] * math.tan(sand["friction_angle"]))
 
 
 def test_a_bridge_draws_two_discs_together_and_holds_them():
@@ -75,7 +76,7 @@ def test_no_pull_beyond_the_longest_bridge():
     assert pair["energy.capillary"] == 0.0
 
 
-@pytest.mark.parametrize("share, parts", [(0.99, False), (1.01, True)])
+@pytest.mark.parametrize(("share", "parts"), [(0.99, False), (1.01, True)])
 def test_work_of_separation(share, parts):
     """Two discs at rest part when they have more than the energy of bridge and spring: F s / 2 + F^2 / (2 k)."""
     pair = discs_at([(0.0, 0.0), (2 * RADIUS, 0.0)], parameters={"cohesion": COHESION, "damping": 0.0, "internal_step": 1e-7})

@@ -8,7 +8,7 @@ from components.units import cm, kgf, ms
 from ...cases import sonoda1993
 from ...headlines import BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN, BEAM_SHARE, BEAM_SHARE_FROM_STRAIN, PEAK_TRANSMITTED
 from ..study import COMPLETE, Outcomes, Row, Study, Task, row_of_runs, verdict
-from .laboratory import MODELS, impact
+from .laboratory import ALL_MODELS, impact
 
 TESTS = (4, 10)
 SHARE = (1.0, 3.0)
@@ -18,12 +18,12 @@ _ENERGY = kgf * cm
 
 def tasks(quick: bool) -> list[Task]:
     """Both tests with every model on the undisturbed lattice."""
-    return [impact(number, model) for number in TESTS for model in MODELS]
+    return [impact(number, model) for number in TESTS for model in ALL_MODELS]
 
 
 def rows(found: Outcomes) -> list[Row]:
     """Peaks of force and energy, and the part of the ball's energy."""
-    return [row for number in TESTS for model in MODELS for row in _of_test(number, impact(number, model), found)] + [_share()]
+    return [row for number in TESTS for model in ALL_MODELS for row in _of_test(number, impact(number, model), found)] + [_share()]
 
 
 def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:

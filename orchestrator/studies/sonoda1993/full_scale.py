@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 from components.units import cm, kgf, ms, tf
 
 from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
+from ...cases.sand_models import LOOSE
 from ...headlines import SETTLED_CUT_OFF, low_pass
 from ...job import Request
 from ..study import COMPLETE, Outcome, Task
-from .laboratory import LATTICE_SHIFT
+from .laboratory import LATTICE_SHIFT, ONE_LAW
 from .laboratory import MODELS as LABORATORY
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ class Model:
     """A model of the sand and of what stands on the girders.
 
     settings: ``sand.parameter=value``. girders: ``beam.parameter=value``, on girders only. pack: discs are a random pack and a seed
-    gives another one; if not, a seed shifts the lattice. quick: whether a quick reproduction has it.
+    gives another one; if not, a seed shifts the lattice. quick: whether a quick reproduction has it. law: a model of the sand by
+    name, which says where the rock starts.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Model:
     girders: Sequence[str] = ()
     pack: bool = True
     quick: bool = False
+    law: str | None = None
 
 
 PACK = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.packing=random", "sand.disc.spread=0.25", "sand.settling.time=8")
@@ -60,6 +63,11 @@ MODELS = (
     Model("poured, cohesion", (*POURED, COHESION)),
     Model("poured, all together", (*POURED, BULK, UNLOADING[3], COHESION), DECK_AND_BOX),
     Model("calibrated, unloading 20", (*LABORATORY["calibrated"], UNLOADING[20]), pack=False),
+    Model("one-law", law=ONE_LAW, quick=True),
+    Model("one-law, elastic", ("sand.unloading_ratio=1",), law=ONE_LAW),
+    Model("one-law, deck and box", (), DECK_AND_BOX, law=ONE_LAW),
+    Model("one-law, as poured", (f"sand.solid_fraction={LOOSE}",), law=ONE_LAW),
+    Model("one-law, dry", ("sand.cohesion=0",), law=ONE_LAW),
 )
 """One line a model."""
 SEEDS = range(1, 9)
@@ -78,10 +86,12 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
     on_girders = case.startswith("girders")
 
     def task(seed: int | None) -> Task:
-        settings = [*model.settings, *(model.girders if on_girders else ()), *(_above_pack() if model.pack else ())]
+        higher = _above_pack() if model.pack and not model.law else ()
+        settings = [*model.settings, *(model.girders if on_girders else ()), *higher]
         if seed is not None:
             settings += [f"sand.seed={seed}", *([] if model.pack else [f"sand.lattice_shift={LATTICE_SHIFT:g}"])]
-        return Task(Request(case, settings, coupling="impulse", options={"stop_time": stop_time}), model.name, seed)
+        request = Request(case, settings, coupling="impulse", options={"stop_time": stop_time}, model=model.law)
+        return Task(request, model.name, seed)
 
     if quick:
         return [task(SEEDS[0] if model.pack else None)]

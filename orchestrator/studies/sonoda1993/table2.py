@@ -11,7 +11,7 @@ from ...cases.sonoda1993 import Test
 from ...headlines import PEAK_TRANSMITTED, load_cell
 from ..statistics import by_power_law, constant, exponent_error, leave_one_out, mean_absolute_error, power_law
 from ..study import Outcome, Outcomes, Row, Study, Task, origin, row_of_runs
-from .laboratory import MODELS, SEED_NOTE, impacts
+from .laboratory import ALL_MODELS, SEED_NOTE, impacts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +36,7 @@ def _paper(test: Test) -> float:
 
 def tasks(quick: bool) -> list[Task]:
     """Sixteen tests, each with every model."""
-    return [task for number in sonoda1993.tests() for model in MODELS for task in impacts(number, model, quick)]
+    return [task for number in sonoda1993.tests() for model in ALL_MODELS for task in impacts(number, model, quick)]
 
 
 def rows(found: Outcomes) -> list[Row]:
@@ -44,9 +44,9 @@ def rows(found: Outcomes) -> list[Row]:
     listed = []
     for through, figure in _SEEN.items():
         each = {model: {number: _of_test(test, model, found, through, figure) for number, test in sonoda1993.tests().items()}
-                for model in MODELS}
-        listed += [each[model][number] for number in sonoda1993.tests() for model in MODELS]
-        listed += [row for model in MODELS for row in _over_tests(model, each[model], found, through)]
+                for model in ALL_MODELS}
+        listed += [each[model][number] for number in sonoda1993.tests() for model in ALL_MODELS]
+        listed += [row for model in ALL_MODELS for row in _over_tests(model, each[model], found, through)]
     return listed + baselines()
 
 

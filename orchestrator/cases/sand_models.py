@@ -1,0 +1,145 @@
+"""Models of the sand by name: what each sets in the sand cushion, and what it takes from the state of the soil in a case."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+
+from components.catalogue import component
+from components.units import cm, kgf
+
+from ..core.errors import InputRefused, Problem
+from ..core.names import nearest
+from ..core.system import Value
+
+_KGF_PER_CM2 = kgf / cm**2
+
+
+@dataclass(frozen=True)
+class Soil:
+    """State of the soil. cohesion: of the moist sand (Pa). solid_fraction: part of the layer that its discs fill."""
+
+    cohesion: float
+    solid_fraction: float
+
+
+@dataclass(frozen=True)
+class Layer:
+    """The layer of sand of a case and what meets it.
+
+    width, height: of the layer (m). disc_radius, rock_radius: (m). speed: of the rock at the surface, downwards (m/s). falling:
+    whether it speeds up on the way there. on_beam: whether the sand lies on a beam. duration: of the run (s).
+    """
+
+    width: float
+    height: float
+    disc_radius: float
+    rock_radius: float
+    speed: float
+    soil: Soil
+    duration: float
+    falling: bool = True
+    on_beam: bool = False
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What a model changes in a case: values by ``component.name``, sizes by ``component.name``, keys of the system."""
+
+    values: Mapping[str, Value] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    options: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class SandModel:
+    """parameters: of the sand. prepared: whether the layer is prepared in the state of the case's soil."""
+
+    summary: str
+    parameters: Mapping[str, Value]
+    prepared: bool = False
+
+
+ONE_LAW_MODULUS, ONE_LAW_UNLOADING = 35.0, 3.0
+"""E_bar (kgf/cm2) and unloading / loading stiffness: calibrated to twelve tests in the laboratory and to table 6, the
+same for all."""
+ROLLING, SPREAD = 0.3, 0.25
+LOOSE, DENSE = 0.735, 0.75
+"""Solid fractions of discs (in the plane) that stand for sand as poured and compacted: calibrated with the same tests."""
+FULL_SCALE_SOIL = Soil(0.05 * _KGF_PER_CM2, DENSE)
+"""Nothing is known of the sand on rigid base and girders; taken as moist and compacted."""
+
+MODELS: Mapping[str, SandModel] = {
+    "calibrated": SandModel("rotation locked and a factor on the stiffness, fitted to the paper's own figures", {}),
+    "literal": SandModel("eq. (1) to the letter: three freedoms a disc, no factor", {
+        "rotation": "free", "stiffness_factor": 1.0, "base.shape": "round", "beam.disc_mass": 0.0}),
+    "one-law": SandModel("one contact law for all tests: discs of many sizes that resist rolling, yield and stick; the soil's "
+                         "cohesion and solid fraction are what differs", {
+        "rotation": "free", "stiffness_factor": 1.0, "modulus": ONE_LAW_MODULUS * _KGF_PER_CM2, "packing": "prepared",
+        "disc.spread": SPREAD, "rolling_resistance": ROLLING, "unloading_ratio": ONE_LAW_UNLOADING, "unit_weight_of": "layer",
+        "beam.disc_mass": 0.0}, prepared=True),
+}
+
+
+def sand_model(name: str) -> SandModel:
+    """The model of this name.
+
+    Raises:
+        InputRefused: there is none.
+    """
+    if name not in MODELS:
+        raise InputRefused([Problem(f"--model {name}", "there is no such model of the sand", nearest(name, MODELS))])
+    return MODELS[name]
+
+
+def model_of(values: Mapping[str, Value]) -> str | None:
+    """The model that the parameters of a sand cushion belong to, whatever its soil and modulus; None if to none of them."""
+    def same(name: str, value: Value) -> bool:
+        return math.isclose(float(values[name]), float(value)) if isinstance(value, float) else values[name] == value
+
+    own = {v.name: v.choices[int(v.start_at(0, {})) - 1] if v.choices else v.start_at(0, {})
+           for v in component("SandCushion").layout.ordered if v.name in {key for m in MODELS.values() for key in m.parameters}}
+    return next((name for name, model in MODELS.items()
+                 if all(same(key, value) for key, value in {**own, **model.parameters}.items() if key not in _FREE)), None)
+
+
+_FREE = ("modulus", "packing", "disc.spread")
+"""Parameters that may differ within a model, packing and spread with lattices only."""
+
+
+@cache
+def discs_of(layer: Layer, solid_fraction: float) -> int:
+    """Number of discs of many sizes that fill the layer to ``solid_fraction``; the mean of r^2 is r^2 (1 + spread^2 / 3)."""
+    area = math.pi * layer.disc_radius**2 * (1.0 + SPREAD**2 / 3.0)
+    return round(solid_fraction * layer.width * layer.height / area)
+
+
+def settings(name: str) -> tuple[str, ...]:
+    """A model that takes nothing from the soil, as ``sand.parameter=value``."""
+    return tuple(f"sand.{key}={value}" for key, value in MODELS[name].parameters.items())
+
+
+def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes:
+    """What a model changes in a case with this layer. soil: another state of the soil than the case's.
+
+    The surface of a prepared layer is uneven and known only when it has settled: the rock starts higher, and slower by what it
+    gains on the way.
+    """
+    values: dict[str, Value] = {f"sand.{name}": value for name, value in model.parameters.items()}
+    if not model.prepared:
+        return Changes(values)
+    state, largest = soil or layer.soil, 2.0 * layer.disc_radius * (1.0 + SPREAD)
+    clearance = 1.5 * largest
+    gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
+    values |= {"sand.cohesion": state.cohesion, "sand.solid_fraction": state.solid_fraction,
+               "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665),
+               "rock.position0.y": layer.height + clearance + layer.rock_radius,
+               "rock.velocity0.y": -math.sqrt(layer.speed**2 - gained)}
+    if layer.on_beam:
+        values["sand.base"] = "beam_surface"
+    return Changes(values, {"sand.discs": discs_of(layer, state.solid_fraction)},
+                   {"stop_time": math.ceil(1e3 * (layer.duration + clearance / layer.speed)) / 1e3})
+
+
+_SETTLING = 15.0
+"""Longest time of settling after the preparation, in sqrt(r/g)."""
