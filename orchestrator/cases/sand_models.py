@@ -28,7 +28,8 @@ class Layer:
     """The layer of sand of a case and what meets it.
 
     width, height: of the layer (m). disc_radius, rock_radius: (m). speed: of the rock at the surface, downwards (m/s). falling:
-    whether it speeds up on the way there. on_beam: whether the sand lies on a beam. duration: of the run (s).
+    whether it speeds up on the way there. on_beam: whether the sand lies on a beam. duration: of the run (s). step: of the sand
+    (s), where the case's own is longer than prepared layers bear.
     """
 
     width: float
@@ -40,6 +41,7 @@ class Layer:
     duration: float
     falling: bool = True
     on_beam: bool = False
+    step: float | None = None
 
 
 @dataclass(frozen=True)
@@ -135,6 +137,8 @@ def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes
                "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665),
                "rock.position0.y": layer.height + clearance + layer.rock_radius,
                "rock.velocity0.y": -math.sqrt(layer.speed**2 - gained)}
+    if layer.step:
+        values["sand.internal_step"] = layer.step
     if layer.on_beam:
         values["sand.base"] = "beam_surface"
     return Changes(values, {"sand.discs": discs_of(layer, state.solid_fraction)},

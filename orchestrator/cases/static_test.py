@@ -51,7 +51,7 @@ E_BAR = (20.0, 40.0, 60.0, 80.0, 100.0)
 """Fictitious moduli of fig. 13 (kgf/cm2)."""
 
 
-LAYER_OF_SAND = Layer(_WIDTH, LAYER, DISC_RADIUS, BALL_RADIUS, SPEED, soil(tests()[DEFAULT_TEST]), STOP, falling=False)
+LAYER_OF_SAND = Layer(_WIDTH, LAYER, DISC_RADIUS, BALL_RADIUS, SPEED, soil(tests()[DEFAULT_TEST]), STOP, falling=False, step=4e-5)
 """The sand of test 4, for the models of it."""
 
 

@@ -81,6 +81,15 @@ def models(quick: bool, on_girders: bool) -> list[Model]:
     return [model for model in MODELS if (model.quick or not quick) and (on_girders or not model.girders)]
 
 
+ONE_SAND = "crushed"
+"""A law with a modulus of its own makes the three sands on the rigid base one; it is computed under this name."""
+
+
+def sands(model: Model, all_sands: Sequence[str]) -> Sequence[str]:
+    """The sands on the rigid base that differ for a model."""
+    return [ONE_SAND] if model.law else all_sands
+
+
 def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task]:
     """One impact for each seed; in a quick study one, on the undisturbed lattice or a single pack."""
     on_girders = case.startswith("girders")

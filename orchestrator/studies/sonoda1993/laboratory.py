@@ -38,5 +38,5 @@ def _lattice(model: str) -> Sequence[str]:
 def impacts(test: int, model: str, quick: bool, changes: Sequence[str] = ()) -> list[Task]:
     """One impact for each seed; in a quick study one on the undisturbed lattice, with few exchanges."""
     if quick:
-        return [impact(test, model, changes, coupling="impulse")]
+        return [impact(test, model, changes, None if model in MODELS else SEEDS[0], "impulse")]
     return [impact(test, model, changes, seed, None if model in MODELS else "impulse") for seed in SEEDS]

@@ -9,7 +9,7 @@ from ...cases.full_scale import DROP, GRAVITY, ROCK_MASS, ROCK_RADIUS, Impact, h
 from ...headlines import PENETRATION, SETTLED_CUT_OFF, SETTLED_RATIO, SETTLED_ROCK, SETTLED_TRANSMITTED
 from ..study import COMPLETE, Outcomes, Row, Study, Task, detail, row_of_runs
 from . import full_scale
-from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces
+from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces, sands
 
 SANDS = {name.removeprefix("rigid-base-"): impact for name, impact in impacts().items() if not impact.span}
 """The impacts by the name of the sand."""
@@ -23,12 +23,13 @@ def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
 
 def tasks(quick: bool) -> list[Task]:
     """Every sand with every model."""
-    return [task for impact in SANDS.values() for model in models(quick, False) for task in _runs(impact, model, quick)]
+    return [task for model in models(quick, False) for sand in sands(model, [*SANDS]) for task in _runs(SANDS[sand], model, quick)]
 
 
 def rows(found: Outcomes) -> list[Row]:
     """Ratio, both forces and penetration for every sand and model, then what formulas give whatever the sand."""
-    return [row for model in models(found.quick, False) for sand in SANDS for row in _of_sand(sand, model, found)] + formulas()
+    return [row for model in models(found.quick, False) for sand in sands(model, [*SANDS])
+            for row in _of_sand(sand, model, found)] + formulas()
 
 
 def _of_sand(sand: str, model: Model, found: Outcomes) -> list[Row]:

@@ -11,20 +11,11 @@ from ...cases.sonoda1993 import Test
 from ...headlines import PEAK_TRANSMITTED, load_cell
 from ..statistics import by_power_law, constant, exponent_error, leave_one_out, mean_absolute_error, power_law
 from ..study import Outcome, Outcomes, Row, Study, Task, origin, row_of_runs
-from .laboratory import ALL_MODELS, SEED_NOTE, impacts
+from .laboratory import ALL_MODELS, ONE_LAW, SEED_NOTE, impacts
+from .twelve import BOX_TESTS, error, exponent, twelve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-BOX = 1
-"""The box of the twelve tests that the paper compares (fig. 9)."""
-
-
-BOX_TESTS = "tests 1 to 12"
-
-
-def _twelve() -> list[Test]:
-    return [test for test in sonoda1993.tests().values() if test.box == BOX]
 
 
 def _paper(test: Test) -> float:
@@ -71,37 +62,29 @@ def _over_tests(model: str, each: Mapping[int, Row], found: Outcomes, through: s
     where = origin([task for number in each for task in impacts(number, model, found.quick)], found)
     where["options"] = {name: value for name, value in where["options"].items() if name != "modulus"}
     computed = {number: row.computed * kgf for number, row in each.items() if row.computed is not None}
-    twelve, sixteen = _twelve(), list(sonoda1993.tests().values())
+    sixteen = list(sonoda1993.tests().values())
 
     def row(quantity: str, unit: str, value: Callable[[], float], paper: float | None, experiment: float | None = None) -> Row:
         complete = len(computed) == len(each)
         return Row(quantity, unit, paper, experiment, value() if complete else None, model=model,
                    note="" if complete else "a test has no result", **where)
 
-    def error(tests: Sequence[Test]) -> float:
-        return 100.0 * mean_absolute_error([computed[t.number] for t in tests], [t.peak_force for t in tests])
-
-    return [row(f"mean absolute error{through}, {BOX_TESTS}", "%", lambda: error(twelve), _paper_error()),
-            row(f"mean absolute error{through}, all sixteen tests", "%", lambda: error(sixteen), None),
+    return [row(f"mean absolute error{through}, {BOX_TESTS}", "%", lambda: error(computed, twelve()), _paper_error()),
+            row(f"mean absolute error{through}, all sixteen tests", "%", lambda: error(computed, sixteen), None),
             row(f"trend exponent of P against k{through}, {BOX_TESTS}", "1",
-                lambda: _exponent([computed[t.number] for t in twelve]),
-                _exponent([_paper(t) for t in twelve]), _exponent([t.peak_force for t in twelve]))]
+                lambda: exponent(computed), exponent({t.number: _paper(t) for t in twelve()}),
+                exponent({t.number: t.peak_force for t in twelve()}))]
 
 
 def _paper_error() -> float:
     """Of the paper's own trend (percent)."""
-    return 100.0 * mean_absolute_error([_paper(test) for test in _twelve()], [test.peak_force for test in _twelve()])
-
-
-def _exponent(forces: Sequence[float]) -> float:
-    """Exponent of P against k over the twelve tests."""
-    return power_law([test.static_stiffness for test in _twelve()], forces)[1]
+    return error({test.number: _paper(test) for test in twelve()}, twelve())
 
 
 def baselines() -> list[Row]:
     """Mean absolute error of predictions that need no computation; each test predicted from the eleven others."""
-    stiffness = [test.static_stiffness for test in _twelve()]
-    measured = [test.peak_force for test in _twelve()]
+    stiffness = [test.static_stiffness for test in twelve()]
+    measured = [test.peak_force for test in twelve()]
 
     def row(name: str, predicted: Sequence[float], note: str) -> Row:
         return Row(f"mean absolute error of {name}, {BOX_TESTS}", "%", computed=100.0 * mean_absolute_error(predicted, measured),
@@ -109,20 +92,20 @@ def baselines() -> list[Row]:
 
     return [row("a constant", leave_one_out(stiffness, measured, constant), "leave-one-out mean of the measurements"),
             row("a power law in k", leave_one_out(stiffness, measured, by_power_law), "leave-one-out fit to the measurements"),
-            row("the paper's trend", [_paper(test) for test in _twelve()],
+            row("the paper's trend", [_paper(test) for test in twelve()],
                 "a power law between the rows of its table 5, h = 0.2; no measurement in it")]
 
 
 def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """P against k in the layout of fig. 9, all axes logarithmic, measured and computed."""
-    from ...pictures.style import ROCK, TRANSMITTED, WIDTH, captioned
+    from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned
 
     file = folder / "table2.png"
     with captioned(["Table 2 of Sonoda et al. 1993; E_bar = k / 1.29 where table 4 gives none. Filled: box 1, open: box 2. Bars: "
                     "standard deviation over seeds."], file, WIDTH, 4.2) as made:
         axes = made.subplots()
         _measured(axes)
-        for model, colour in (("calibrated", TRANSMITTED), ("literal", ROCK)):
+        for model, colour in (("calibrated", TRANSMITTED), ("literal", ROCK), (ONE_LAW, BEAM)):
             of_model = {row.quantity: row for row in listed if row.model == model}
             rows = {number: of_model[f"peak transmitted force, test {number}"] for number in sonoda1993.tests()}
             _points(axes, model, colour, "o", {number: row for number, row in rows.items() if row.computed is not None})
@@ -135,7 +118,7 @@ def _measured(axes: "Axes") -> None:
     from ...pictures.style import GREY, INK
 
     _points(axes, "measured", INK, "s", {t.number: Row("", "", computed=t.peak_force / kgf) for t in sonoda1993.tests().values()})
-    k, p = [_k(test) for test in _twelve()], [test.peak_force / kgf for test in _twelve()]
+    k, p = [_k(test) for test in twelve()], [test.peak_force / kgf for test in twelve()]
     factor, exponent = power_law(k, p)
     axes.plot(sorted(k), [factor * x**exponent for x in sorted(k)], "--", color=GREY, linewidth=1.0,
               label=f"fit to box 1: $P \\sim k^{{{exponent:.2f} \\pm {exponent_error(k, p):.2f}}}$")

@@ -1,0 +1,25 @@
+"""The twelve tests in the box that the paper compares (fig. 9): error and trend of forces computed for them."""
+
+from collections.abc import Mapping, Sequence
+
+from ...cases import sonoda1993
+from ...cases.sonoda1993 import Test
+from ..statistics import mean_absolute_error, power_law
+
+BOX_TESTS = "tests 1 to 12"
+_BOX = 1
+
+
+def twelve() -> list[Test]:
+    """The tests, by number."""
+    return [test for test in sonoda1993.tests().values() if test.box == _BOX]
+
+
+def error(computed: Mapping[int, float], tests: Sequence[Test]) -> float:
+    """Mean absolute error (percent) of peak forces (N, by the number of the test) against the measured ones."""
+    return 100.0 * mean_absolute_error([computed[test.number] for test in tests], [test.peak_force for test in tests])
+
+
+def exponent(forces: Mapping[int, float]) -> float:
+    """Exponent of the force (N, by the number of the test) against the measured static stiffness, over the twelve tests."""
+    return power_law([test.static_stiffness for test in twelve()], [forces[test.number] for test in twelve()])[1]
