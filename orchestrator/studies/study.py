@@ -134,13 +134,16 @@ def row_of_runs(quantity: str, unit: str, scale: float, figure: str | Callable[[
     """A figure of one or several runs (seeds of one model) beside its references.
 
     figure: name of the figure, or what finds it (SI) in an outcome that is complete.
-    scale: size of ``unit`` in SI; references are given in ``unit``. Runs that failed are left out and named in the note.
+    scale: size of ``unit`` in SI; references are given in ``unit``. Runs that failed, or have no such figure, are left out and
+    named in the note.
     """
     outcomes = [found.of(task) for task in tasks]
-    value = (lambda outcome: outcome.figures[figure]) if isinstance(figure, str) else figure
-    values = [value(outcome) / scale for outcome in outcomes if outcome.status == COMPLETE]
+    ended = [outcome for outcome in outcomes if outcome.status == COMPLETE]
+    each = [outcome.figures.get(figure) if isinstance(figure, str) else figure(outcome) for outcome in ended]
+    values = [value / scale for value in each if value is not None]
     failures = list(dict.fromkeys(f"{o.status}: {o.error}".removesuffix(": ") for o in outcomes if o.status != COMPLETE))
-    failed = [f"{len(outcomes) - len(values)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"] if failures else []
+    failed = [f"{len(outcomes) - len(ended)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"] if failures else []
+    failed += [f"{len(ended) - len(values)} of {len(ended)} runs have no such figure"] if len(values) < len(ended) else []
     mean = sum(values) / len(values) if values else None
     said = "; ".join([note] * bool(note) + failed)
     return Row(quantity, unit, paper, experiment, mean, _spread(values), tasks[0].model, note=said, **origin(tasks, found))

@@ -24,7 +24,7 @@ SEEDS = range(1, 9)
 VARIED_SEEDS = range(1, 5)
 """Packings of a law with one number changed."""
 RIGID_BASE = "rigid-base-crushed"
-_STATIC_STOP = 6.0
+_STATIC_STOP = 6.6
 """End of a static test (s): the surface of a packing is uneven, and the disc starts well above it."""
 _KGF_PER_CM2 = kgf / cm**2
 
