@@ -126,7 +126,11 @@ BALL_SPEED = 8.0
 SPAN = 120 * cm
 ELEMENTS = 24
 LAYER = 10 * cm
+DEPTH = 10 * cm
+"""Effective depth dL of the cushion."""
 DISC_RADIUS = 0.5 * cm
+STEEL = 7850.0
+"""Density (kg/m3)."""
 BOX_WIDTH = {1: 37 * cm, 2: 45 * cm}
 """Widths of the two sand boxes (fig. 2)."""
 _GAP = 0.5e-3
@@ -159,6 +163,11 @@ def discs_in(box: int) -> int:
     return discs_across(box) * round(LAYER / (2 * DISC_RADIUS))
 
 
+def steel_disc(radius: float, depth: float) -> float:
+    """Mass (kg) of a disc of steel, as deep as the cushion: the calibrated sand has it in the dashpots on a beam."""
+    return math.pi * radius**2 * depth * STEEL
+
+
 def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper", discs: int | None = None,
                elements: int = ELEMENTS) -> System:
     """The laboratory impact of fig. 14 as a co-simulation of three FMUs.
@@ -177,7 +186,7 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
         components={
             "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
                 "modulus": test.modulus, "box.left": 0.5 * (SPAN - width), "box.width": width,
-                "kinematics": kinematics, "forces": forces}),
+                "beam.disc_mass": steel_disc(0.5 * spacing, DEPTH), "kinematics": kinematics, "forces": forces}),
             "rock": ComponentSpec(fmu=fmus["rock"], parameters={
                 "position0.x": 0.5 * SPAN, "position0.y": rows * 2 * DISC_RADIUS + BALL_RADIUS + _GAP,
                 "velocity0.y": -BALL_SPEED}),
@@ -253,6 +262,8 @@ _TESTED = ("box.", "rock.", "beam.", "base.y", "depth", "disc.radius", "unit_wei
 """Beginnings of the sand's parameters that describe the test; those of :data:`_SUPPORT` are whole names. The others are choices
 of the model."""
 _SUPPORT = ("base", "walls")
+_READINGS = ("beam.disc_mass", "unit_weight_of")
+"""Parameters that read the paper in another way, whatever they begin with."""
 
 
 def references(test: Test, changed: Mapping[str, Value]) -> References:
@@ -278,7 +289,7 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
 def of_the_test(name: str) -> bool:
     """Whether a value, by ``component.name``, belongs to what was tested: not to the steps or the sand's model."""
     owner, _, port = name.partition(".")
-    if port == "internal_step" or name in SAND:
+    if port in ("internal_step", *_READINGS) or name in SAND:
         return False
     return owner != "sand" or port in (*_SUPPORT, "discs", "elements") or port.startswith(_TESTED)
 

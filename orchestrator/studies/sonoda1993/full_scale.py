@@ -36,11 +36,12 @@ class Model:
     law: str | None = None
 
 
-PACK = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.packing=random", "sand.disc.spread=0.25", "sand.settling.time=8")
+FREE = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.beam.disc_mass=0", "sand.disc.spread=0.25",
+        "sand.settling.time=8")
+PACK = (*FREE, "sand.packing=random")
 """A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
 ROLLING = (*PACK, "sand.rolling_resistance=0.3")
-POURED = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.packing=prepared", "sand.solid_fraction=0.74",
-          "sand.disc.spread=0.25", "sand.settling.time=8", "sand.rolling_resistance=0.3")
+POURED = (*FREE, "sand.packing=prepared", "sand.solid_fraction=0.74", "sand.rolling_resistance=0.3")
 """The same brought to the solid fraction of poured sand, so that no pack is looser than another."""
 BULK = "sand.unit_weight_of=layer"
 """0.0018 kgf/cm3 as the unit weight of the layer instead of that of a disc."""
