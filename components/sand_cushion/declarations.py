@@ -27,8 +27,6 @@ CALIBRATED_STIFFNESS_FACTOR = 0.37
 
 _BALL_RADIUS = 4.95 * cm
 _BEAM_RADIUS = 2.5 * cm
-_BEAM_DISC_MASS = math.pi * _BEAM_RADIUS**2 * 10.0 * cm * 7850.0
-"""A disc of steel, as deep as the cushion."""
 _TABLE_3 = "Sonoda et al. 1993, table 3"
 _EQ_1 = "Sonoda et al. 1993, eq. (1)"
 
@@ -150,7 +148,7 @@ LAYOUT = Layout(
         param("rock.mass", "mass of the rock, for the dashpots of its contact with base and walls", 4.0, "kg", minimum=1e-6),
         param("beam.radius", "radius of a beam disc", _BEAM_RADIUS, "m", minimum=1e-6),
         param("beam.disc_mass", "mass of a beam disc, for the dashpots of its contacts with sand; 0 takes the sand disc's there",
-              _BEAM_DISC_MASS, "kg", minimum=0.0),
+              0.0, "kg", minimum=0.0),
         # integration and exchange
         internal_step(1e-5),
         choice("kinematics", "motion of rock and beam within a communication step: as given (held), or going on with the velocity "

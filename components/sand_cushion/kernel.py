@@ -156,6 +156,8 @@ def stable_step_of(w):
     if w[V.rotation] == FREE:
         springs = max(springs, 24.0 * ratio + 8.0 * ROLLING * w[V.rolling_resistance] ** 2)
         dashpots = max(dashpots, 24.0 * math.sqrt(ratio))
+    if w[V.base] != FLOOR:
+        dashpots += 2.0 * (1.0 + math.sqrt(ratio)) * math.sqrt(w[V.beam_disc_mass] / mass)  # between two beam discs
     omega = contact * math.sqrt(springs)
     z = w[V.damping] * dashpots * contact / omega
     return 2.0 / omega * (math.sqrt(1.0 + z * z) - z)

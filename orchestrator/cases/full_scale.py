@@ -18,7 +18,7 @@ from ..core.schedule import Scheme
 from ..core.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
 from ..headlines import Known, Reference, References
 from .sand_models import FULL_SCALE_SOIL, Layer
-from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows, steel_disc
+from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
 
 Coupling = Literal["paper", "impulse"]
 """paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first, kinematics extrapolated, mean
@@ -135,7 +135,6 @@ def full_scale_system(fmus: Mapping[str, str], impact: Impact, coupling: Couplin
             "span": impact.span, "axis.y": -0.5 * spacing, "section.area": GIRDERS * GIRDER_AREA,
             "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT, "section.height": GIRDER_HEIGHT, "gravity": GRAVITY,
             "deck.mass": DECK_MASS, "box.mass": BOX_MASS, "internal_step": _BEAM_STEP})
-        components["sand"].parameters["beam.disc_mass"] = steel_disc(0.5 * spacing, impact.depth)
         shared["beam_radius"] = SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"])
     return System(
         name=impact.name, description=f"Sonoda et al. 1993, full scale: {impact.summary}", components=components, shared=shared,

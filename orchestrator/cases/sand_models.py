@@ -74,12 +74,12 @@ FULL_SCALE_SOIL = Soil(0.05 * _KGF_PER_CM2, DENSE)
 MODELS: Mapping[str, SandModel] = {
     "calibrated": SandModel("rotation locked and a factor on the stiffness, fitted to the paper's own figures", {}),
     "literal": SandModel("eq. (1) to the letter: three freedoms a disc, no factor", {
-        "rotation": "free", "stiffness_factor": 1.0, "base.shape": "round", "beam.disc_mass": 0.0}),
+        "rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"}),
     "one-law": SandModel("one contact law for all tests: discs of many sizes that resist rolling, yield and stick; the soil's "
                          "cohesion and solid fraction are what differs", {
         "rotation": "free", "stiffness_factor": 1.0, "modulus": ONE_LAW_MODULUS * _KGF_PER_CM2, "packing": "prepared",
-        "disc.spread": SPREAD, "rolling_resistance": ROLLING, "unloading_ratio": ONE_LAW_UNLOADING, "unit_weight_of": "layer",
-        "beam.disc_mass": 0.0}, prepared=True),
+        "disc.spread": SPREAD, "rolling_resistance": ROLLING, "unloading_ratio": ONE_LAW_UNLOADING, "unit_weight_of": "layer"},
+                         prepared=True),
 }
 
 

@@ -31,7 +31,8 @@ def made_up(length=0.02, summary=(), **columns):
         "beam.energy.residual": zero, "beam.energy.work.contact": zero, "beam.position.y[1]": zero - 0.025,
         "coupling.sand_rock.energy": -1e2 * time, **columns}
     sand = {"base": "beam_discs", "base.y": 0.0, "beam.radius": 0.025, "disc.radius": 0.005, "rotation": "locked",
-            "stiffness_factor": 0.42, "unit_weight": 1800.0,
+            "stiffness_factor": 0.37, "unit_weight": 1800.0, "unit_weight_of": "disc", "base.shape": "flat", "cohesion": 0.0,
+            "unloading_ratio": 1.0, "disc.spread": 0.0, "solid_fraction": 0.785,
             "modulus": 30.0 * KGF / 1e-4, "internal_step": 1e-5, "rolling_resistance": 0.0,
             "packing": "square", "gravity": 9.81}
     provenance = {
@@ -202,9 +203,9 @@ def test_energies_that_are_all_zero_are_drawn(tmp_path):
 def test_models_of_the_sand_have_their_names():
     run = made_up()
     sand = run.provenance["components"]["sand"]["parameters"]
-    assert comparison.model(run) == ("calibrated sand: rotation locked, stiffness factor 0.42, "
+    assert comparison.model(run) == ("calibrated sand: rotation locked, stiffness factor 0.37, "
                                      "square packing, fictitious modulus E_bar 30.0 kgf/cm²")
-    sand["rotation"]["value"], sand["stiffness_factor"]["value"] = "free", 1.0
+    sand["rotation"]["value"], sand["stiffness_factor"]["value"], sand["base.shape"]["value"] = "free", 1.0, "round"
     assert comparison.model(run).startswith("literal sand: rotation free")
     sand["rolling_resistance"]["value"] = 0.3
     assert comparison.model(run).startswith("modified sand: rotation free, stiffness factor 1, rolling resistance 0.3, ")

@@ -36,8 +36,7 @@ class Model:
     law: str | None = None
 
 
-FREE = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.beam.disc_mass=0", "sand.disc.spread=0.25",
-        "sand.settling.time=8")
+FREE = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.disc.spread=0.25", "sand.settling.time=8")
 PACK = (*FREE, "sand.packing=random")
 """A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
 ROLLING = (*PACK, "sand.rolling_resistance=0.3")

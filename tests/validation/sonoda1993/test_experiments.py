@@ -26,7 +26,7 @@ def force_error(number, **options):
     return float(impact(number, **options).column("transmitted_force").max()) / table_2()[number].peak_force - 1.0
 
 
-@pytest.mark.parametrize(("number", "error", "energy"), [(4, -0.24, 9.8), (10, -0.13, 21.3)])
+@pytest.mark.parametrize(("number", "error", "energy"), [(4, -0.25, 9.0), (10, -0.12, 22.3)])
 def test_tests_4_and_10_beside_the_experiment(number, error, energy):
     """The paper's two figures: measured 519 and 673 kgf, about 13 and 40 kgf cm."""
     assert force_error(number) == pytest.approx(error, abs=0.02)
