@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from components.catalogue import NAMES, component
 from components.component import ComponentError
@@ -10,6 +11,12 @@ from .cases.registry import Case
 from .core.errors import InputRefused, Problem
 from .core.names import nearest
 from .core.system import Value
+
+if TYPE_CHECKING:
+    from fmus.build import Runtime
+
+AUTO, BOTH = "auto", "both"
+"""What may stand in the place of a runtime: the best that is there, or every one."""
 
 Note = Callable[[str], None]
 """Tells the user what is being done."""
@@ -73,52 +80,90 @@ def range_problems(where: str, model: str, sizes: Mapping[str, int]) -> list[Pro
     return []
 
 
-def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note) -> dict[str, str]:
-    """The FMU files of a case by component; those that are missing or out of date are built.
+def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO) -> tuple[str, dict[str, str]]:
+    """The runtime of a case's FMUs and their files by component; those that are missing or out of date are built.
+
+    wanted: a runtime, or AUTO: native if all of these FMUs are there and up to date, otherwise Python.
 
     Raises:
-        InputRefused: they cannot be written.
+        InputRefused: they cannot be compiled or written.
     """
-    from fmus.build import BuildError, build_if_needed, file_name, fmu_folder
+    from fmus.build import BuildError, Runtime, build_if_needed, file_name, fmu_folder
 
+    runtime = _best_runtime(chosen, sizes, note) if wanted == AUTO else Runtime(wanted)
     files = {}
     for name, model in chosen.models.items():
-        before = _changed_at(fmu_folder() / file_name(component(model), sizes[name]))
+        before = _changed_at(fmu_folder(runtime) / file_name(component(model), sizes[name]))
         try:
-            file = build_if_needed(model, sizes[name])
+            file = build_if_needed(model, sizes[name], runtime=runtime)
         except BuildError as error:
             raise InputRefused([Problem(name, str(error))]) from error
         if _changed_at(file) != before:
             note(f"built {file}")
         files[name] = str(file)
-    return files
+    return runtime.value, files
+
+
+def _best_runtime(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note) -> "Runtime":
+    from fmus.build import Runtime, file_name, fmu_folder, native_is_fresh
+
+    stale = [name for name, model in chosen.models.items() if not native_is_fresh(component(model), sizes[name])]
+    if not stale:
+        note("native FMUs")
+        return Runtime.NATIVE
+    there = [n for n in stale if (fmu_folder(Runtime.NATIVE) / file_name(component(chosen.models[n]), sizes[n])).is_file()]
+    why = f"native {' and '.join(there)} out of date" if there else "no native ones are there"
+    note(f"FMUs with Python inside ({why}: --runtime native makes them, and runs them)")
+    return Runtime.PYTHON
 
 
 def _changed_at(file: Path) -> int:
     return file.stat().st_mtime_ns if file.is_file() else 0
 
 
-def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None) -> list[Path]:
-    """Build the FMUs of these components, or of all. A size goes to those of them that have it.
+def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None, runtime: str = "python",
+              platforms: Sequence[str] = ()) -> list[Path]:
+    """Build the FMUs of these components, or of all; if one of them cannot be made, none is written.
+
+    A size goes to those of the components that have it. folder: the FMUs go into its folders ``python`` and ``native``.
 
     Raises:
-        InputRefused: unknown components or sizes, sizes out of range, a folder that cannot be written.
+        InputRefused: unknown components, sizes, runtimes or platforms, sizes out of range, a compiler that fails, a folder that
+            cannot be written.
     """
-    from fmus.build import BuildError, build
+    from fmus.build import BuildError, Runtime, fmu_content, store
 
     problems: list[Problem] = []
     sizes = assignments("--size", size_texts, problems)
     chosen = list(dict.fromkeys(names or NAMES))
     problems += [Problem(name, "there is no such component", nearest(name, NAMES)) for name in chosen if name not in NAMES]
+    problems += _runtime_problems(runtime, platforms)
     known = [name for name in chosen if name in NAMES]
     if not problems:
         problems += _size_problems(known, sizes)
     if problems:
         raise InputRefused(problems)
+    its_sizes = {n: component(n).with_sizes({s: int(v) for s, v in sizes.items() if s in component(n).sizes}) for n in known}
+    runtimes = list(Runtime) if runtime == BOTH else [Runtime(runtime)]
     try:
-        return [build(name, {s: int(n) for s, n in sizes.items() if s in component(name).sizes}, folder) for name in known]
+        made = [(r, n, fmu_content(component(n), its_sizes[n], r, platforms)) for r in runtimes for n in known]
+        return [store(component(n), its_sizes[n], content, folder / r if folder else None, r) for r, n, content in made]
     except BuildError as error:
         raise InputRefused([Problem("build", str(error))]) from error
+
+
+def _runtime_problems(runtime: str, platforms: Sequence[str]) -> list[Problem]:
+    from fmus.build import Runtime
+    from fmus.native_fmu import PLATFORMS
+
+    problems = [Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS)) for name in platforms
+                if name not in PLATFORMS]
+    if runtime not in (*Runtime, BOTH):
+        problems.append(Problem("--runtime", f"{runtime!r} is unknown", f"choose one of {', '.join(Runtime)}, {BOTH}"))
+    elif platforms and runtime == Runtime.PYTHON:
+        problems.append(Problem("--platform", "is for native FMUs; those with Python inside run everywhere",
+                                "add --runtime native"))
+    return problems
 
 
 def _size_problems(names: Sequence[str], sizes: Mapping[str, Value]) -> list[Problem]:

@@ -85,12 +85,17 @@ def list_() -> None:
 def build(components: Annotated[list[str] | None, typer.Argument(metavar="[COMPONENT]...", help="All of them by default.")] = None,
           size: Annotated[list[str] | None, typer.Option(metavar="NAME=NUMBER", help="A size other than the default. May be "
                                                          "repeated.")] = None,
-          output_dir: Annotated[Path | None, typer.Option(help="Folder of the FMUs.")] = None, quiet: Quiet = False) -> None:
+          runtime: Annotated[str, typer.Option(metavar="python|native|both", help="FMUs with Python inside, which every processor "
+                                               "runs, or native ones, which need no Python.")] = "python",
+          platform: Annotated[list[str] | None, typer.Option(metavar="linux64|win64|darwin64", help="Of native FMUs; by default "
+                                                             "this machine's. May be repeated.")] = None,
+          output_dir: Annotated[Path | None, typer.Option(help="The FMUs go into its folders python and native.")] = None,
+          quiet: Quiet = False) -> None:
     """Build FMUs, always anew."""
     from .building import build_all
 
-    with _screen(quiet) as screen:
-        for file in build_all(components or [], size or [], output_dir):
+    with _screen(quiet) as screen, screen.busy("building"):
+        for file in build_all(components or [], size or [], output_dir, runtime, platform or []):
             screen.say(f"{file}  {file.stat().st_size / 1024:.0f} KiB")
 
 
@@ -138,6 +143,8 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
                                                      "all at once.")] = None,
         coupling: Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case.")] = None,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
+        runtime: Annotated[str, typer.Option(metavar="auto|native|python", help="FMUs of a case: native, with Python inside, or "
+                                             "native if they are there and up to date.")] = "auto",
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
@@ -147,7 +154,8 @@ def run(target: Annotated[str, typer.Argument(metavar="CASE|SYSTEM.toml", help="
 
     options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
                "state_interval": state_interval, "master": master}
-    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process)
+    request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process,
+                      runtime)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
         _finish(done, screen, not no_figures)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .building import Note, assignments, case_fmus, case_sizes
+from .building import AUTO, Note, assignments, case_fmus, case_sizes
 from .cases.registry import Case, case
 from .core.errors import InputRefused, Problem
 from .core.slave import Source
@@ -23,6 +23,7 @@ class Request:
     target: name of a case, or path of a system file (TOML).
     settings: ``component.parameter=value``; sizes: ``component.size=value``.
     options: keys of the system that are replaced, ``stop_time`` for instance.
+    runtime: of the FMUs of a case: python, native, or auto for native ones where they are there and up to date.
     """
 
     target: str
@@ -31,6 +32,7 @@ class Request:
     coupling: str | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     in_process: bool = False
+    runtime: str = AUTO
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,8 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
         problems += [Problem(option, "is for cases only", reason) for option, reason, given in (
             ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
             ("--coupling", "set --master, --exchange-step and the components' parameters", request.coupling),
-            ("--in-process", "a system file names FMU files", request.in_process)) if given]
+            ("--in-process", "a system file names FMU files", request.in_process),
+            ("--runtime", "a system file names FMU files", request.runtime != AUTO)) if given]
         if problems:
             raise InputRefused(problems)
         name = Path(request.target).stem
@@ -99,13 +102,25 @@ def _from_case(chosen: Case, request: Request, numbers: Mapping[str, Value], pro
     coupling = request.coupling or next(iter(chosen.couplings))
     if coupling not in chosen.couplings:
         problems.append(Problem("--coupling", f"{coupling!r} is unknown", f"choose one of {', '.join(chosen.couplings)}"))
+    problems += _runtime_problems(request)
     sizes = case_sizes(chosen, numbers, problems)
     if problems:
         raise InputRefused(problems)
-    fmus = {} if request.in_process else case_fmus(chosen, sizes, note)
-    sources = _in_process(chosen, sizes) if request.in_process else {}
-    system = chosen.make(fmus or {name: f"{model} (in process)" for name, model in chosen.models.items()}, sizes, coupling)
-    return system, sources, {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+    facts = {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+    if request.in_process:
+        here = {name: f"{model} (in process)" for name, model in chosen.models.items()}
+        return chosen.make(here, sizes, coupling), _in_process(chosen, sizes), facts
+    runtime, fmus = case_fmus(chosen, sizes, note, request.runtime)
+    return chosen.make(fmus, sizes, coupling), {}, {**facts, "runtime": runtime}
+
+
+def _runtime_problems(request: Request) -> list[Problem]:
+    known = (AUTO, "native", "python")
+    if request.runtime not in known:
+        return [Problem("--runtime", f"{request.runtime!r} is unknown", f"choose one of {', '.join(known)}")]
+    if request.in_process and request.runtime != AUTO:
+        return [Problem("--runtime", "is for FMUs, and --in-process runs without them", "leave one of them out")]
+    return []
 
 
 def _in_process(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> dict[str, Source]:
