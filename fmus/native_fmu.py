@@ -22,16 +22,17 @@ from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
 
-from components.compilation import cache_directory
+from components.compilation import CACHE_VARIABLE, cache_directory
 from components.component import HEADER, Component, Instance, allowed_range
 from components.ports import Sizes
 
 from .description import model_description
+from .native_subset import UNKNOWN_PLACE
 from .parts import BuildError, Files, Runtime, companions, component_sources, digest
 
 _HERE = Path(__file__).parent
 _SHIM = _HERE / "shim.c"
-_KERNELS = _HERE / "native_kernels.py"
+_KERNELS = (_HERE / "native_kernels.py", _HERE / "native_subset.py")
 _DESCRIPTION = "modelDescription.xml"
 
 
@@ -102,7 +103,7 @@ def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = 
         BuildError: a kernel needs Python, there is no compiler, or it fails.
     """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
-    compilers = {name: _compiler(name) for name in platforms}
+    compilers = {name: compiler(name) for name in platforms}
     files = _described(component, sizes)
     objects = _objects(component, sizes, platforms)
     header = model_header(component, sizes, _guid(files[_DESCRIPTION]))
@@ -130,7 +131,7 @@ def _described(component: Component, sizes: Sizes) -> Files:
     files = companions(component, sizes)
     made_from = files | component_sources(component) | {
         _DESCRIPTION: description(""), "versions": repr([CPU, *_versions()]).encode(),
-        **{path.name: path.read_bytes() for path in (_SHIM, _KERNELS, Path(__file__))}}
+        **{path.name: path.read_bytes() for path in (_SHIM, *_KERNELS, Path(__file__))}}
     return files | {_DESCRIPTION: description(f"{{{uuid.UUID(digest(made_from)[:32])}}}")}
 
 
@@ -149,15 +150,17 @@ def _guid(description: bytes) -> str:
 
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Object code of the kernels by platform; kept in the cache of compiled kernels."""
-    stamp = digest(component_sources(component) | {"made by": _KERNELS.read_bytes(),
-                                                   "for": repr([CPU, dict(sizes), *_versions()]).encode()})[:24]
+    made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
+    stamp = digest(made_from | {"for": repr([CPU.name, dict(sizes), *_versions()]).encode()})[:24]
     folder = cache_directory()
     kept = {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms} if folder else {}
     if kept and all(path.is_file() for path in kept.values()):
         return {name: path.read_bytes() for name, path in kept.items()}
     with tempfile.TemporaryDirectory(prefix="rockshed_") as work:
         if problems := _compile(component, sizes, platforms, Path(work)):
-            problems = _compile(component, sizes, platforms, Path(work), NUMBA_DEBUGINFO="1")  # for the lines
+            if any(UNKNOWN_PLACE in problem for problem in problems):  # once more from the sources, for the lines
+                settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
+                problems = _compile(component, sizes, platforms, Path(work), **settings)
             raise BuildError(f"{component.name}: its kernels need more than the C library and cannot run without Python: "
                              + "; ".join(problems) + ". Kernels keep to explicit loops, scalar arithmetic, slices and other "
                              f"kernels. No native FMU was built. {_PYTHON_REMAINS}")
@@ -246,7 +249,7 @@ def _text(text: str) -> str:
 # --- the C compiler
 
 
-def _compiler(platform: str) -> list[str]:
+def compiler(platform: str) -> list[str]:
     """Command of a compiler for a platform.
 
     Raises:
