@@ -24,7 +24,7 @@ from pathlib import Path
 
 from components.compilation import CACHE_VARIABLE, cache_directory
 from components.component import HEADER, Component, Instance, allowed_range
-from components.ports import Sizes
+from components.ports import Causality, Kind, Sizes, Variable
 
 from .description import model_description
 from .native_subset import UNKNOWN_PLACE
@@ -77,7 +77,7 @@ PLATFORMS: Mapping[str, Platform] = {
 }
 """All platforms that there can be native FMUs for."""
 
-_OPTIONS = ("-std=gnu11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-s")
+_OPTIONS = ("-std=gnu11", "-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-s")
 _PYTHON_REMAINS = "FMUs with Python inside need no compiler: `rockshed build --runtime python`"
 
 
@@ -196,9 +196,9 @@ def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
     instance = Instance(component, sizes)
     entries = component.layout.table(sizes)[0]
     header = instance.to_bytes()[:HEADER.size]
-    variables, owners = _variables(component, sizes), []
-    for number, variable in enumerate(component.layout.ordered):
-        owners += [number] * len(variable.element_names(sizes))
+    lengths = [len(variable.element_names(sizes)) for variable in component.layout.ordered]
+    owners = [number for number, length in enumerate(lengths) for _ in range(length)]
+    traits = [_traits(variable) for variable, length in zip(component.layout.ordered, lengths) for _ in range(length)]
     lines = [
         f"#define NAME {_text(component.name)}", f"#define GUID {_text(guid)}", f"#define CPU {_text(CPU.name)}",
         f"enum {{ NW = {len(instance.w)}, NX = {len(instance.x)}, NK = {len(instance.k)}, NC = {len(sizes)},",
@@ -208,7 +208,8 @@ def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
         f"#define MARK 0x{instance.kind[:8].hex()}u",
         _array("double", "START", map(_real, instance.w.tolist())), _array("int64_t", "TABLE", map(str, entries or [0])),
         _array("int", "SIZES", map(str, [*sizes.values(), 0])), _array("unsigned char", "HEADER", map(str, header)),
-        _array("Variable", "VARIABLES", variables), _array("unsigned short", "VARIABLE_OF", map(str, owners)),
+        _array("Variable", "VARIABLES", _variables(component, sizes)), _array("unsigned short", "VARIABLE_OF", map(str, owners)),
+        _array("unsigned char", "TRAITS", traits), _array("unsigned short", "ALIKE", map(str, _alike(traits))),
         _array("Fault", "FAULTS", chain(_faults(component, instance), ["{ 0, 0 }"]))]
     return "\n".join(lines).encode() + b"\n"
 
@@ -224,6 +225,19 @@ def _variables(component: Component, sizes: Sizes) -> Iterator[str]:
                   _real(high), _text(unit), _text(allowed_range(variable)), _text(variable.description)]
         yield "{ " + ", ".join(fields) + " }"
         first += len(variable.element_names(sizes))
+
+
+def _traits(variable: Variable) -> str:
+    is_free = variable.causality is Causality.INPUT and variable.minimum is None and variable.maximum is None
+    return " | ".join(["IS_REAL", *["IS_FREE"] * is_free]) if variable.kind is Kind.REAL else "0"
+
+
+def _alike(items: Sequence[str]) -> list[int]:
+    """For each item the number of equal ones from it on."""
+    counts: list[int] = []
+    for item, following in zip(reversed(items), [None, *reversed(items)]):
+        counts.append(counts[-1] + 1 if item == following else 1)
+    return counts[::-1]
 
 
 def _faults(component: Component, instance: Instance) -> Iterator[str]:

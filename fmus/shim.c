@@ -15,6 +15,7 @@ typedef enum { OK, WARNING, DISCARD, ERROR } Status;
 typedef enum { INSTANTIATED = 1, INITIALISING, RUNNING, TERMINATED, FAILED } Phase;
 enum { REAL, INTEGER, BOOLEAN, STRING, ENUMERATION };
 enum { PARAMETER, INPUT, OUTPUT };
+enum { IS_REAL = 1, IS_FREE = 2 }; /* traits of a reference; free: a real input without bounds */
 enum { NOTHING, OUTPUTS, STATE }; /* what has to be computed before an output is read in initialization mode */
 
 /* length: 0 for a scalar. low, high: largest finite numbers where there is no bound. range: both in words. */
@@ -304,6 +305,34 @@ static void preview(Slave *m) { /* what is wrong with the inputs may still be pu
   m->previewed = 1;
 }
 
+/* The ways of every exchange: a block of consecutive references to real variables that can be read as they are, or to inputs that
+   may have any finite value. Whatever else there is, is for get and set. */
+static int is_block(const Reference r[], size_t n, int trait) {
+  Reference different = 0;
+  if (!n || r[0] >= NW || !(TRAITS[r[0]] & trait) || n > ALIKE[r[0]]) return 0;
+  for (size_t i = 0; i < n; i++) different |= r[i] ^ (r[0] + (Reference)i);
+  return !different;
+}
+
+static int are_finite(const double v[], size_t n) {
+  const uint64_t exponent = 0x7FFull << 52, last = 1ull << 52; /* all bits of the exponent are set: the sum reaches the first bit */
+  uint64_t sums = 0, bits;
+  for (size_t i = 0; i < n; i++) { memcpy(&bits, v + i, 8); sums |= (bits & exponent) + last; }
+  return !(sums >> 63);
+}
+
+static int get_block(const Slave *m, const Reference r[], size_t n, double v[]) {
+  if (m->s.phase == INITIALISING || !is_block(r, n, IS_REAL)) return 0;
+  memcpy(v, m->s.w + r[0], n * sizeof *v);
+  return 1;
+}
+
+static int set_block(Slave *m, const Reference r[], size_t n, const double v[]) {
+  if (m->s.phase != RUNNING || !is_block(r, n, IS_FREE) || !are_finite(v, n)) return 0;
+  memcpy(m->s.w + r[0], v, n * sizeof *v);
+  return 1;
+}
+
 static Status get(Slave *m, int type, const Reference r[], size_t n, double real[], int whole[]) {
   int outputs = 0;
   for (size_t i = 0; i < n; i++) {
@@ -336,8 +365,10 @@ static Status set(Slave *m, int type, const Reference r[], size_t n, const doubl
   return OK;
 }
 
-EXPORT Status fmi2GetReal(void *c, const Reference r[], size_t n, double v[]) { SLAVE; return get(m, REAL, r, n, v, NULL); }
-EXPORT Status fmi2SetReal(void *c, const Reference r[], size_t n, const double v[]) { SLAVE; return set(m, REAL, r, n, v, NULL); }
+EXPORT Status fmi2GetReal(void *c, const Reference r[], size_t n, double v[]) {
+  SLAVE; return get_block(m, r, n, v) ? OK : get(m, REAL, r, n, v, NULL); }
+EXPORT Status fmi2SetReal(void *c, const Reference r[], size_t n, const double v[]) {
+  SLAVE; return set_block(m, r, n, v) ? OK : set(m, REAL, r, n, v, NULL); }
 EXPORT Status fmi2GetInteger(void *c, const Reference r[], size_t n, int v[]) { SLAVE; return get(m, INTEGER, r, n, NULL, v); }
 EXPORT Status fmi2SetInteger(void *c, const Reference r[], size_t n, const int v[]) { SLAVE; return set(m, INTEGER, r, n, NULL, v); }
 EXPORT Status fmi2GetBoolean(void *c, const Reference r[], size_t n, int v[]) { SLAVE; return get(m, BOOLEAN, r, n, NULL, v); }
