@@ -300,5 +300,5 @@ def _linked(name: str, compiler: Sequence[str], platform: str, library: str, hea
                              f"built. Remedy: set CC to another one. {_PYTHON_REMAINS}") from error
         if done.returncode or not (work / library).is_file():
             raise BuildError(f"{name}: the compiler failed for {platform}, no native FMU was built: {' '.join(command)}\n"
-                             f"{(done.stderr or done.stdout).strip()}")
+                             f"{(done.stderr or done.stdout).strip()}\n{_PYTHON_REMAINS}")
         return (work / library).read_bytes()

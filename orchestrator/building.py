@@ -1,6 +1,7 @@
 """FMUs of our components, built where they are missing or out of date, and the sizes they are built in."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -80,8 +81,17 @@ def range_problems(where: str, model: str, sizes: Mapping[str, int]) -> list[Pro
     return []
 
 
-def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO) -> tuple[str, dict[str, str]]:
-    """The runtime of a case's FMUs and their files by component; those that are missing or out of date are built.
+@dataclass(frozen=True)
+class CaseFmus:
+    """The FMU files of a case by component, their runtime, and why it was chosen."""
+
+    files: Mapping[str, str]
+    runtime: str
+    reason: str
+
+
+def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO) -> CaseFmus:
+    """The FMUs of a case; those that are missing or out of date are built.
 
     wanted: a runtime, or AUTO: native if all of these FMUs are there and up to date, otherwise Python.
 
@@ -90,7 +100,7 @@ def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, 
     """
     from fmus.build import BuildError, Runtime, build_if_needed, file_name, fmu_folder
 
-    runtime = _best_runtime(chosen, sizes, note) if wanted == AUTO else Runtime(wanted)
+    runtime, reason = _best_runtime(chosen, sizes) if wanted == AUTO else (Runtime(wanted), "as asked for")
     files = {}
     for name, model in chosen.models.items():
         before = _changed_at(fmu_folder(runtime) / file_name(component(model), sizes[name]))
@@ -101,20 +111,19 @@ def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, 
         if _changed_at(file) != before:
             note(f"built {file}")
         files[name] = str(file)
-    return runtime.value, files
+    return CaseFmus(files, runtime.value, reason)
 
 
-def _best_runtime(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note) -> "Runtime":
+def _best_runtime(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> "tuple[Runtime, str]":
     from fmus.build import Runtime, file_name, fmu_folder, native_is_fresh
 
     stale = [name for name, model in chosen.models.items() if not native_is_fresh(component(model), sizes[name])]
     if not stale:
-        note("native FMUs")
-        return Runtime.NATIVE
-    there = [n for n in stale if (fmu_folder(Runtime.NATIVE) / file_name(component(chosen.models[n]), sizes[n])).is_file()]
-    why = f"native {' and '.join(there)} out of date" if there else "no native ones are there"
-    note(f"FMUs with Python inside ({why}: --runtime native makes them, and runs them)")
-    return Runtime.PYTHON
+        return Runtime.NATIVE, "they are up to date"
+    folder = fmu_folder(Runtime.NATIVE)
+    there = [name for name in stale if (folder / file_name(component(chosen.models[name]), sizes[name])).is_file()]
+    why = f"native {' and '.join(there)} out of date" if there else "there are no native ones"
+    return Runtime.PYTHON, f"{why}; --runtime native makes them"
 
 
 def _changed_at(file: Path) -> int:

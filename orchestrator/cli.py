@@ -179,6 +179,8 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         from .screen import COLD_START
 
         job = prepare(request, screen.note)
+        if "runtime" in job.facts:
+            screen.note(f"{job.facts['runtime']} FMUs ({job.facts['runtime_reason']})")
         folder = output_dir or RESULTS / job.name
         if is_cold():
             progress.describe(COLD_START)

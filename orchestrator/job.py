@@ -110,8 +110,9 @@ def _from_case(chosen: Case, request: Request, numbers: Mapping[str, Value], pro
     if request.in_process:
         here = {name: f"{model} (in process)" for name, model in chosen.models.items()}
         return chosen.make(here, sizes, coupling), _in_process(chosen, sizes), facts
-    runtime, fmus = case_fmus(chosen, sizes, note, request.runtime)
-    return chosen.make(fmus, sizes, coupling), {}, {**facts, "runtime": runtime}
+    fmus = case_fmus(chosen, sizes, note, request.runtime)
+    facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
+    return chosen.make(fmus.files, sizes, coupling), {}, facts
 
 
 def _runtime_problems(request: Request) -> list[Problem]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fmpy import read_model_description
 from fmpy.fmi2 import fmi2ModelExchange
+from fmpy.validation import validate_fmu
 
 from components.catalogue import NAMES
 from fmus.build import Runtime, build_if_needed
@@ -31,6 +32,11 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at a library o
 def described(file):
     with zipfile.ZipFile(file) as archive:
         return archive.read("modelDescription.xml").decode().splitlines()
+
+
+@pytest.mark.parametrize("name", [*NAMES, "Probe"])
+def test_fmpy_finds_nothing_to_say(native_fmus, name):
+    assert validate_fmu(str(native_fmus[name])) == []
 
 
 @pytest.mark.parametrize("name", [*NAMES, "Probe"])
