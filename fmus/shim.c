@@ -56,7 +56,9 @@ static const Text FOREIGN = "this is no serialized state of this component with 
 static void add_all(Slave *m, Text format, va_list values) {
   int n = vsnprintf(m->text + m->length, sizeof m->text - m->length, format, values);
   m->length += n < 0 ? 0 : (size_t)n;
-  if (m->length >= sizeof m->text) m->length = sizeof m->text - 1;
+  if (m->length < sizeof m->text) return;
+  m->length = sizeof m->text - 1;
+  strcpy(m->text + m->length - 4, " ...");
 }
 
 static void add(Slave *m, Text format, ...) {

@@ -121,6 +121,16 @@ def test_a_refused_call_returns_the_error_itself(native_fmus):
         assert host["inflow"] == 0.0
 
 
+def test_more_reasons_than_a_message_can_hold_are_cut(native_fmus):
+    with Host(native_fmus["SandCushion"], "a long name " * 50) as host:
+        host.start()
+        inputs = [v.valueReference for v in host.variables.values() if v.causality == "input"]
+        host.fmu.setReal(inputs * 2, [float("nan")] * 2 * len(inputs))
+        text, = host.errors()
+        assert "rock.position.x = nan" in text
+        assert text.endswith(" ...")
+
+
 def test_a_wrong_parameter_fails_the_end_of_the_initialization_mode(native_fmus):
     with Host(native_fmus["Probe"]) as host:
         host["limit"] = 1000.0
