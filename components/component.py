@@ -5,7 +5,6 @@ The life of an instance is that of an FMI slave: set parameters and inputs, :met
 """
 
 import hashlib
-import math
 import re
 import struct
 from collections.abc import Callable, Iterator, Mapping
@@ -227,17 +226,24 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
     """What is wrong with a value of the variable: not finite, out of range, not whole. Empty if nothing is."""
     low = -np.inf if variable.minimum is None else variable.minimum
     high = np.inf if variable.maximum is None else variable.maximum
-    unit = "" if variable.unit == "1" else f" {variable.unit}"
     if not np.isfinite(value):
         return [f"{name} = {value}: must be a finite number ({variable.description})"]
     if not low <= value <= high:
-        return [f"{name} = {value:.6g}{unit}: allowed is {_range(low, high, unit)} ({variable.description})"]
+        return [f"{name} = {value:.6g}{_suffix(variable)}: allowed is {allowed_range(variable)} ({variable.description})"]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
         return [f"{name} = {value}: must be a whole number ({variable.description})"]
     return []
 
 
-def _range(low: float, high: float, unit: str) -> str:
-    if math.isinf(high):
-        return f"{low:g}{unit} or more"
-    return f"{high:g}{unit} or less" if math.isinf(low) else f"{low:g} to {high:g}{unit}"
+def allowed_range(variable: Variable) -> str:
+    """The allowed range in words, with the unit; empty where there is no bound."""
+    unit = _suffix(variable)
+    if variable.minimum is None:
+        return "" if variable.maximum is None else f"{variable.maximum:g}{unit} or less"
+    if variable.maximum is None:
+        return f"{variable.minimum:g}{unit} or more"
+    return f"{variable.minimum:g} to {variable.maximum:g}{unit}"
+
+
+def _suffix(variable: Variable) -> str:
+    return "" if variable.unit == "1" else f" {variable.unit}"

@@ -1,50 +1,41 @@
-"""Build FMUs: frozen sources, pythonfmu's binaries, model description and documentation in one file.
+"""Build FMUs. Those with Python: frozen sources, pythonfmu's binaries, model description and documentation in one file.
 
 The sources go in under names that contain a hash of their content, so that FMUs which share a Python interpreter cannot confuse
-their modules (see :mod:`fmus.isolation`). The same content gives the same file, byte for byte.
+their modules (see :mod:`fmus.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`fmus.native_fmu`.
 """
 
-import hashlib
-import io
 import os
 import re
-import tempfile
 import uuid
-import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import distribution
 from pathlib import Path
 
 import pythonfmu
 from filelock import FileLock
 
-import components
 from components.catalogue import component as catalogued
 from components.component import Component
 
 from .description import model_description
-from .documentation import index_html
+from .native_fmu import is_fresh, native_files
+from .parts import BuildError, Files, Runtime, archive, companions, component_sources, digest, replace
 from .script import SCRIPT
 
+__all__ = ["BuildError", "Runtime", "build", "build_component", "build_if_needed", "file_name", "fmu_content", "fmu_files",
+           "fmu_folder", "native_is_fresh", "store"]
+
 FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
-"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``."""
+"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python`` and ``native``."""
 
 _HERE = Path(__file__).parent
-_COMPONENTS = Path(components.__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
 _PYTHONFMU_PARTS = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
 _SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "python_fmu.py")
-_NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
-
-Files = dict[str, bytes]
-"""Content of files by their path, which has forward slashes."""
 
 
-class BuildError(Exception):
-    """An FMU cannot be built or stored; the message says why and what to do."""
-
-
-def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None) -> Path:
+def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
+          runtime: Runtime = Runtime.PYTHON) -> Path:
     """Build the FMU of a component of the catalogue; return its file.
 
     sizes: numbers that differ from the defaults, ``{"elements": 48}``; they then are part of the file's name.
@@ -53,27 +44,49 @@ def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path |
     Raises:
         KeyError: no component has this name.
         ComponentError: a size that the component has not, or that is out of range.
-        BuildError: the folder cannot be written.
+        BuildError: the folder cannot be written, or a native FMU cannot be compiled.
     """
-    return build_component(catalogued(name), sizes, destination)
+    return build_component(catalogued(name), sizes, destination, runtime=runtime)
 
 
-def build_if_needed(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None) -> Path:
+def build_if_needed(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
+                    runtime: Runtime = Runtime.PYTHON) -> Path:
     """Like :func:`build`, but leave a file alone that is what would be built."""
-    return build_component(catalogued(name), sizes, destination, keep=True)
+    return build_component(catalogued(name), sizes, destination, keep=True, runtime=runtime)
 
 
 def build_component(component: Component, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-                    keep: bool = False) -> Path:
+                    keep: bool = False, runtime: Runtime = Runtime.PYTHON) -> Path:
     """Build the FMU of any component; ``keep`` leaves a file alone that is what would be built."""
     chosen = component.with_sizes(sizes)
-    content = _archive(fmu_files(component, chosen))
-    file = (fmu_folder() if destination is None else Path(destination)) / file_name(component, chosen)
+    if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination):
+        return _file(component, chosen, destination, runtime)
+    return store(component, chosen, fmu_content(component, chosen, runtime), destination, runtime, keep)
+
+
+def fmu_content(component: Component, sizes: Mapping[str, int], runtime: Runtime = Runtime.PYTHON,
+                platforms: Sequence[str] = ()) -> bytes:
+    """The FMU as bytes. platforms: of a native one, by default this machine's.
+
+    Raises:
+        BuildError: a native FMU cannot be compiled.
+    """
+    return archive(native_files(component, sizes, platforms) if runtime is Runtime.NATIVE else fmu_files(component, sizes))
+
+
+def store(component: Component, sizes: Mapping[str, int], content: bytes, destination: Path | None = None,
+          runtime: Runtime = Runtime.PYTHON, keep: bool = False) -> Path:
+    """Write an FMU to its place, as a whole or not at all; ``keep`` leaves a file alone that has this content.
+
+    Raises:
+        BuildError: the folder cannot be written.
+    """
+    file = _file(component, sizes, destination, runtime)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
             if not (keep and file.is_file() and file.read_bytes() == content):
-                _replace(file, content)
+                replace(file, content)
     except OSError as error:
         remedy = (f"name a folder that can be written in the environment variable {FOLDER_VARIABLE}" if destination is None
                   else "name another folder")
@@ -81,9 +94,18 @@ def build_component(component: Component, sizes: Mapping[str, int] | None = None
     return file
 
 
-def fmu_folder() -> Path:
-    """Folder of built FMUs."""
-    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist")
+def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None) -> bool:
+    """Whether the native FMU of a component is there for this machine, and is what would be built now."""
+    return is_fresh(_file(component, sizes, destination, Runtime.NATIVE), component, sizes)
+
+
+def _file(component: Component, sizes: Mapping[str, int], destination: Path | None, runtime: Runtime) -> Path:
+    return (fmu_folder(runtime) if destination is None else Path(destination)) / file_name(component, sizes)
+
+
+def fmu_folder(runtime: Runtime = Runtime.PYTHON) -> Path:
+    """Folder of built FMUs of a runtime."""
+    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / runtime
 
 
 def file_name(component: Component, sizes: Mapping[str, int]) -> str:
@@ -93,26 +115,22 @@ def file_name(component: Component, sizes: Mapping[str, int]) -> str:
 
 
 def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
-    """Everything that goes into an FMU. Its GUID and the name of its script are a hash over all the rest."""
+    """Everything that goes into an FMU with Python. Its GUID and the name of its script are a hash over all the rest."""
     library = _library_files(component)
-    library_name = f"rockshed_{_digest(library)[:16]}_lib"
+    library_name = f"rockshed_{digest(library)[:16]}_lib"
     files = {f"resources/{library_name}/{path}": content for path, content in library.items()}
-    files |= dict(_binaries(component))
-    files["documentation/index.html"] = index_html(component, sizes).encode()
+    files |= dict(_binaries(component)) | companions(component, sizes)
     files["documentation/licenses/pythonfmu.txt"] = _pythonfmu_license()
-    icon = component.folder / "icon.png"
-    if icon.is_file():
-        files["model.png"] = icon.read_bytes()
-    digest = _digest(files | _stamped_files(component, sizes, library_name, "0" * 64))
-    return files | _stamped_files(component, sizes, library_name, digest)
+    stamp = digest(files | _stamped_files(component, sizes, library_name, "0" * 64))
+    return files | _stamped_files(component, sizes, library_name, stamp)
 
 
-def _stamped_files(component: Component, sizes: Mapping[str, int], library: str, digest: str) -> Files:
-    module = f"rockshed_{digest[:16]}"
+def _stamped_files(component: Component, sizes: Mapping[str, int], library: str, stamp: str) -> Files:
+    module = f"rockshed_{stamp[:16]}"
     script = SCRIPT.substitute(
         name=component.name, library=library, package=component.folder.name, sizes=repr(dict(sizes)))
     return {
-        "modelDescription.xml": model_description(component, sizes, f"{{{uuid.UUID(digest[:32])}}}"),
+        "modelDescription.xml": model_description(component, sizes, f"{{{uuid.UUID(stamp[:32])}}}"),
         "resources/slavemodule.txt": module.encode(),
         f"resources/{module}.py": script.encode(),
     }
@@ -120,12 +138,8 @@ def _stamped_files(component: Component, sizes: Mapping[str, int], library: str,
 
 def _library_files(component: Component) -> Files:
     """The package that runs inside the FMU: slave, component with what the components share, and parts of pythonfmu."""
-    paths = {f"components/{path.name}": path for path in _COMPONENTS.glob("*.py") if path.name != "catalogue.py"}
-    paths |= {f"components/{path.relative_to(component.folder.parent).as_posix()}": path
-              for path in component.folder.rglob("*") if path.is_file() and path.suffix not in _NOT_FROZEN}
-    paths |= {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS}
-    paths |= {name: _HERE / name for name in _SLAVE_PARTS}
-    files = {name: path.read_bytes() for name, path in paths.items()}
+    paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {name: _HERE / name for name in _SLAVE_PARTS}
+    files = component_sources(component) | {name: path.read_bytes() for name, path in paths.items()}
     files["foundations.py"] = re.sub(rb"^from (components|pythonfmu)\.", rb"from .\1.", files["foundations.py"], flags=re.MULTILINE)
     return files | {"__init__.py": b"", "pythonfmu/__init__.py": b""}
 
@@ -139,38 +153,3 @@ def _pythonfmu_license() -> bytes:
     """Its text has to accompany every copy."""
     texts = [file.read_binary() for file in distribution("pythonfmu").files or () if file.name == "LICENSE"]
     return b"\n".join(texts)
-
-
-def _digest(files: Files) -> str:
-    digest = hashlib.sha256()
-    for path, content in sorted(files.items()):
-        digest.update(f"{path}\0{len(content)}\0".encode() + content)
-    return digest.hexdigest()
-
-
-def _archive(files: Files) -> bytes:
-    """A zip archive that depends on nothing but the files: fixed order, dates and permissions.
-
-    Nothing is compressed, because the result would depend on the version of zlib.
-    """
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
-        for path in sorted(files):
-            entry = zipfile.ZipInfo(path)
-            entry.create_system = 3  # Unix, also when built on Windows
-            entry.external_attr = 0o100644 << 16
-            archive.writestr(entry, files[path])
-    return buffer.getvalue()
-
-
-def _replace(file: Path, content: bytes) -> None:
-    """Write a file as a whole or not at all."""
-    handle, temporary = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, file)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise

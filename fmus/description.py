@@ -9,17 +9,16 @@ from components.component import Component
 from components.ports import Causality, Kind, Sizes, Variable
 from components.units import UNITS
 
+from .parts import Runtime
 from .python_fmu import LOG_CATEGORIES
 
 _CAPABILITIES = {
-    # The FMU needs a Python with numpy and numba on the computer; the name of the tool stands in generationTool.
-    "needsExecutionTool": "true",
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "false",
     "maxOutputDerivativeOrder": "0",
     "canRunAsynchronuously": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
-    # pythonfmu's binary and Python allocate for themselves
+    # the shim allocates for itself, as pythonfmu's binary and Python do
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
@@ -27,15 +26,24 @@ _CAPABILITIES = {
 }
 
 
-def model_description(component: Component, sizes: Mapping[str, int], guid: str) -> bytes:
+_NEEDS_TOOL = {Runtime.PYTHON: "true", Runtime.NATIVE: "false"}
+"""An FMU with Python needs one with numpy and numba on the computer; the name of the tool stands in generationTool."""
+
+
+def _generation_tool(runtime: Runtime) -> str:
+    if runtime is Runtime.NATIVE:
+        return f"rockshed {version('rockshed')}, native code"
+    return f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; runs in Python >= 3.11 with numpy and numba"
+
+
+def model_description(component: Component, sizes: Mapping[str, int], guid: str, runtime: Runtime = Runtime.PYTHON) -> bytes:
     """The complete ``modelDescription.xml``. The index of a variable is its value reference + 1; the sizes stand last."""
     root = etree.Element("fmiModelDescription", {
         "fmiVersion": "2.0", "modelName": component.name, "guid": guid, "description": component.title,
         "author": "the rockshed authors", "version": version("rockshed"), "copyright": "the rockshed authors", "license": "MIT",
-        "generationTool": f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; "
-                          "runs in Python >= 3.11 with numpy and numba",
-        "variableNamingConvention": "structured"})
-    etree.SubElement(root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES})
+        "generationTool": _generation_tool(runtime), "variableNamingConvention": "structured"})
+    etree.SubElement(root, "CoSimulation", {"modelIdentifier": component.name, "needsExecutionTool": _NEEDS_TOOL[runtime],
+                                            **_CAPABILITIES})
     _unit_definitions(root, component)
     _type_definitions(root, component)
     categories = etree.SubElement(root, "LogCategories")

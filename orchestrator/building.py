@@ -1,7 +1,9 @@
 """FMUs of our components, built where they are missing or out of date, and the sizes they are built in."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from components.catalogue import NAMES, component
 from components.component import ComponentError
@@ -10,6 +12,12 @@ from .cases.registry import Case
 from .core.errors import InputRefused, Problem
 from .core.names import nearest
 from .core.system import Value
+
+if TYPE_CHECKING:
+    from fmus.build import Runtime
+
+AUTO, BOTH = "auto", "both"
+"""What may stand in the place of a runtime: the best that is there, or every one."""
 
 Note = Callable[[str], None]
 """Tells the user what is being done."""
@@ -73,52 +81,98 @@ def range_problems(where: str, model: str, sizes: Mapping[str, int]) -> list[Pro
     return []
 
 
-def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note) -> dict[str, str]:
-    """The FMU files of a case by component; those that are missing or out of date are built.
+@dataclass(frozen=True)
+class CaseFmus:
+    """The FMU files of a case by component, their runtime, and why it was chosen."""
+
+    files: Mapping[str, str]
+    runtime: str
+    reason: str
+
+
+def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO) -> CaseFmus:
+    """The FMUs of a case; those that are missing or out of date are built.
+
+    wanted: a runtime, or AUTO: native if all of these FMUs are there and up to date, otherwise Python.
 
     Raises:
-        InputRefused: they cannot be written.
+        InputRefused: they cannot be compiled or written.
     """
-    from fmus.build import BuildError, build_if_needed, file_name, fmu_folder
+    from fmus.build import BuildError, Runtime, build_if_needed, file_name, fmu_folder
 
+    runtime, reason = _best_runtime(chosen, sizes) if wanted == AUTO else (Runtime(wanted), "as asked for")
     files = {}
     for name, model in chosen.models.items():
-        before = _changed_at(fmu_folder() / file_name(component(model), sizes[name]))
+        before = _changed_at(fmu_folder(runtime) / file_name(component(model), sizes[name]))
         try:
-            file = build_if_needed(model, sizes[name])
+            file = build_if_needed(model, sizes[name], runtime=runtime)
         except BuildError as error:
             raise InputRefused([Problem(name, str(error))]) from error
         if _changed_at(file) != before:
             note(f"built {file}")
         files[name] = str(file)
-    return files
+    return CaseFmus(files, runtime.value, reason)
+
+
+def _best_runtime(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> "tuple[Runtime, str]":
+    from fmus.build import Runtime, file_name, fmu_folder, native_is_fresh
+
+    stale = [name for name, model in chosen.models.items() if not native_is_fresh(component(model), sizes[name])]
+    if not stale:
+        return Runtime.NATIVE, "they are up to date"
+    folder = fmu_folder(Runtime.NATIVE)
+    there = [name for name in stale if (folder / file_name(component(chosen.models[name]), sizes[name])).is_file()]
+    why = f"native {' and '.join(there)} out of date" if there else "there are no native ones"
+    return Runtime.PYTHON, f"{why}; --runtime native makes them"
 
 
 def _changed_at(file: Path) -> int:
     return file.stat().st_mtime_ns if file.is_file() else 0
 
 
-def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None) -> list[Path]:
-    """Build the FMUs of these components, or of all. A size goes to those of them that have it.
+def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None, runtime: str = "python",
+              platforms: Sequence[str] = ()) -> list[Path]:
+    """Build the FMUs of these components, or of all; if one of them cannot be made, none is written.
+
+    A size goes to those of the components that have it. folder: the FMUs go into its folders ``python`` and ``native``.
 
     Raises:
-        InputRefused: unknown components or sizes, sizes out of range, a folder that cannot be written.
+        InputRefused: unknown components, sizes, runtimes or platforms, sizes out of range, a compiler that fails, a folder that
+            cannot be written.
     """
-    from fmus.build import BuildError, build
+    from fmus.build import BuildError, Runtime, fmu_content, store
 
     problems: list[Problem] = []
     sizes = assignments("--size", size_texts, problems)
     chosen = list(dict.fromkeys(names or NAMES))
     problems += [Problem(name, "there is no such component", nearest(name, NAMES)) for name in chosen if name not in NAMES]
+    problems += _runtime_problems(runtime, platforms)
     known = [name for name in chosen if name in NAMES]
     if not problems:
         problems += _size_problems(known, sizes)
     if problems:
         raise InputRefused(problems)
+    its_sizes = {n: component(n).with_sizes({s: int(v) for s, v in sizes.items() if s in component(n).sizes}) for n in known}
+    runtimes = list(Runtime) if runtime == BOTH else [Runtime(runtime)]
     try:
-        return [build(name, {s: int(n) for s, n in sizes.items() if s in component(name).sizes}, folder) for name in known]
+        made = [(r, n, fmu_content(component(n), its_sizes[n], r, platforms)) for r in runtimes for n in known]
+        return [store(component(n), its_sizes[n], content, folder / r if folder else None, r) for r, n, content in made]
     except BuildError as error:
         raise InputRefused([Problem("build", str(error))]) from error
+
+
+def _runtime_problems(runtime: str, platforms: Sequence[str]) -> list[Problem]:
+    from fmus.build import Runtime
+    from fmus.native_fmu import PLATFORMS
+
+    problems = [Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS)) for name in platforms
+                if name not in PLATFORMS]
+    if runtime not in (*Runtime, BOTH):
+        problems.append(Problem("--runtime", f"{runtime!r} is unknown", f"choose one of {', '.join(Runtime)}, {BOTH}"))
+    elif platforms and runtime == Runtime.PYTHON:
+        problems.append(Problem("--platform", "is for native FMUs; those with Python inside run everywhere",
+                                "add --runtime native"))
+    return problems
 
 
 def _size_problems(names: Sequence[str], sizes: Mapping[str, Value]) -> list[Problem]:

@@ -96,12 +96,17 @@ def list_() -> None:
 def build(components: Annotated[list[str] | None, typer.Argument(metavar="COMPONENT", help="All of them by default.")] = None,
           size: Annotated[list[str] | None, typer.Option(metavar="NAME=NUMBER", help="A size other than the default. May be "
                                                          "repeated.")] = None,
-          output_dir: Annotated[Path | None, typer.Option(help="Folder of the FMUs.")] = None, quiet: Quiet = False) -> None:
+          runtime: Annotated[str, typer.Option(metavar="python|native|both", help="FMUs with Python inside, which every processor "
+                                               "runs, or native ones, which need no Python.")] = "python",
+          platform: Annotated[list[str] | None, typer.Option(metavar="linux64|win64|darwin64", help="Of native FMUs; by default "
+                                                             "this machine's. May be repeated.")] = None,
+          output_dir: Annotated[Path | None, typer.Option(help="The FMUs go into its folders python and native.")] = None,
+          quiet: Quiet = False) -> None:
     """Build FMUs, always anew."""
     from .building import build_all
 
-    with _screen(quiet) as screen:
-        for file in build_all(components or [], size or [], output_dir):
+    with _screen(quiet) as screen, screen.busy("building"):
+        for file in build_all(components or [], size or [], output_dir, runtime, platform or []):
             screen.say(f"{file}  {file.stat().st_size / 1024:.0f} KiB")
 
 
@@ -152,6 +157,8 @@ def run(target: System,
         allow_unstable: Annotated[bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")] = False,
         load_cell: Annotated[float | None, typer.Option(metavar="HERTZ", help="Show the peak transmitted force also as a load "
                                                         "cell with this cut-off frequency does.")] = None,
+        runtime: Annotated[str, typer.Option(metavar="auto|native|python", help="FMUs of a case: native, with Python inside, or "
+                                             "native if they are there and up to date.")] = "auto",
         in_process: Annotated[bool, typer.Option("--in-process", help="Components without FMUs, in this process.")] = False,
         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
         as_json: Json = False, quiet: Quiet = False) -> None:
@@ -165,7 +172,7 @@ def run(target: System,
     options = {"stop_time": stop_time, "exchange_step": exchange_step, "output_interval": output_interval,
                "state_interval": state_interval, "master": master}
     request = Request(target, set_ or [], size or [], coupling, {k: v for k, v in options.items() if v is not None}, in_process,
-                      load_cell, model)
+                      load_cell, model, runtime)
     with _screen(quiet, as_json) as screen:
         done = _simulate(request, output_dir, allow_unstable, screen)
         if done.status == "failed":  # said before drawing, which takes its time and may be interrupted
@@ -191,6 +198,8 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         from .screen import COLD_START
 
         job = prepare(request, screen.note)
+        if "runtime" in job.facts:
+            screen.note(f"{job.facts['runtime']} FMUs ({job.facts['runtime_reason']})")
         folder = output_dir or RESULTS / job.name
         if is_cold():
             progress.describe(COLD_START)

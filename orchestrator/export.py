@@ -37,8 +37,11 @@ def export_system(system: System, folder: Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         for name, spec in system.components.items():
             file = Path(spec.fmu)
-            shutil.copyfile(file, folder / file.name)
-            specs[name] = spec.model_copy(update={"fmu": file.name})
+            copy = folder / file.name
+            if copy.exists() and copy.read_bytes() != file.read_bytes():  # of the other runtime
+                copy = folder / f"{name}-{file.name}"
+            shutil.copyfile(file, copy)
+            specs[name] = spec.model_copy(update={"fmu": copy.name})
         (folder / SYSTEM).write_text(system_text(system.model_copy(update={"components": specs})), encoding="utf-8")
     except OSError as error:
         raise InputRefused([Problem(str(folder), f"cannot be written: {error.strerror or error}",

@@ -11,8 +11,9 @@ from typing import Any
 
 from components.units import ms
 
-from .building import Note, assignments, case_fmus, case_sizes
+from .building import AUTO, Note, assignments, case_fmus, case_sizes
 from .cases.registry import Case, case, model_changes
+from .cases.sand_models import Changes
 from .core.errors import InputRefused, Problem
 from .core.slave import Source
 from .core.system import System, Value, load_system, system_from, with_values
@@ -28,6 +29,7 @@ class Request:
     options: keys of the system that are replaced, ``stop_time`` for instance.
     model: of the sand, for cases; what is set otherwise goes before it.
     load_cell: cut-off frequency (Hz) of a load cell through which the transmitted force is to be seen as well.
+    runtime: of the FMUs of a case: python, native, or auto for native ones where they are there and up to date.
     """
 
     target: str
@@ -38,6 +40,7 @@ class Request:
     in_process: bool = False
     load_cell: float | None = None
     model: str | None = None
+    runtime: str = AUTO
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,8 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
             ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
             ("--model", "set the parameters of its sand", request.model),
             ("--coupling", "set --master, --exchange-step and the components' parameters", request.coupling),
-            ("--in-process", "a system file names FMU files", request.in_process)) if given]
+            ("--in-process", "a system file names FMU files", request.in_process),
+            ("--runtime", "a system file names FMU files", request.runtime != AUTO)) if given]
         if problems:
             raise InputRefused(problems)
         name = Path(request.target).stem
@@ -126,16 +130,33 @@ def _from_case(chosen: Case, request: Request, values: Mapping[str, Value], numb
     coupling = request.coupling or next(iter(chosen.couplings))
     if coupling not in chosen.couplings:
         problems.append(Problem("--coupling", f"{coupling!r} is unknown", f"choose one of {', '.join(chosen.couplings)}"))
+    problems += _runtime_problems(request)
     model = model_changes(chosen, request.model, values)
     sizes = case_sizes(chosen, {**model.sizes, **numbers}, problems)
     if problems:
         raise InputRefused(problems)
-    fmus = {} if request.in_process else case_fmus(chosen, sizes, note)
-    sources = _in_process(chosen, sizes) if request.in_process else {}
-    system = chosen.make(fmus or {name: f"{made} (in process)" for name, made in chosen.models.items()}, sizes, coupling)
-    system = system_from({**with_values(system, model.values).model_dump(), **model.options}, chosen.name)
-    facts = {"case": chosen.name, "coupling": coupling, "sizes": sizes}
-    return system, sources, {**facts, **({"model": request.model} if request.model else {})}
+    facts: dict[str, Any] = {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+    if request.model:
+        facts["model"] = request.model
+    if request.in_process:
+        here = {name: f"{made} (in process)" for name, made in chosen.models.items()}
+        return _with_model(chosen.make(here, sizes, coupling), model), _in_process(chosen, sizes), facts
+    fmus = case_fmus(chosen, sizes, note, request.runtime)
+    facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
+    return _with_model(chosen.make(fmus.files, sizes, coupling), model), {}, facts
+
+
+def _with_model(system: System, model: Changes) -> System:
+    return system_from({**with_values(system, model.values).model_dump(), **model.options}, system.name)
+
+
+def _runtime_problems(request: Request) -> list[Problem]:
+    known = (AUTO, "native", "python")
+    if request.runtime not in known:
+        return [Problem("--runtime", f"{request.runtime!r} is unknown", f"choose one of {', '.join(known)}")]
+    if request.in_process and request.runtime != AUTO:
+        return [Problem("--runtime", "is for FMUs, and --in-process runs without them", "leave one of them out")]
+    return []
 
 
 def _in_process(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> dict[str, Source]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from time import perf_counter
 
-from fmus.build import build_if_needed
+from fmus.build import BuildError, Runtime, build_if_needed
 
 from ..cases.sonoda1993 import Coupling, lab_system, tests
 from ..core.run import simulate
@@ -17,10 +17,10 @@ END = 0.02
 """Simulated time (s)."""
 
 
-def lab(coupling: Coupling) -> System:
+def lab(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> System:
     """Test 4 for 20 ms; rows of results every 0.1 ms as usual, but no states for pictures, which the one program has not either."""
     names = {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}
-    fmus = {key: str(build_if_needed(name)) for key, name in names.items()}
+    fmus = {key: str(build_if_needed(name, runtime=runtime)) for key, name in names.items()}
     system = lab_system(fmus, tests()[4], coupling)
     components = {name: spec.model_copy(update={"record_states": False}) for name, spec in system.components.items()}
     return system.model_copy(update={"components": components, "stop_time": END, "state_interval": None})
@@ -39,9 +39,9 @@ def one_program() -> Contestant:
     return work
 
 
-def co_simulation(coupling: Coupling, plain: bool = False) -> Contestant:
+def co_simulation(coupling: Coupling, plain: bool = False, runtime: Runtime = Runtime.PYTHON) -> Contestant:
     """The exchanges of a co-simulation, results included, without its preparation."""
-    system = lab(coupling)
+    system = lab(coupling, runtime)
 
     def work() -> float:
         with tempfile.TemporaryDirectory() as folder:
@@ -52,6 +52,12 @@ def co_simulation(coupling: Coupling, plain: bool = False) -> Contestant:
 
 
 def contestants() -> Mapping[str, Contestant]:
-    """The one program, and the co-simulation with both exchange steps and both drivers."""
-    return {"one program": one_program(), "paper": co_simulation("paper"), "impulse": co_simulation("impulse"),
-            "paper, plain calls": co_simulation("paper", plain=True)}
+    """The one program, and the co-simulation with both exchange steps, drivers and runtimes; native only with a compiler."""
+    common = {"one program": one_program(), "paper": co_simulation("paper"), "impulse": co_simulation("impulse"),
+              "paper, plain calls": co_simulation("paper", plain=True)}
+    try:
+        return {**common, "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
+                "impulse, native": co_simulation("impulse", runtime=Runtime.NATIVE),
+                "paper, native, plain calls": co_simulation("paper", plain=True, runtime=Runtime.NATIVE)}
+    except BuildError:
+        return common

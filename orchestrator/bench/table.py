@@ -45,12 +45,17 @@ def disc_rows(rounds: int) -> Iterator[Row]:
 
 def coupling_rows(rounds: int) -> Iterator[Row]:
     """Wall time of the co-simulated laboratory impact against the one program."""
-    times = interleave(coupling.contestants(), rounds)
+    contestants = coupling.contestants()
+    times = interleave(contestants, rounds)
     yield Row("one program, 20 ms of the laboratory impact", times.median("one program") * 1e3, "ms")
     for name, title, goal in (("paper", "co-simulation, exchange 1e-5 s", 4.5),
                               ("impulse", "co-simulation, exchange 1e-4 s, impulse-conserving", 1.5),
-                              ("paper, plain calls", "co-simulation, exchange 1e-5 s, plain calls", None)):
-        yield Row(title, times.ratio(name, "one program"), "ratio", "one program", goal)
+                              ("paper, plain calls", "co-simulation, exchange 1e-5 s, plain calls", None),
+                              ("paper, native", "native co-simulation, exchange 1e-5 s", 1.05),
+                              ("impulse, native", "native co-simulation, exchange 1e-4 s, impulse-conserving", None),
+                              ("paper, native, plain calls", "native co-simulation, exchange 1e-5 s, plain calls", None)):
+        if name in contestants:
+            yield Row(title, times.ratio(name, "one program"), "ratio", "one program", goal)
 
 
 def start_rows(rounds: int) -> Iterator[Row]:

@@ -106,7 +106,7 @@ def test_build_in_another_size_and_look_into_it(rockshed, tmp_path):
     built = rockshed("build", "SandCushion", "--size", "discs=20", "--size", "elements=3", "--output-dir", tmp_path / "here")
     assert built.exit_code == 0
     file = Path(built.stdout.split()[0])
-    assert file.parent == tmp_path / "here"
+    assert file.parent == tmp_path / "here/python"
     seen = in_one_line(rockshed("info", file).stdout)
     assert "beam.force.y[1..3] N" in seen
     assert "modulus Pa 2.98122e+06 1e-06 .." in seen
@@ -170,8 +170,8 @@ def test_fmus_that_are_missing_are_built_and_others_left_alone(rockshed, tmp_pat
     first = rockshed("run", "lab-impact", *SHORT)
     assert [Path(line.split()[1]).name for line in first.stderr.splitlines() if line.startswith("built ")] == built
     assert "built" not in rockshed("run", "lab-impact", *SHORT).stderr
-    (tmp_path / "dist/RBSMBeam.fmu").write_bytes(b"something old")
-    assert f"built {tmp_path / 'dist/RBSMBeam.fmu'}\n" in rockshed("run", "lab-impact", *SHORT).stderr
+    (tmp_path / "dist/python/RBSMBeam.fmu").write_bytes(b"something old")
+    assert f"built {tmp_path / 'dist/python/RBSMBeam.fmu'}\n" in rockshed("run", "lab-impact", *SHORT).stderr
 
 
 def test_box_2_has_its_own_number_of_discs(rockshed, tmp_path):

@@ -10,7 +10,8 @@ import pytest
 
 import components
 from components.catalogue import NAMES
-from fmus.build import build, build_component
+from fmus.build import BuildError, Runtime, build, build_component
+from fmus.native_fmu import compiler, own_platform
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -24,11 +25,32 @@ def probe():
     components.__path__.remove(str(HERE / "extra"))
 
 
-@pytest.fixture(scope="session")
-def fmus(probe, tmp_path_factory):
+def built(runtime, probe, folder):
     """Files of the FMUs by name."""
-    folder = tmp_path_factory.mktemp("fmu dist")
-    return {name: build(name, destination=folder) for name in NAMES} | {"Probe": build_component(probe, destination=folder)}
+    return {name: build(name, destination=folder, runtime=runtime) for name in NAMES} | {
+        "Probe": build_component(probe, destination=folder, runtime=runtime)}
+
+
+@pytest.fixture(scope="session")
+def python_fmus(probe, tmp_path_factory):
+    """FMUs with Python inside by name."""
+    return built(Runtime.PYTHON, probe, tmp_path_factory.mktemp("fmu dist"))
+
+
+@pytest.fixture(scope="session")
+def native_fmus(probe, tmp_path_factory):
+    """Native FMUs by name."""
+    try:
+        compiler(own_platform())
+    except BuildError as error:
+        pytest.skip(str(error))
+    return built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("native dist"))
+
+
+@pytest.fixture(scope="session")
+def fmus(python_fmus):
+    """Files of the FMUs by name; a module that tests both runtimes has a fixture of its own with this name."""
+    return python_fmus
 
 
 @pytest.fixture(scope="session")

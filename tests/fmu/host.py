@@ -2,9 +2,11 @@
 
 import shutil
 import tempfile
+from functools import wraps
 from pathlib import Path
 
 import fmpy
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
     FMU2Slave,
     calloc,
@@ -19,8 +21,30 @@ from fmpy.model_description import read_model_description
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
 
+class Tolerant:
+    """A slave of fmpy of which no call raises an exception: the last bad status is kept in ``status``."""
+
+    def __init__(self, slave):
+        self.slave, self.status = slave, OK
+
+    def __getattr__(self, name):
+        found = getattr(self.slave, name)
+        if not callable(found):
+            return found
+
+        @wraps(found)
+        def call(*arguments, **options):
+            try:
+                return found(*arguments, **options)
+            except FMICallException as error:
+                self.status = error.status
+                return None
+
+        return call
+
+
 class Host:
-    """An instance of an FMU. ``messages``: (status, category, text)."""
+    """An instance of an FMU. ``messages``: (status, category, text). ``refusal``: status of a step that is refused."""
 
     def __init__(self, path, name="probe", folder=None, guid=None, logging=True):
         self.folder = Path(folder or tempfile.mkdtemp(prefix="host "))  # with a space
@@ -35,9 +59,12 @@ class Host:
             lambda env, name, status, category, text: self.messages.append((status, (category or b"").decode(), text.decode())))
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        self.fmu = FMU2Slave(guid=guid or self.description.guid, unzipDirectory=str(self.folder), instanceName=name,
-                             modelIdentifier=self.description.coSimulation.modelIdentifier)
-        self.fmu.instantiate(callbacks=self._callbacks, loggingOn=logging)
+        slave = FMU2Slave(guid=guid or self.description.guid, unzipDirectory=str(self.folder), instanceName=name,
+                          modelIdentifier=self.description.coSimulation.modelIdentifier)
+        slave.instantiate(callbacks=self._callbacks, loggingOn=logging)
+        self.fmu = Tolerant(slave)
+        self.is_native = not self.description.coSimulation.needsExecutionTool
+        self.refusal = ERROR if self.is_native else DISCARD  # pythonfmu's binary cannot return an error
 
     def close(self, keep_folder=False):
         self.fmu.freeInstance()
@@ -96,5 +123,6 @@ class Host:
 
     def restore(self, content):
         state = self.fmu.deSerializeFMUstate(content)
-        self.fmu.setFMUstate(state)
-        self.fmu.freeFMUstate(state)
+        if state is not None:
+            self.fmu.setFMUstate(state)
+            self.fmu.freeFMUstate(state)

@@ -134,7 +134,7 @@ def test_a_folder_that_cannot_be_written_is_refused_with_a_remedy(monkeypatch, t
 
 def test_the_environment_variable_moves_the_folder(monkeypatch, tmp_path):
     monkeypatch.setenv("ROCKSHED_FMU_DIR", str(tmp_path / "elsewhere"))
-    assert build("FallingRock") == tmp_path / "elsewhere" / "FallingRock.fmu"
+    assert build("FallingRock") == tmp_path / "elsewhere" / "python" / "FallingRock.fmu"
 
 
 @pytest.mark.parametrize(("sizes", "reason"), [

@@ -1,12 +1,19 @@
 """The slave in the FMU: values, initialization mode, and what it does with calls that it must refuse."""
 
 import math
+import re
 
 import pytest
 
 from components.catalogue import NAMES
+from fmus.parts import Runtime
 
 from .host import DISCARD, ERROR, OK, WARNING, Host
+
+
+@pytest.fixture(params=list(Runtime))
+def fmus(request):
+    return request.getfixturevalue(f"{request.param}_fmus")
 
 
 @pytest.fixture
@@ -95,7 +102,7 @@ def test_a_wrong_start_is_refused_with_all_its_reasons_when_the_initialization_m
     for part in ("tank (Probe)", "limit = 1000 m: allowed is 0.1 to 100 m", "valve = -1", "inflow = nan", "leak = 3",
                  "first_count = -1"):
         assert part in text
-    assert tank.step(0.0, 0.1) == DISCARD
+    assert tank.step(0.0, 0.1) == tank.refusal
 
 
 def test_a_fault_of_the_component_at_the_start_and_later_is_told(tank):
@@ -107,7 +114,7 @@ def test_a_fault_of_the_component_at_the_start_and_later_is_told(tank):
     tank.steps(2, 0.5)
     assert tank.step(1.0, 0.5) == DISCARD
     assert "at t = 1 s a tank overflows above the level 10 m" in tank.errors()[0]
-    assert tank.step(1.0, 0.01) == DISCARD
+    assert tank.step(1.0, 0.01) == tank.refusal
     assert "restore an earlier state" in tank.errors()[1]
 
 
@@ -136,7 +143,7 @@ MISUSE = {
     "boolean set late": (lambda h: h.__setitem__("counting", False), "counting = 0 is refused: a parameter is fixed"),
     "output set": (lambda h: h.__setitem__("level[2]", 1.0), "level[2] = 1 is refused: it is an output"),
     "unknown reference read": (lambda h: h.fmu.getReal([999]), "value reference 999 is unknown: allowed is 0 to "),
-    "huge reference read": (lambda h: h.fmu.getReal([2 ** 32 - 1]), "value reference -1 is unknown"),
+    "huge reference read": (lambda h: h.fmu.getReal([2 ** 32 - 1]), "is unknown: allowed is 0 to "),
     "unknown reference set": (lambda h: h.fmu.setReal([999], [1.0]), "value reference 999 is unknown"),
     "unknown integer": (lambda h: h.fmu.getInteger([999]), "value reference 999 is unknown"),
     "unknown boolean": (lambda h: h.fmu.getBoolean([999]), "value reference 999 is unknown"),
@@ -159,7 +166,7 @@ def test_misuse_after_the_initialisation_is_logged_and_stops_the_slave(tank, wha
     text, = tank.errors()
     assert "tank (Probe): " in text
     assert expected in text
-    assert tank.step(0.0, 0.1) == DISCARD
+    assert tank.step(0.0, 0.1) == tank.refusal
     assert tank.outputs() == before  # nothing wrong was taken over
     tank.fmu.reset()
     tank.start().steps(2, 0.1)
@@ -182,24 +189,24 @@ def test_a_bad_step_is_refused_and_changes_nothing(tank, what):
     time, step, expected = BAD_STEPS[what]
     tank.start(stop=1.0, inflow=1.0).steps(5, 0.1)
     before = tank.outputs()
-    assert tank.step(time, step) == DISCARD
+    assert tank.step(time, step) == tank.refusal
     assert expected in tank.errors()[0]
     assert tank.outputs() == before
     tank.steps(5, 0.1, first=5)  # the right steps go on
 
 
 def test_steps_before_the_initialisation_and_after_the_end_are_refused(tank):
-    assert tank.step(0.0, 0.1) == DISCARD
+    assert tank.step(0.0, 0.1) == tank.refusal
     assert "the slave is not initialised: set up the experiment" in tank.errors()[0]
     tank.fmu.setupExperiment()
     tank.fmu.enterInitializationMode()
-    assert tank.step(0.0, 0.1) == DISCARD
+    assert tank.step(0.0, 0.1) == tank.refusal
     assert "the initialization mode is not finished" in tank.errors()[1]
     tank.fmu.exitInitializationMode()
     tank.steps(2, 0.1)
     tank.fmu.terminate()
     count = tank["count"]
-    assert tank.step(0.2, 0.1) == DISCARD
+    assert tank.step(0.2, 0.1) == tank.refusal
     assert "the slave is terminated" in tank.errors()[2]
     assert tank["count"] == count
 
@@ -207,12 +214,12 @@ def test_steps_before_the_initialisation_and_after_the_end_are_refused(tank):
 def test_initialization_mode_needs_the_start_time_first(tank):
     tank.fmu.enterInitializationMode()
     assert "the start time is unknown" in tank.errors()[0]
-    assert tank.step(0.0, 0.1) == DISCARD
+    assert tank.step(0.0, 0.1) == tank.refusal
 
 
 def test_an_experiment_that_ends_before_it_starts_is_refused(tank):
     tank.fmu.setupExperiment(startTime=1.0, stopTime=0.5)
-    assert "start time = 1.0 s, stop time = 0.5 s" in tank.errors()[0]
+    assert re.search(r"start time = 1(\.0)? s, stop time = 0\.5 s", tank.errors()[0])
 
 
 def test_messages_have_declared_categories_and_no_percent_sign(tank):
@@ -229,5 +236,5 @@ def test_without_logging_misuse_is_refused_in_silence(fmus):
     with Host(fmus["Probe"], logging=False) as host:
         host.start()
         host["inflow"] = math.nan
-        assert host.step(0.0, 0.1) == DISCARD
+        assert host.step(0.0, 0.1) == host.refusal
         assert host.messages == []

@@ -1,7 +1,6 @@
 """Levels that rise with the inflow and leak: the state is hidden, the outputs are copies of it."""
 
-from numba import njit
-
+from ..compilation import kernel
 from ..component import OK
 from ..ports import view
 from .declarations import LAYOUT
@@ -11,7 +10,7 @@ V, A = LAYOUT.scalar, LAYOUT.array
 OVERFLOW, INFLOW_AT_START = 1, 2
 
 
-@njit
+@kernel
 def show(w, x, k):
     levels, hidden, counts = view(w, k, A.level), view(x, k, A.hidden_level), view(k, k, A.hidden_count)
     for i in range(len(levels)):
@@ -19,7 +18,7 @@ def show(w, x, k):
     w[V.count], w[V.initialisations] = counts[0], counts[1]
 
 
-@njit
+@kernel
 def initialise(w, x, k):
     start, hidden, counts = view(w, k, A.level0), view(x, k, A.hidden_level), view(k, k, A.hidden_count)
     for i in range(len(start)):
@@ -30,14 +29,14 @@ def initialise(w, x, k):
     return OK
 
 
-@njit
+@kernel
 def evaluate(w, x, k):
     w[V.flow] = w[V.valve] * w[V.inflow]
     show(w, x, k)
     return INFLOW_AT_START if w[V.inflow] > w[V.limit] else OK
 
 
-@njit
+@kernel
 def step(t, h, w, x, k):
     hidden, extra, counts = view(x, k, A.hidden_level), view(w, k, A.extra), view(k, k, A.hidden_count)
     w[V.flow] = w[V.valve] * w[V.inflow]

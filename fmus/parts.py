@@ -1,0 +1,83 @@
+"""What the FMUs of both runtimes have in common: their files, hashes of them, the archive, and what can go wrong."""
+
+import hashlib
+import io
+import os
+import tempfile
+import zipfile
+from enum import StrEnum
+from pathlib import Path
+
+import components
+from components.component import Component
+from components.ports import Sizes
+
+from .documentation import index_html
+
+COMPONENTS = Path(components.__file__).parent
+_NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
+
+Files = dict[str, bytes]
+"""Content of files by their path, which has forward slashes."""
+
+
+class Runtime(StrEnum):
+    """What carries out an FMU's kernels."""
+
+    PYTHON = "python"
+    NATIVE = "native"
+
+
+class BuildError(Exception):
+    """An FMU cannot be built or stored; the message says why and what to do."""
+
+
+def component_sources(component: Component) -> Files:
+    """The component with what the components share: everything that its kernels and declarations follow from."""
+    paths = {f"components/{path.name}": path for path in COMPONENTS.glob("*.py") if path.name != "catalogue.py"}
+    paths |= {f"components/{path.relative_to(component.folder.parent).as_posix()}": path
+              for path in component.folder.rglob("*") if path.is_file() and path.suffix not in _NOT_FROZEN}
+    return {name: path.read_bytes() for name, path in paths.items()}
+
+
+def companions(component: Component, sizes: Sizes) -> Files:
+    """Documentation and icon."""
+    files = {"documentation/index.html": index_html(component, sizes).encode()}
+    icon = component.folder / "icon.png"
+    return files | ({"model.png": icon.read_bytes()} if icon.is_file() else {})
+
+
+def digest(files: Files) -> str:
+    """Hash of files with their names."""
+    found = hashlib.sha256()
+    for path, content in sorted(files.items()):
+        found.update(f"{path}\0{len(content)}\0".encode() + content)
+    return found.hexdigest()
+
+
+def archive(files: Files) -> bytes:
+    """A zip archive that depends on nothing but the files: fixed order, dates and permissions.
+
+    Nothing is compressed, because the result would depend on the version of zlib.
+    """
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as target:
+        for path in sorted(files):
+            entry = zipfile.ZipInfo(path)
+            entry.create_system = 3  # Unix, also when built on Windows
+            entry.external_attr = 0o100644 << 16
+            target.writestr(entry, files[path])
+    return buffer.getvalue()
+
+
+def replace(file: Path, content: bytes) -> None:
+    """Write a file as a whole or not at all."""
+    handle, temporary = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, file)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise

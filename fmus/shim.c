@@ -1,0 +1,482 @@
+/* FMI 2.0 co-simulation slave around the kernels of one component. model.h, generated from the component's declarations, has the
+   tables of its variables. It behaves as python_fmu.py does, and takes and gives the same serialized states; but a call that is
+   refused returns fmi2Error itself. Compiled for every x86-64 processor: it looks whether the kernels can run on this one. */
+#include <cpuid.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef const char *Text;
+typedef unsigned int Reference;
+typedef enum { OK, WARNING, DISCARD, ERROR } Status;
+typedef enum { INSTANTIATED = 1, INITIALISING, RUNNING, TERMINATED, FAILED } Phase;
+enum { REAL, INTEGER, BOOLEAN, STRING, ENUMERATION };
+enum { PARAMETER, INPUT, OUTPUT };
+enum { IS_REAL = 1, IS_FREE = 2 }; /* traits of a reference; free: a real input without bounds */
+enum { NOTHING, OUTPUTS, STATE }; /* what has to be computed before an output is read in initialization mode */
+
+/* length: 0 for a scalar. low, high: largest finite numbers where there is no bound. range: both in words. */
+typedef struct { Text name; int first, length, type, causality; double low, high; Text unit, range, description; } Variable;
+typedef struct { int64_t status; Text text; } Fault; /* {5} in the text: the value of reference 5 */
+#include "model.h"
+
+typedef struct { void (*logger)(void *, Text, Status, Text, Text, ...); void *(*allocate)(size_t, size_t); void (*release)(void *);
+                 void (*stepFinished)(void *, Status); void *environment; } Callbacks;
+typedef struct { uint64_t mark; uint32_t phase; double time, w[NW], x[NX + 1]; int64_t k[NK + 1]; } State;
+typedef struct { State s; Callbacks callbacks; char *name; double stop; int stale, previewed, told[ERROR + 1];
+                 size_t length; char text[16384]; } Slave;
+
+extern int64_t rockshed_initialise(double *w, double *x, int64_t *k);
+extern int64_t rockshed_evaluate(double *w, double *x, int64_t *k);
+extern int64_t rockshed_step(double t, double h, double *w, double *x, int64_t *k);
+
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+#define SLAVE Slave *m = c; if (!m) return ERROR
+
+static const Text REMEDIES[] = { "",
+  "the slave is not initialised: set up the experiment, then enter and exit the initialization mode",
+  "the initialization mode is not finished: exit it first",
+  "the slave is initialised already: reset it first",
+  "the slave is terminated: reset it first",
+  "an earlier call was refused or has failed, see the log: reset the slave or restore an earlier state" };
+static const Text TYPES[] = { "Real", "Integer", "Boolean", "String", "Enumeration" };
+static const Text CATEGORIES[] = { "", "logStatusWarning", "", "logStatusError" };
+static const Text DAMAGED = "this is no serialized state of a rockshed FMU, or it is damaged: restore another one";
+static const Text FOREIGN = "this is no serialized state of this component with these sizes";
+
+/* --- messages: the reasons of one call are collected in m->text and told together */
+
+static void add_all(Slave *m, Text format, va_list values) {
+  int n = vsnprintf(m->text + m->length, sizeof m->text - m->length, format, values);
+  m->length += n < 0 ? 0 : (size_t)n;
+  if (m->length < sizeof m->text) return;
+  m->length = sizeof m->text - 1;
+  strcpy(m->text + m->length - 4, " ...");
+}
+
+static void add(Slave *m, Text format, ...) {
+  va_list values;
+  va_start(values, format);
+  add_all(m, format, values);
+  va_end(values);
+}
+
+static void because(Slave *m, Text format, ...) {
+  va_list values;
+  va_start(values, format);
+  if (m->length) add(m, "; "); else add(m, "%s (" NAME "): ", m->name);
+  add_all(m, format, values);
+  va_end(values);
+}
+
+static void tell(Slave *m, Status status) {
+  for (char *c = m->text; *c; c++) if (*c == '%') *c = ' '; /* hosts may take the text for a format */
+  if (m->callbacks.logger && m->told[status])
+    m->callbacks.logger(m->callbacks.environment, m->name, status, CATEGORIES[status], m->text);
+  m->length = 0;
+  m->text[0] = 0;
+}
+
+static Status refused(Slave *m) { m->s.phase = FAILED; tell(m, ERROR); return ERROR; }
+static Status refuse(Slave *m, Text reason) { because(m, "%s", reason); return refused(m); }
+static Status not_now(Slave *m, Text what) { because(m, "cannot %s: %s", what, REMEDIES[m->s.phase]); return refused(m); }
+
+typedef struct { char text[256]; } Short;
+static Short number(double value) { /* as Python writes it */
+  Short s;
+  if (isnan(value)) strcpy(s.text, "nan"); else snprintf(s.text, sizeof s.text, "%.6g", value);
+  return s;
+}
+
+static Short name_of(Reference r) {
+  const Variable *v = &VARIABLES[VARIABLE_OF[r]];
+  Short s;
+  if (v->length) snprintf(s.text, sizeof s.text, "%s[%d]", v->name, (int)r - v->first + 1);
+  else snprintf(s.text, sizeof s.text, "%s", v->name);
+  return s;
+}
+
+/* --- what the declarations allow */
+
+static int in_range(const Variable *v, double value) { return v->low <= value && value <= v->high; } /* false for NaN and inf */
+
+static void add_problem(Slave *m, Reference r, double value) {
+  const Variable *v = &VARIABLES[VARIABLE_OF[r]];
+  add(m, "%s = %s", name_of(r).text, number(value).text);
+  if (isfinite(value)) add(m, "%s: allowed is %s (%s)", v->unit, v->range, v->description);
+  else add(m, ": must be a finite number (%s)", v->description);
+}
+
+static int is_known(Slave *m, Reference r, int type) {
+  if (r >= NW) {
+    because(m, "value reference %u is unknown: allowed is 0 to %d; take it from this FMU's modelDescription.xml", r, NW - 1);
+    return 0;
+  }
+  int its = VARIABLES[VARIABLE_OF[r]].type;
+  if (type == (its == ENUMERATION ? INTEGER : its)) return 1;
+  because(m, "%s is of type %s, not %s: use the call of its type", name_of(r).text, TYPES[its], TYPES[type]);
+  return 0;
+}
+
+static void check_set(Slave *m, Reference r, int type, double value) {
+  if (!is_known(m, r, type)) return;
+  const Variable *v = &VARIABLES[VARIABLE_OF[r]];
+  if (v->causality == OUTPUT)
+    because(m, "%s = %s is refused: it is an output, which the component computes; set parameters or inputs", name_of(r).text,
+            number(value).text);
+  else if (m->s.phase != RUNNING)
+    return; /* checked all together when the initialization mode ends */
+  else if (v->causality == PARAMETER)
+    because(m, "%s = %s is refused: a parameter is fixed after the initialisation; reset the slave to change it", name_of(r).text,
+            number(value).text);
+  else if (!in_range(v, value)) {
+    because(m, "at t = %.9g s: ", m->s.time);
+    add_problem(m, r, value);
+    add(m, "; correct what sends this value");
+  }
+}
+
+static int values_are_wrong(Slave *m) {
+  for (Reference r = 0; r < NW; r++) {
+    const Variable *v = &VARIABLES[VARIABLE_OF[r]];
+    if (v->causality != OUTPUT && !in_range(v, m->s.w[r])) { because(m, "%s", ""); add_problem(m, r, m->s.w[r]); }
+  }
+  return m->length > 0;
+}
+
+static int has_failed(Slave *m, int64_t status, Text when) {
+  if (!status) return 0;
+  because(m, "%s", when);
+  Text text = NULL;
+  for (size_t i = 0; i < sizeof FAULTS / sizeof *FAULTS; i++) if (FAULTS[i].text && FAULTS[i].status == status) text = FAULTS[i].text;
+  if (!text) add(m, "stopped with the unknown status %lld", (long long)status);
+  for (; text && *text; text++)
+    if (*text == '{') add(m, "%s", number(m->s.w[strtol(text + 1, (char **)&text, 10)]).text); /* goes on behind the brace */
+    else add(m, "%c", *text);
+  return 1;
+}
+
+/* --- life cycle */
+
+static int cpu_fits(void) {
+  unsigned a, b, c, d, low, high;
+  if (!__get_cpuid(1, &a, &b, &c, &d) || (c & CPU_1C) != CPU_1C) return 0; /* OSXSAVE is among them */
+  __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+  if ((low & 6) != 6) return 0; /* the system does not save the wide registers */
+  if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || (b & CPU_7B) != CPU_7B) return 0;
+  return __get_cpuid(0x80000001, &a, &b, &c, &d) && (c & CPU_81C) == CPU_81C;
+}
+
+static void start_anew(Slave *m) {
+  memset(&m->s, 0, sizeof m->s);
+  memcpy(m->s.w, START, sizeof START);
+  memcpy(m->s.k, TABLE, sizeof TABLE);
+  m->s.mark = MARK;
+  m->s.phase = INSTANTIATED;
+  m->s.time = NAN;
+  m->stop = INFINITY;
+  m->stale = STATE;
+  m->previewed = 0;
+}
+
+static int compute(Slave *m) { /* outputs at the start; the state, which may be expensive, only if a parameter has changed */
+  if (m->stale != NOTHING && values_are_wrong(m)) return 0;
+  if (m->stale == STATE && has_failed(m, rockshed_initialise(m->s.w, m->s.x, m->s.k), "")) return 0;
+  if (m->stale != NOTHING && has_failed(m, rockshed_evaluate(m->s.w, m->s.x, m->s.k), "")) return 0;
+  m->stale = NOTHING;
+  return 1;
+}
+
+EXPORT Text fmi2GetTypesPlatform(void) { return "default"; }
+EXPORT Text fmi2GetVersion(void) { return "2.0"; }
+
+EXPORT void fmi2FreeInstance(void *c) { if (c) { free(((Slave *)c)->name); free(c); } }
+
+EXPORT void *fmi2Instantiate(Text name, int type, Text guid, Text resources, const Callbacks *callbacks, int visible, int logging) {
+  Slave *m = calloc(1, sizeof *m);
+  if (!m || !callbacks || !name || !(m->name = malloc(strlen(name) + 1))) { free(m); return NULL; }
+  strcpy(m->name, name);
+  m->callbacks = *callbacks;
+  m->told[WARNING] = m->told[ERROR] = 1; /* why there is no instance is told in any case */
+  if (!guid || strcmp(guid, GUID)) because(m, "the GUID is %s, and this FMU has " GUID ": read its own modelDescription.xml",
+                                           guid ? guid : "missing");
+  if (type != 1) because(m, "model exchange is asked for, and this FMU is for co-simulation");
+  if (!cpu_fits()) because(m, "this processor lacks instructions of " CPU ", for which this FMU was compiled: "
+                           "use the FMU of this component that runs in Python");
+  if (m->length) { tell(m, ERROR); fmi2FreeInstance(m); return NULL; }
+  m->told[WARNING] = m->told[ERROR] = logging;
+  start_anew(m);
+  return m;
+}
+
+EXPORT Status fmi2SetDebugLogging(void *c, int on, size_t n, const Text categories[]) {
+  SLAVE;
+  for (Status status = WARNING; status <= ERROR; status += ERROR - WARNING) {
+    m->told[status] = on && !n;
+    for (size_t i = 0; on && i < n; i++)
+      m->told[status] |= !strcmp(categories[i], CATEGORIES[status]) || !strcmp(categories[i], "logAll");
+  }
+  return OK;
+}
+
+EXPORT Status fmi2SetupExperiment(void *c, int with_tolerance, double tolerance, double start, int with_stop, double stop) {
+  SLAVE;
+  if (m->s.phase != INSTANTIATED) return not_now(m, "set up the experiment");
+  if (!isfinite(start) || (with_stop && !(stop >= start))) {
+    because(m, "start time = %s s, stop time = %s s: the start must be a finite number, and the stop not before it",
+            number(start).text, with_stop ? number(stop).text : "none");
+    return refused(m);
+  }
+  m->s.time = start;
+  m->stop = with_stop ? stop : INFINITY;
+  return OK;
+}
+
+EXPORT Status fmi2EnterInitializationMode(void *c) {
+  SLAVE;
+  if (m->s.phase != INSTANTIATED) return not_now(m, "enter the initialization mode");
+  if (isnan(m->s.time)) return refuse(m, "the start time is unknown: set up the experiment before entering the initialization mode");
+  m->s.phase = INITIALISING;
+  return OK;
+}
+
+EXPORT Status fmi2ExitInitializationMode(void *c) {
+  SLAVE;
+  if (m->s.phase != INITIALISING) return not_now(m, "exit the initialization mode");
+  if (!compute(m)) return refused(m);
+  m->s.phase = RUNNING;
+  if (INTERNAL_STEP < 0 || STABLE_STEP < 0 || !(m->s.w[INTERNAL_STEP] > m->s.w[STABLE_STEP])) return OK;
+  because(m, "internal_step = %.6g s exceeds stable_step = %.6g s: the integration will be unstable; reduce internal_step to %.6g s "
+          "or less", m->s.w[INTERNAL_STEP], m->s.w[STABLE_STEP], m->s.w[STABLE_STEP]);
+  tell(m, WARNING);
+  return WARNING;
+}
+
+EXPORT Status fmi2Terminate(void *c) {
+  SLAVE;
+  if (m->s.phase == FAILED) return OK;
+  if (m->s.phase != RUNNING) return not_now(m, "terminate");
+  m->s.phase = TERMINATED;
+  return OK;
+}
+
+EXPORT Status fmi2Reset(void *c) { SLAVE; start_anew(m); return OK; }
+
+static int may_step(Slave *m, double time, double step) {
+  double tolerance = 1e-6 * step + 4.0 * (nextafter(fabs(m->s.time), INFINITY) - fabs(m->s.time));
+  Text reason = m->s.phase != RUNNING ? REMEDIES[m->s.phase] : !(step > 0.0 && isfinite(step)) ? "its length must be a positive number" : NULL;
+  if (!reason && fabs(time - m->s.time) <= tolerance && time + step <= m->stop + tolerance) return 1;
+  because(m, "the step of %s s from t = %.9g s is refused: ", number(step).text, time);
+  if (reason) add(m, "%s", reason);
+  else if (!(fabs(time - m->s.time) <= tolerance))
+    add(m, "the slave is at t = %.9g s; steps follow one another, and only a restored state leads elsewhere", m->s.time);
+  else add(m, "it passes the stop time %.9g s that the experiment was set up with", m->stop);
+  return 0;
+}
+
+EXPORT Status fmi2DoStep(void *c, double time, double step, int no_earlier_state) {
+  SLAVE;
+  if (!may_step(m, time, step)) { tell(m, ERROR); return ERROR; } /* nothing has changed, and the right step may follow */
+  int64_t status = rockshed_step(time, step, m->s.w, m->s.x, m->s.k);
+  if (!status) { m->s.time = time + step; return OK; }
+  Short when;
+  snprintf(when.text, sizeof when.text, "at t = %.9g s ", time);
+  has_failed(m, status, when.text);
+  refused(m);
+  return DISCARD; /* a shorter step from an earlier state may succeed */
+}
+
+/* --- values */
+
+static void preview(Slave *m) { /* what is wrong with the inputs may still be put right */
+  if (!m->previewed && !compute(m)) {
+    char reasons[sizeof m->text];
+    Text behind_name = m->text + strlen(m->name) + strlen(" (" NAME "): ");
+    strcpy(reasons, behind_name);
+    m->length = 0;
+    because(m, "the outputs are not valid yet: %s", reasons);
+    tell(m, WARNING);
+  }
+  m->previewed = 1;
+}
+
+/* The ways of every exchange: a block of consecutive references to real variables that can be read as they are, or to inputs that
+   may have any finite value. Whatever else there is, is for get and set. */
+static int is_block(const Reference r[], size_t n, int trait) {
+  Reference different = 0;
+  if (!n || r[0] >= NW || !(TRAITS[r[0]] & trait) || n > ALIKE[r[0]]) return 0;
+  for (size_t i = 0; i < n; i++) different |= r[i] ^ (r[0] + (Reference)i);
+  return !different;
+}
+
+static int are_finite(const double v[], size_t n) {
+  const uint64_t exponent = 0x7FFull << 52, last = 1ull << 52; /* all bits of the exponent are set: the sum reaches the first bit */
+  uint64_t sums = 0, bits;
+  for (size_t i = 0; i < n; i++) { memcpy(&bits, v + i, 8); sums |= (bits & exponent) + last; }
+  return !(sums >> 63);
+}
+
+static int get_block(const Slave *m, const Reference r[], size_t n, double v[]) {
+  if (m->s.phase == INITIALISING || !is_block(r, n, IS_REAL)) return 0;
+  memcpy(v, m->s.w + r[0], n * sizeof *v);
+  return 1;
+}
+
+static int set_block(Slave *m, const Reference r[], size_t n, const double v[]) {
+  if (m->s.phase != RUNNING || !is_block(r, n, IS_FREE) || !are_finite(v, n)) return 0;
+  memcpy(m->s.w + r[0], v, n * sizeof *v);
+  return 1;
+}
+
+static Status get(Slave *m, int type, const Reference r[], size_t n, double real[], int whole[]) {
+  int outputs = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (type == INTEGER && r[i] >= NW && r[i] < NW + NC) continue;
+    if (is_known(m, r[i], type)) outputs |= VARIABLES[VARIABLE_OF[r[i]]].causality == OUTPUT;
+  }
+  if (m->length) return refused(m);
+  if (outputs && m->s.phase == INITIALISING) preview(m);
+  for (size_t i = 0; i < n; i++)
+    if (type == REAL) real[i] = m->s.w[r[i]];
+    else whole[i] = r[i] >= NW ? SIZES[r[i] - NW] : type == BOOLEAN ? m->s.w[r[i]] != 0.0 : (int)m->s.w[r[i]];
+  return OK;
+}
+
+static Status set(Slave *m, int type, const Reference r[], size_t n, const double real[], const int whole[]) {
+  int stale = NOTHING;
+  if (m->s.phase >= TERMINATED) return not_now(m, "set a variable");
+  for (size_t i = 0; i < n; i++) check_set(m, r[i], type, type == REAL ? real[i] : whole[i]);
+  if (m->length) return refused(m);
+  for (size_t i = 0; i < n; i++) {
+    double value = type == REAL ? real[i] : type == BOOLEAN ? whole[i] != 0 : whole[i];
+    int needs = VARIABLES[VARIABLE_OF[r[i]]].causality == PARAMETER ? STATE : OUTPUTS;
+    if (m->s.w[r[i]] != value && needs > stale) stale = needs;
+    m->s.w[r[i]] = value;
+  }
+  if (m->s.phase != RUNNING && stale) {
+    m->previewed = 0;
+    if (stale > m->stale) m->stale = stale;
+  }
+  return OK;
+}
+
+EXPORT Status fmi2GetReal(void *c, const Reference r[], size_t n, double v[]) {
+  SLAVE; return get_block(m, r, n, v) ? OK : get(m, REAL, r, n, v, NULL); }
+EXPORT Status fmi2SetReal(void *c, const Reference r[], size_t n, const double v[]) {
+  SLAVE; return set_block(m, r, n, v) ? OK : set(m, REAL, r, n, v, NULL); }
+EXPORT Status fmi2GetInteger(void *c, const Reference r[], size_t n, int v[]) { SLAVE; return get(m, INTEGER, r, n, NULL, v); }
+EXPORT Status fmi2SetInteger(void *c, const Reference r[], size_t n, const int v[]) { SLAVE; return set(m, INTEGER, r, n, NULL, v); }
+EXPORT Status fmi2GetBoolean(void *c, const Reference r[], size_t n, int v[]) { SLAVE; return get(m, BOOLEAN, r, n, NULL, v); }
+EXPORT Status fmi2SetBoolean(void *c, const Reference r[], size_t n, const int v[]) { SLAVE; return set(m, BOOLEAN, r, n, NULL, v); }
+EXPORT Status fmi2GetString(void *c, const Reference r[], size_t n, Text v[]) { SLAVE; return n ? refuse(m, "this FMU has no string") : OK; }
+EXPORT Status fmi2SetString(void *c, const Reference r[], size_t n, const Text v[]) { SLAVE; return n ? refuse(m, "this FMU has no string") : OK; }
+
+/* --- complete state; serialized as seal (mark, checksum), clock (phase, time), header of the component, w, x, k */
+
+enum { SEAL = 12, CLOCK = 12, BUFFERS = 8 * (NW + NX + NK), SERIALIZED = SEAL + CLOCK + sizeof HEADER + BUFFERS };
+
+static uint32_t checksum(const unsigned char *bytes, size_t n) { /* the CRC-32 of zlib */
+  uint32_t table[256], sum = ~0u;
+  for (uint32_t i = 0; i < 256; i++) {
+    table[i] = i;
+    for (int bit = 0; bit < 8; bit++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xEDB88320u : 0);
+  }
+  for (size_t i = 0; i < n; i++) sum = sum >> 8 ^ table[(sum ^ bytes[i]) & 255];
+  return ~sum;
+}
+
+static void carry(void *field, char **at, size_t n, int out) { /* one field of a state, out into bytes or in from them */
+  if (out) memcpy(*at, field, n); else memcpy(field, *at, n);
+  *at += n;
+}
+
+static void carry_fields(State *s, char *at, int out) {
+  carry(&s->phase, &at, sizeof s->phase, out);
+  carry(&s->time, &at, sizeof s->time, out);
+  if (out) memcpy(at, HEADER, sizeof HEADER);
+  at += sizeof HEADER;
+  carry(s->w, &at, 8 * NW, out);
+  carry(s->x, &at, 8 * NX, out);
+  carry(s->k, &at, 8 * NK, out);
+}
+
+static State *as_state(void *state) { State *s = state; return s && s->mark == MARK ? s : NULL; }
+
+EXPORT Status fmi2GetFMUstate(void *c, void **state) {
+  SLAVE;
+  if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
+  memcpy(*state, &m->s, sizeof(State));
+  return OK;
+}
+
+EXPORT Status fmi2SetFMUstate(void *c, void *state) {
+  SLAVE;
+  if (!as_state(state)) return refuse(m, DAMAGED);
+  memcpy(&m->s, state, sizeof(State));
+  m->stale = m->s.phase <= INITIALISING ? STATE : NOTHING;
+  m->previewed = 0;
+  return OK;
+}
+
+EXPORT Status fmi2FreeFMUstate(void *c, void **state) {
+  SLAVE;
+  if (state) { free(*state); *state = NULL; }
+  return OK;
+}
+
+EXPORT Status fmi2SerializedFMUstateSize(void *c, void *state, size_t *n) {
+  SLAVE;
+  *n = SERIALIZED;
+  return OK;
+}
+
+EXPORT Status fmi2SerializeFMUstate(void *c, void *state, char bytes[], size_t n) {
+  SLAVE;
+  if (!as_state(state)) return refuse(m, DAMAGED);
+  if (n < SERIALIZED) { because(m, "a serialized state has %d bytes; there is room for %zu", (int)SERIALIZED, n); return refused(m); }
+  carry_fields(state, bytes + SEAL, 1);
+  uint32_t sum = checksum((unsigned char *)bytes + SEAL, SERIALIZED - SEAL);
+  memcpy(bytes, "rockslav", 8);
+  memcpy(bytes + 8, &sum, 4);
+  return OK;
+}
+
+EXPORT Status fmi2DeSerializeFMUstate(void *c, const char bytes[], size_t n, void **state) {
+  SLAVE;
+  uint32_t sum = n < SEAL + CLOCK ? 0 : checksum((unsigned char *)bytes + SEAL, n - SEAL);
+  if (n < SEAL + CLOCK || memcmp(bytes, "rockslav", 8) || memcmp(bytes + 8, &sum, 4)) return refuse(m, DAMAGED);
+  if (n != SERIALIZED || memcmp(bytes + SEAL + CLOCK, HEADER, sizeof HEADER)) return refuse(m, FOREIGN);
+  if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
+  ((State *)*state)->mark = MARK;
+  carry_fields(*state, (char *)bytes + SEAL, 0);
+  return OK;
+}
+
+/* --- what this FMU has not, as its description says */
+
+EXPORT Status fmi2GetDirectionalDerivative(void *c, const Reference u[], size_t nu, const Reference k[], size_t nk, const double dk[],
+                                           double du[]) { SLAVE; return refuse(m, "this FMU has no directional derivatives"); }
+EXPORT Status fmi2SetRealInputDerivatives(void *c, const Reference r[], size_t n, const int order[], const double v[]) {
+  SLAVE; return refuse(m, "this FMU does not interpolate its inputs"); }
+EXPORT Status fmi2GetRealOutputDerivatives(void *c, const Reference r[], size_t n, const int order[], double v[]) {
+  SLAVE; return refuse(m, "this FMU has no derivatives of its outputs"); }
+EXPORT Status fmi2CancelStep(void *c) { SLAVE; return refuse(m, "no step is under way: steps end before fmi2DoStep returns"); }
+EXPORT Status fmi2GetStatus(void *c, int kind, Status *v) { return DISCARD; }
+EXPORT Status fmi2GetIntegerStatus(void *c, int kind, int *v) { return DISCARD; }
+EXPORT Status fmi2GetStringStatus(void *c, int kind, Text *v) { return DISCARD; }
+EXPORT Status fmi2GetRealStatus(void *c, int kind, double *v) { /* 2: time of the last step that succeeded */
+  SLAVE;
+  if (kind == 2) *v = m->s.time;
+  return kind == 2 ? OK : DISCARD;
+}
+EXPORT Status fmi2GetBooleanStatus(void *c, int kind, int *v) { /* 3: whether the slave wants to end */
+  if (kind == 3) *v = 0;
+  return kind == 3 ? OK : DISCARD;
+}
