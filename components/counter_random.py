@@ -24,7 +24,18 @@ def mix(z):
 
 
 @kernel
+def stream(seed, number):
+    """Start of the stream ``number`` among those of ``seed``, for :func:`draw`."""
+    return mix(mix((np.uint64(seed) + _ONE) * _STREAM) + mix((np.uint64(number) + _ONE) * _STREAM))
+
+
+@kernel
+def draw(start, counter):
+    """Number ``counter`` of the stream that begins with ``start``, uniform in [0, 1)."""
+    return float(mix(start + (np.uint64(counter) + _ONE) * _STREAM) >> _11) * _UNIT
+
+
+@kernel
 def uniform(seed, counter):
     """Number ``counter`` of stream ``seed``, uniform in [0, 1)."""
-    start = mix((np.uint64(seed) + _ONE) * _STREAM)
-    return float(mix(start + (np.uint64(counter) + _ONE) * _STREAM) >> _11) * _UNIT
+    return draw(mix((np.uint64(seed) + _ONE) * _STREAM), counter)
