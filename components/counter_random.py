@@ -26,7 +26,7 @@ def mix(z):
 @kernel
 def stream(seed, number):
     """Start of the stream ``number`` among those of ``seed``, for :func:`draw`."""
-    return mix(mix((np.uint64(seed) + _ONE) * _STREAM) + mix((np.uint64(number) + _ONE) * _STREAM))
+    return mix(mix((np.uint64(seed) + _ONE) * _STREAM) + (np.uint64(number) + _ONE) * _STREAM)
 
 
 @kernel

@@ -36,9 +36,9 @@ from .declarations import (
 from .flight import landing, move, travel
 from .geometry import height_above, line_below, path_y
 from .receiver import departure, entrance, inside
-from .restitution import contact_tilt, rebound, restitution
+from .restitution import collide, restitution
 from .sampling import normal_tail, variate
-from .sliding_rolling import law, start
+from .sliding_rolling import law, slip_of, start
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -254,7 +254,7 @@ def end_of_line_motion(world, b):
     event, wait = NODE, travel(d * (bound - b[BODY.x]) / c, u, acceleration)
     if acceleration < 0.0 and -u / acceleration < wait:
         event, wait = HALT, -u / acceleration
-    slip, rate = u + spin, acceleration + turning
+    slip, rate = slip_of(u, spin), acceleration + turning
     if b[BODY.mode] == SLIDING and slip * rate < 0.0 and -slip / rate < wait:
         event, wait = GRIP, -slip / rate
     limit = take_off_speed(world, c, b)
@@ -351,8 +351,8 @@ def bounce(world, j, u, v, omega, gravity):
     g, d = world.ground, (1.0 if u >= 0.0 else -1.0)
     e, delta = restitution(-v, world.mass, world.radius, gravity, g[at + GROUND.strength], g[at + GROUND.stiffness],
                            g[at + GROUND.hardening], world.area, world.treatment)
-    s, c = contact_tilt(delta, world.radius, u, v, e, world.capped)
-    after_u, after_v, after_omega = rebound(d * u, v, d * omega, e, s, c, g[at + GROUND.friction], world.radius, world.ratio)
+    after_u, after_v, after_omega = collide(d * u, v, d * omega, e, delta, world.capped, g[at + GROUND.friction], world.radius,
+                                            world.ratio)
     return d * after_u, after_v, d * after_omega
 
 

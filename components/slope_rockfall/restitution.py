@@ -96,3 +96,23 @@ def rebound(u, v, omega, e, s, c, friction, radius, ratio):
     pressed = -pushed / locking
     slid = u - pressed * (s + side * friction * c)
     return slid, -e * v, omega - side * friction * pressed / (ratio * radius)
+
+
+@kernel
+def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
+    """u, v, omega after an impact with u >= 0 and v < 0.
+
+    capped: no impact adds energy. What the cap of phi leaves is a rock with strong back-spin on ground too soft to carry it, which
+    would wedge itself upwards; it meets the ground without tilt, and then friction and restitution can only take energy.
+    """
+    s, c = contact_tilt(delta, radius, u, v, e, capped)
+    after = rebound(u, v, omega, e, s, c, friction, radius, ratio)
+    if capped and motion(after[0], after[1], after[2], radius, ratio) > motion(u, v, omega, radius, ratio):
+        after = rebound(u, v, omega, e, 0.0, 1.0, friction, radius, ratio)
+    return after
+
+
+@kernel
+def motion(u, v, omega, radius, ratio):
+    """Kinetic energy per half mass (m2/s2)."""
+    return u * u + v * v + ratio * radius * radius * omega * omega

@@ -40,14 +40,21 @@ def sliding(along, normal, drag, mass, s, c, across):
 
 
 @kernel
+def slip_of(u, spin):
+    """Speed (m/s) of the contact point; zero if it is rounding. spin: omega r."""
+    slip = u + spin
+    return slip if abs(slip) > _SLIP * (abs(u) + abs(spin)) else 0.0
+
+
+@kernel
 def law(u, omega, along, normal, drag, friction, mass, radius, s, c, ratio):
     """Mode, acceleration (m/s2), P and S (N) of a rock that moves with u >= 0, or is about to.
 
     Equation (4) as |S| <= mu P: the printed form calls a rock that decelerates a sliding one.
     """
-    slip = u + radius * omega
+    slip = slip_of(u, radius * omega)
     acceleration, p, shear = rolling(along, normal, drag, mass, s, c, ratio)
-    if abs(slip) > _SLIP * (u + abs(radius * omega)):
+    if slip != 0.0:
         across = math.copysign(friction, slip)
     elif abs(shear) <= friction * p:
         return ROLLING, acceleration, p, shear
