@@ -43,7 +43,7 @@ next event; direction of motion, R_o, sine and cosine of phi, and the forces P, 
 number of random numbers drawn, of events in a row without progress, and of impacts; dissipated energies and work of the
 inputs (J); number of hand-overs and time of the last."""
 
-_POINTS = ((0, 100), (6, 96), (12, 84), (20, 76), (26, 64), (34, 58), (40, 50), (47, 45), (54, 36), (62, 31), (70, 24), (78, 19),
+EXAMPLE = ((0, 100), (6, 96), (12, 84), (20, 76), (26, 64), (34, 58), (40, 50), (47, 45), (54, 36), (62, 31), (70, 24), (78, 19),
            (88, 13), (98, 9), (110, 5), (140, 4))
 """An example slope of 100 m height (m); its upper 60 % are rock, the rest is soil."""
 _RADIUS, _DENSITY = 0.5, 2600.0
@@ -53,9 +53,9 @@ _TABLE_1 = "Ushiro, table 1"
 
 def _node(number: int, sizes: Sizes, axis: int) -> float:
     """Coordinate of node ``number`` of the example slope, divided into the cells of the component."""
-    place = number * (len(_POINTS) - 1) / sizes["cells"]
-    first = min(int(place), len(_POINTS) - 2)
-    low, high = _POINTS[first][axis], _POINTS[first + 1][axis]
+    place = number * (len(EXAMPLE) - 1) / sizes["cells"]
+    first = min(int(place), len(EXAMPLE) - 2)
+    low, high = EXAMPLE[first][axis], EXAMPLE[first + 1][axis]
     return low + (place - first) * (high - low)
 
 
@@ -123,8 +123,8 @@ LAYOUT = Layout(
         param("receiver.top", "upper side of the receiver", 0.0, "m"),
         internal_step(1e-5),
         # the slope
-        param("profile.x", "x of the slope's first node", float(_POINTS[0][0]), "m", source=_TABLE_1),
-        param("profile.y", "y of the slope's first node", float(_POINTS[0][1]), "m", source=_TABLE_1),
+        param("profile.x", "x of the slope's first node", float(EXAMPLE[0][0]), "m", source=_TABLE_1),
+        param("profile.y", "y of the slope's first node", float(EXAMPLE[0][1]), "m", source=_TABLE_1),
         param("end.x", "x of the cell's right node", _end_x, "m", size="cells", source=_TABLE_1),
         param("end.y", "y of the cell's right node", _end_y, "m", size="cells", source=_TABLE_1),
         _material("strength", "q_d: ultimate bearing pressure of the ground", 3000 * kN, 800 * kN, "Pa", minimum=1e-3),

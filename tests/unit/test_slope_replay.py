@@ -105,11 +105,10 @@ def test_records_agree_with_the_trajectory(instance):
     """Search lines, stations and largest values of one trial against the same trial read at many instants."""
     passages, peaks, outcomes = run_trials(instance, 1, first=4, left=0.0, right=140.0, lines=LINES, stations=141)
     rock = moving(trial=4)
-    rows = []
+    rows, columns = [], ("position.x", "height", "velocity.x", "velocity.y", "angular_velocity", "energy.kinetic", "mode")
     for i in range(60_000):
         rock.step(i * 2.5e-4, 2.5e-4)
-        rows.append([rock[name] for name in ("position.x", "height", "velocity.x", "velocity.y", "angular_velocity", "energy.kinetic",
-                                             "mode")])
+        rows.append([rock[name] for name in columns])
         if rock["position.x"] > 139.9:
             break
     x, height, vx, vy, omega, kinetic, modes = np.array(rows).T
