@@ -169,11 +169,17 @@ def record_stations(world, first, distance, wait, b, peaks):
     direction = 1.0 if stop >= start else -1.0
     low = max(0, math.ceil((min(start, stop) - first) / distance))
     high = min(count - 1, math.floor((max(start, stop) - first) / distance))
+    if high < low:
+        return
+    j = line_below(first + low * distance, world.lines, world.path)
     for i in range(low, high + 1):
-        time = min(wait, passing(start, b[BODY.vx], b[BODY.ax], first + i * distance, direction))
+        place = first + i * distance
+        while world.path[j * len(PATH) + PATH.right] <= place:
+            j += 1
+        time = min(wait, passing(start, b[BODY.vx], b[BODY.ax], place, direction))
         x, y, vx, vy = at(time, b)
         square = vx * vx + vy * vy
-        peaks[i, PEAK.height] = max(peaks[i, PEAK.height], clearance(world, x, y))
+        peaks[i, PEAK.height] = max(peaks[i, PEAK.height], height_above(j, x, y, world.path))
         peaks[i, PEAK.speed] = max(peaks[i, PEAK.speed], math.sqrt(square))
         peaks[i, PEAK.kinetic] = max(peaks[i, PEAK.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha]))
 
