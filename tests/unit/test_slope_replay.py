@@ -130,5 +130,14 @@ def test_records_agree_with_the_trajectory(instance):
             assert peaks[0, station, PEAK.speed] == pytest.approx(speed[i], rel=2e-2)
 
 
+def test_a_search_line_may_be_oblique_and_ends_at_its_points(instance):
+    lines = [(62, 0, 70, 200), (60, 190, 60, 200)]
+    passages, _, _ = run_trials(instance, 50, lines=lines)
+    x, y = passages[:, 0, PASSAGE.x], passages[:, 0, PASSAGE.y]
+    assert np.all(passages[:, 0, PASSAGE.count] >= 1)
+    np.testing.assert_allclose((x - 62) / 8, y / 200, rtol=1e-9)
+    assert np.all(passages[:, 1, PASSAGE.count] == 0)
+
+
 def test_catalogue_has_it():
     assert component("SlopeRockfall") is SLOPE
