@@ -9,7 +9,7 @@ from components.catalogue import component
 from components.counter_random import stream
 from components.slope_rockfall.declarations import BODY
 from components.slope_rockfall.events import begin, happen, world
-from components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, trials
+from components.slope_rockfall.trajectory import BARRIER, OUTCOME, PASSAGE, PEAK, trials
 
 SLOPE = component("SlopeRockfall")
 G = 9.80665
@@ -51,12 +51,14 @@ def along(instance, angle):
     return instance["velocity.x"] * math.cos(angle) - instance["velocity.y"] * math.sin(angle)
 
 
-def run_trials(instance, count, first=0, seed=1, left=-1e9, right=1e9, lines=(), stations=0, station_distance=1.0):
+def run_trials(instance, count, first=0, seed=1, left=-1e9, right=1e9, lines=(), barriers=None, stations=0,
+               station_distance=1.0):
     """Passages, peaks and outcomes of consecutive trials."""
     lines = np.array(lines, float).reshape(-1, 4)
     passages, peaks = np.zeros((count, len(lines), len(PASSAGE))), np.zeros((count, stations, len(PEAK)))
     outcomes = np.zeros((count, len(OUTCOME)))
-    trials(seed, first, left, right, lines, instance["profile.x"], station_distance, instance.w, instance.x, instance.k,
+    stops = np.full((len(lines), len(BARRIER)), -1.0) if barriers is None else np.array(barriers, float)
+    trials(seed, first, left, right, lines, stops, instance["profile.x"], station_distance, instance.w, instance.x, instance.k,
            np.zeros(len(BODY)), passages, peaks, outcomes)
     return passages, peaks, outcomes
 

@@ -36,12 +36,12 @@ GROUND = Ground(*range(9))
 
 Body = namedtuple("Body", "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction roughness sin "
                           "cos pressure shear drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
-                          " handovers handover_time")
-BODY = Body(*range(33))
+                          " handovers handover_time seed trial")
+BODY = Body(*range(35))
 """The rock at its last event: time (s), state of motion, constant accelerations until the next event, mode, line of the path; the
 next event; direction of motion, R_o, sine and cosine of phi, and the forces P, S, C (N) of the line motion; limit speed V_lim;
 number of random numbers drawn, of events in a row without progress, and of impacts; dissipated energies and work of the
-inputs (J); number of hand-overs and time of the last."""
+inputs (J); number of hand-overs and time of the last; which trial it is."""
 
 EXAMPLE = ((0, 100), (6, 96), (12, 84), (20, 76), (26, 64), (34, 58), (40, 50), (47, 45), (54, 36), (62, 31), (70, 24), (78, 19),
            (88, 13), (98, 9), (110, 5), (140, 4))
@@ -97,6 +97,8 @@ LAYOUT = Layout(
         # chance
         count("seed", "number of the sample: trials of one seed belong together", 1, minimum=0, maximum=2**31 - 1),
         count("trial", "number of the trial in the sample", 0, minimum=0, maximum=2**31 - 1),
+        count("hypercube", "Latin hypercube: so many trials in a row share out the range of each of their random numbers; 0: "
+              "independent trials", 0, minimum=0, maximum=2**31 - 1),
         param("limit_speed.mean", "V_lim: speed at which a rock in line motion takes off, mean", 12.0, "m/s", minimum=0.0,
               source=_TABLE_1),
         param("limit_speed.deviation", "V_lim, standard deviation", 2.0, "m/s", minimum=0.0, source=_TABLE_1),

@@ -7,8 +7,10 @@ for it, and however often outputs are read on the way.
 import math
 from collections import namedtuple
 
+import numpy as np
+
 from ..compilation import kernel
-from ..counter_random import draw, stream
+from ..counter_random import draw, mix, shuffled, stream
 from ..ports import view
 from .declarations import (
     ABSOLUTE,
@@ -52,12 +54,15 @@ _INSTANT = 1e-12
 """Time (s) between two events that counts as none."""
 _STEEPEST = 0.5 * math.pi - 1e-3
 """Inclination (rad) up to which K_s may tilt a cell."""
+_ORDERS = 1 << 32
+"""Streams of random numbers from here on, beyond those of all trials, are orders of the strata of Latin hypercubes."""
 _SAME = 1e-12
 """Turn (rad) at a node that is none."""
 
 World = namedtuple("World", "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean limit_deviation "
-                            "limit_kind roughness_kind tilt_kind tail receiver left right bottom top")
-"""What does not change during a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated normal."""
+                            "limit_kind roughness_kind tilt_kind tail hypercube receiver left right bottom top")
+"""What does not change during a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated normal.
+hypercube: trials of a Latin hypercube, or 0."""
 
 
 @kernel
@@ -76,7 +81,7 @@ def world(w, x, k):
                  math.pi * w[V.radius] * w[V.radius] * w[V.area_factor], int(w[V.restitution_gravity]),
                  w[V.tilt_cap] != 0.0, w[V.tilt_meaning] == ABSOLUTE, w[V.limit_speed_mean], w[V.limit_speed_deviation],
                  int(w[V.limit_speed_distribution]), int(w[V.roughness_distribution]), int(w[V.tilt_distribution]),
-                 normal_tail(w[V.truncation]), w[V.receiver_present] != 0.0, w[V.receiver_left], w[V.receiver_right],
+                 normal_tail(w[V.truncation]), int(w[V.hypercube]), w[V.receiver_present] != 0.0, w[V.receiver_left], w[V.receiver_right],
                  w[V.receiver_bottom], w[V.receiver_top])
 
 
@@ -87,7 +92,20 @@ def sample(world, kind, mean, deviation, source, b):
     """The trial's next variate. source: its stream of random numbers."""
     number = b[BODY.draws]
     b[BODY.draws] = number + 1.0
-    return variate(kind, mean, deviation, world.tail, draw(source, number))
+    return variate(kind, mean, deviation, world.tail, stratified(world, number, draw(source, number), b))
+
+
+@kernel
+def stratified(world, number, u, b):
+    """The trial's uniform number ``number`` from u in [0, 1): u itself, or moved into the trial's stratum of the Latin hypercube.
+
+    Of the ``hypercube`` trials of one hypercube each has a stratum of its own, in an order of its own for every number.
+    """
+    if world.hypercube == 0:
+        return u
+    block, member = int(b[BODY.trial]) // world.hypercube, int(b[BODY.trial]) % world.hypercube
+    key = stream(int(b[BODY.seed]), _ORDERS + block)
+    return (shuffled(member, world.hypercube, key + mix(np.uint64(number))) + u) / world.hypercube
 
 
 @kernel
@@ -124,7 +142,7 @@ def begin(world, seed, trial, w, b):
         b[i] = 0.0
     b[BODY.x], b[BODY.y], b[BODY.angle] = w[V.position0_x], w[V.position0_y], w[V.angle0]
     b[BODY.vx], b[BODY.vy], b[BODY.omega] = w[V.velocity0_x], w[V.velocity0_y], w[V.angular_velocity0]
-    b[BODY.handover_time] = NEVER
+    b[BODY.handover_time], b[BODY.seed], b[BODY.trial] = NEVER, seed, trial
     source = stream(seed, trial)
     limit = sample(world, world.limit_kind, world.limit_mean, world.limit_deviation, source, b)
     b[BODY.limit_speed] = max(limit, 0.0)

@@ -10,6 +10,8 @@ from .geometry import node
 from .sampling import widest
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ..component import Instance
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -101,15 +103,19 @@ def first_fault(w, k):
     return common_fault(w)
 
 
-def problems(instance: "Instance") -> list[str]:
-    """Every fault of every cell, in words, and those of the other parameters."""
+def cell_problems(instance: "Instance") -> "Iterator[tuple[int, str]]":
+    """Every fault of every cell: number of the cell, from 0, and what is wrong in words."""
     w, k = instance.w, instance.k
-    found = []
     for c in range(instance.sizes["cells"]):
         facts = {"cell": c + 1, "end": instance["end.x"][c], "roughness": instance["roughness"][c], "tilt": instance["tilt"][c],
                  "friction": instance["friction"][c], "widest": widest_roughness(c, w, k), "locking": locking(c, w, k)}
-        found += [f"cell {c + 1} ({_FACTS[fault].format(**facts)}): {rule}" for fault, rule in RULES.items()
-                  if has_fault(fault, c, w, k)]
-    if common := common_fault(w):
+        yield from ((c, f"cell {c + 1} ({_FACTS[fault].format(**facts)}): {rule}") for fault, rule in RULES.items()
+                    if has_fault(fault, c, w, k))
+
+
+def problems(instance: "Instance") -> list[str]:
+    """Every fault of every cell, in words, and those of the other parameters."""
+    found = [text for _, text in cell_problems(instance)]
+    if common := common_fault(instance.w):
         found.append(instance.message(common))
     return found

@@ -7,7 +7,7 @@ of threads; each needs its own ``body``.
 import math
 from collections import namedtuple
 
-from ..compilation import kernel
+from ..compilation import kernel, released
 from ..counter_random import stream
 from .declarations import BODY, LAYOUT, NEVER, PATH, REST
 from .events import begin, happen, world
@@ -16,28 +16,34 @@ from .geometry import height_above, line_below
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-RESTED, PASSED_RIGHT, PASSED_LEFT, UNFINISHED, BELOW = range(5)
-"""How a trial ends: at rest, beyond the right or left end, not within :data:`MOST_EVENTS`, or not at all for it starts below."""
+RESTED, PASSED_RIGHT, PASSED_LEFT, UNFINISHED, BELOW, STOPPED = range(6)
+"""How a trial ends: at rest, beyond the right or left end, not within :data:`MOST_EVENTS`, not at all for it starts below, or
+stopped by a barrier."""
 MOST_EVENTS = 100_000
 
 Passage = namedtuple("Passage", "time x y height speed omega kinetic count")
 PASSAGE = Passage(*range(8))
 """What is kept of the first passage of a search line, and the number of passages."""
+Barrier = namedtuple("Barrier", "reach capacity")
+BARRIER = Barrier(*range(2))
+"""What makes a search line a barrier: it stops a rock that passes it not farther than ``reach`` (m) from its first point, with no
+more kinetic energy than its capacity (J). A negative reach: it stops none."""
 Peak = namedtuple("Peak", "height speed kinetic")
 PEAK = Peak(*range(3))
 """Largest values at a station; negative where the rock did not come by."""
-Outcome = namedtuple("Outcome", "end x y time impacts events height speed kinetic limit_speed")
-OUTCOME = Outcome(*range(10))
-"""Of a trial: how and where it ended, numbers of impacts and events, the largest values on the way, and V_lim."""
+Outcome = namedtuple("Outcome", "end x y time impacts events height speed kinetic limit_speed barrier")
+OUTCOME = Outcome(*range(11))
+"""Of a trial: how and where it ended, numbers of impacts and events, the largest values on the way, V_lim, and the number of the
+search line that stopped it, or -1."""
 
 
 @kernel
-def trial(seed, number, left, right, lines, first_station, station_distance, w, x, k, body, passages, peaks, outcome):
+def trial(seed, number, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages, peaks, outcome):
     """One trial, from the buffers of a prepared instance (:func:`.kernel.prepare`), none of which it changes.
 
-    left, right: x (m) at which it ends. lines: (n, 4), search lines x1, y1, x2, y2 (m). Stations are vertical lines at x =
-    first_station + i * station_distance. body: (len(BODY),) scratch. passages: (n, len(PASSAGE)), peaks: (m, len(PEAK)) and
-    outcome: (len(OUTCOME),) are overwritten.
+    left, right: x (m) at which it ends. lines: (n, 4), search lines x1, y1, x2, y2 (m); barriers: (n, len(BARRIER)).
+    Stations are vertical lines at x = first_station + i * station_distance. body: (len(BODY),) scratch. passages: (n,
+    len(PASSAGE)), peaks: (m, len(PEAK)) and outcome: (len(OUTCOME),) are overwritten.
     """
     constants, source = world(w, x, k), stream(seed, number)
     clear_records(passages, peaks, outcome)
@@ -48,6 +54,10 @@ def trial(seed, number, left, right, lines, first_station, station_distance, w, 
     events, end = 0, UNFINISHED
     while end == UNFINISHED and events < MOST_EVENTS:
         wait, end = stretch(left, right, body)
+        until, barrier = first_stop(constants, lines, barriers, wait, body)
+        if barrier >= 0:
+            wait, end, outcome[OUTCOME.barrier] = until, STOPPED, barrier
+            note_passage(constants, barrier, until, body, passages)
         record_lines(constants, lines, wait, body, passages)
         record_stations(constants, first_station, station_distance, wait, body, peaks)
         record_peaks(constants, wait, body, outcome)
@@ -70,6 +80,7 @@ def clear_records(passages, peaks, outcome):
             peaks[i, q] = -1.0
     for q in range(outcome.size):
         outcome[q] = 0.0
+    outcome[OUTCOME.barrier] = -1.0
 
 
 @kernel
@@ -157,6 +168,30 @@ def note_passage(world, i, time, b, passages):
     passages[i, PASSAGE.kinetic] = energy(world, vx * vx + vy * vy, omega)
 
 
+# --- barriers ---
+
+@kernel
+def first_stop(world, lines, barriers, wait, b):
+    """When a barrier stops the rock within ``wait`` seconds from the last event, and its number; -1 if none does."""
+    number = -1
+    for i in range(lines.shape[0]):
+        if barriers[i, BARRIER.reach] >= 0.0:
+            for direction in (1.0, -1.0):
+                time = meeting(lines[i], direction, b)
+                if time < wait and holds(world, lines[i], barriers[i], time, b):
+                    wait, number = time, i
+    return wait, number
+
+
+@kernel
+def holds(world, line, barrier, time, b):
+    """Whether a barrier stops the rock that meets it ``time`` seconds after the last event."""
+    x, y, vx, vy = at(time, b)
+    away = math.sqrt((x - line[0]) * (x - line[0]) + (y - line[1]) * (y - line[1]))
+    load = energy(world, vx * vx + vy * vy, b[BODY.omega] + time * b[BODY.alpha])
+    return away <= barrier[BARRIER.reach] and load <= barrier[BARRIER.capacity]
+
+
 # --- stations ---
 
 @kernel
@@ -219,9 +254,9 @@ def highest(world, wait, b):
 
 # --- campaigns ---
 
-@kernel
-def trials(seed, first, left, right, lines, first_station, station_distance, w, x, k, body, passages, peaks, outcomes):
+@released
+def trials(seed, first, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages, peaks, outcomes):
     """Trials number ``first`` on, as many as ``outcomes`` has rows; passages and peaks have a row each too. See :func:`trial`."""
     for i in range(outcomes.shape[0]):
-        trial(seed, first + i, left, right, lines, first_station, station_distance, w, x, k, body, passages[i], peaks[i],
+        trial(seed, first + i, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages[i], peaks[i],
               outcomes[i])
