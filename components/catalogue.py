@@ -8,6 +8,7 @@ _FOLDERS = {
     "FallingRock": "falling_rock",
     "SandCushion": "sand_cushion",
     "RBSMBeam": "rbsm_beam",
+    "SlopeRockfall": "slope_rockfall",
 }
 
 NAMES = tuple(_FOLDERS)

@@ -97,8 +97,13 @@ def inlined(function: F) -> F:
     return _compiled(function, inline="always")
 
 
-def _compiled(function: F, inline: str) -> F:
-    dispatcher = njit(error_model="numpy", inline=inline, _nrt=False)(function)
+def released(function: F) -> F:
+    """A :func:`kernel` during which other threads of Python run: for calls from Python that take milliseconds."""
+    return _compiled(function, inline="never", nogil=True)
+
+
+def _compiled(function: F, inline: str, nogil: bool = False) -> F:
+    dispatcher = njit(error_model="numpy", inline=inline, nogil=nogil, _nrt=False)(function)
     if cache_directory() is not None:
         dispatcher._cache = _PackageCache(function)
     return dispatcher

@@ -53,6 +53,7 @@ class Component:
     evaluate(w, x, k) -> status: outputs at the start, from state and inputs; checks that they fit together.
     step(t, h, w, x, k) -> status: advance by ``h`` from time ``t`` (s) with the inputs in ``w``.
     faults: message of each status other than OK; ``{name}`` stands for the value of the scalar variable ``name``.
+    check: everything that is wrong with parameters which are in range one by one, in words.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Component:
     folder: Path
     sizes: Mapping[str, Size] = field(default_factory=dict)
     faults: Mapping[int, str] = field(default_factory=dict)
+    check: Callable[["Instance"], list[str]] | None = None
     default_step: float = 1e-4
     default_stop_time: float = 0.02
 
@@ -152,13 +154,13 @@ class Instance:
         return (self.k if integer else self.x)[self.k[entry]:self.k[entry] + self.k[entry + 1]]
 
     def problems(self) -> list[str]:
-        """Everything that is wrong with the present parameters and inputs: not a number, or out of range."""
+        """Everything that is wrong with the present parameters and inputs: not a number, out of range, or refused together."""
         found = []
         names = list(self.references)
         for index, (variable, _) in enumerate(self._elements()):
             if variable.causality is not Causality.OUTPUT:
                 found += value_problems(variable, names[index], float(self.w[index]))
-        return found
+        return found or (self.component.check(self) if self.component.check else [])
 
     def initialise(self) -> None:
         """Check the parameters, compute the state and the outputs at the start.

@@ -89,7 +89,7 @@ class Variable:
         return [f"{self.name}[{i + 1}]" for i in range(sizes[self.size])]
 
 
-def param(name: str, description: str, start: float, unit: str = "1", **rest: Any) -> Variable:
+def param(name: str, description: str, start: Start, unit: str = "1", **rest: Any) -> Variable:
     """Declare a real parameter: set before the initialisation, fixed afterwards."""
     return Variable(name, Causality.PARAMETER, description, unit, start, **rest)
 

@@ -51,6 +51,7 @@ UNITS: dict[str, Unit] = {
     "kg/m3": Unit("Density", {"kg": 1, "m": -3}),
     "N": Unit("Force", {"kg": 1, "m": 1, "s": -2}),
     "N/m": Unit("Stiffness", {"kg": 1, "s": -2}),
+    "N/m3": Unit("ForcePerVolume", {"kg": 1, "m": -2, "s": -2}),
     "N.m": Unit("Torque", {"kg": 1, "m": 2, "s": -2}),
     "J": Unit("Energy", {"kg": 1, "m": 2, "s": -2}),
     "Pa": Unit("Pressure", {"kg": 1, "m": -1, "s": -2}),

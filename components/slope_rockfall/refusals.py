@@ -1,0 +1,121 @@
+"""What the initialisation refuses: profiles, materials and starts that the model has no answer for."""
+
+import math
+from typing import TYPE_CHECKING
+
+from ..compilation import kernel
+from ..ports import view
+from .declarations import LAYOUT, LOGNORMAL
+from .geometry import node
+from .sampling import widest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..component import Instance
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+FOLDED, STEEP, ROUGH, LOCKED, ROUGHNESS_SIGN, TILT_SIGN = range(1, 7)
+"""Faults of a cell, by number."""
+LIMIT_SIGN, RECEIVER_EMPTY, START_BELOW = range(7, 10)
+
+RULES = {
+    FOLDED: "its right node must lie to the right of its left node, a profile runs from left to right without folding back: order "
+            "the nodes by x and remove repeated ones",
+    STEEP: "it is steeper than 89 degrees; a vertical face needs some horizontal length: move one of its nodes",
+    ROUGH: "roughness with its deviation reaches 2, the whole rock: reduce one of them",
+    LOCKED: "mu tan(phi) with the largest roughness is 1 or more, and a sliding rock has no equation of motion: reduce friction, "
+            "roughness or its deviation",
+    ROUGHNESS_SIGN: "only a positive roughness has a lognormal distribution: choose another roughness.distribution",
+    TILT_SIGN: "only a positive tilt has a lognormal distribution: choose another tilt.distribution",
+}
+"""What is wrong with a cell that has a fault, and what to do."""
+_FACTS = {
+    FOLDED: "end.x[{cell}] = {end:.6g} m", STEEP: "end.x[{cell}] = {end:.6g} m", TILT_SIGN: "tilt[{cell}] = {tilt:.6g}",
+    ROUGH: "roughness[{cell}] = {roughness:.6g}, largest {widest:.6g}", ROUGHNESS_SIGN: "roughness[{cell}] = {roughness:.6g}",
+    LOCKED: "friction[{cell}] = {friction:.6g}, roughness[{cell}] up to {widest:.6g}, mu tan(phi) = {locking:.6g}",
+}
+
+FAULTS = {fault: f"cell {{fault.cell}}: {rule}" for fault, rule in RULES.items()} | {
+    LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal distribution: choose another "
+                "limit_speed.distribution",
+    RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than receiver.right = {receiver.right} "
+                    "m, and receiver.bottom = {receiver.bottom} m less than receiver.top = {receiver.top} m",
+    START_BELOW: "the rock starts below the surface: its lowest point is at {height} m along the normal of cell {cell}; raise "
+                 "position0.y = {position0.y} m or set on_slope",
+}
+"""Messages of the kernel's statuses."""
+
+_STEEPEST = math.tan(math.radians(1.0))
+_ROUGHEST = 1.999
+
+
+@kernel
+def widest_roughness(c, w, k):
+    """Largest R_o of cell c."""
+    return widest(w[V.roughness_distribution], view(w, k, A.roughness)[c], view(w, k, A.roughness_deviation)[c], w[V.truncation])
+
+
+@kernel
+def locking(c, w, k):
+    """mu tan(phi) of cell c with its largest roughness."""
+    rough = min(max(widest_roughness(c, w, k), 0.0), _ROUGHEST)
+    return view(w, k, A.friction)[c] * math.sqrt(rough / (2.0 - rough))
+
+
+@kernel
+def has_fault(fault, c, w, k):
+    """Whether cell c has the fault of this number."""
+    x0, y0 = node(c, w, k)
+    x1, y1 = node(c + 1, w, k)
+    if fault == FOLDED:
+        return x1 <= x0
+    if fault == STEEP:
+        return 0.0 < x1 - x0 < _STEEPEST * abs(y1 - y0)
+    if fault == ROUGHNESS_SIGN:
+        return w[V.roughness_distribution] == LOGNORMAL and view(w, k, A.roughness)[c] <= 0.0
+    if fault == TILT_SIGN:
+        return w[V.tilt_distribution] == LOGNORMAL and view(w, k, A.tilt)[c] <= 0.0
+    if fault == ROUGH:
+        return widest_roughness(c, w, k) > _ROUGHEST
+    return widest_roughness(c, w, k) <= _ROUGHEST and locking(c, w, k) >= 1.0
+
+
+@kernel
+def common_fault(w):
+    """Fault of the parameters that belong to no cell, or 0."""
+    if w[V.limit_speed_distribution] == LOGNORMAL and w[V.limit_speed_mean] <= 0.0:
+        return LIMIT_SIGN
+    empty = w[V.receiver_left] >= w[V.receiver_right] or w[V.receiver_bottom] >= w[V.receiver_top]
+    return RECEIVER_EMPTY if w[V.receiver_present] != 0.0 and empty else 0
+
+
+@kernel
+def first_fault(w, k):
+    """Number of the first fault, or 0; the output fault.cell names its cell."""
+    w[V.fault_cell] = 0.0
+    for c in range(k[A.end_x + 1]):
+        for fault in range(FOLDED, LIMIT_SIGN):
+            if has_fault(fault, c, w, k):
+                w[V.fault_cell] = c + 1.0
+                return fault
+    return common_fault(w)
+
+
+def cell_problems(instance: "Instance") -> "Iterator[tuple[int, str]]":
+    """Every fault of every cell: number of the cell, from 0, and what is wrong in words."""
+    w, k = instance.w, instance.k
+    for c in range(instance.sizes["cells"]):
+        facts = {"cell": c + 1, "end": instance["end.x"][c], "roughness": instance["roughness"][c], "tilt": instance["tilt"][c],
+                 "friction": instance["friction"][c], "widest": widest_roughness(c, w, k), "locking": locking(c, w, k)}
+        yield from ((c, f"cell {c + 1} ({_FACTS[fault].format(**facts)}): {rule}") for fault, rule in RULES.items()
+                    if has_fault(fault, c, w, k))
+
+
+def problems(instance: "Instance") -> list[str]:
+    """Every fault of every cell, in words, and those of the other parameters."""
+    found = [text for _, text in cell_problems(instance)]
+    if common := common_fault(instance.w):
+        found.append(instance.message(common))
+    return found

@@ -1,0 +1,118 @@
+"""Impact on the ground: penetration, restitution, tilt of the contact, and the velocities after it. Equations (19)-(28).
+
+All in the frame of the cell, mirrored for a rock that moves up-slope so that u >= 0: u along the cell, v along its outward normal,
+omega positive against the direction of rolling.
+"""
+
+import math
+
+from ..compilation import kernel
+from .declarations import CONSISTENT, PRINTED
+
+_SERIES_BELOW = 0.02
+_LONGEST = 60
+
+
+@kernel
+def strain_work(a):
+    """a - 1 + exp(-a): work that the ground takes up to the penetration a = k delta / q_d, in units of q_d^2 A / k."""
+    if a < _SERIES_BELOW:
+        return a * a * (0.5 - a * (1.0 / 6.0 - a * (1.0 / 24.0 - a * (1.0 / 120.0 - a * (1.0 / 720.0 - a / 5040.0)))))
+    return a + math.expm1(-a)
+
+
+@kernel
+def penetration(energy, weight):
+    """Root a = k delta / q_d of a - 1 + exp(-a) - weight a = energy: equation (26), with gravity if weight > 0.
+
+    energy: kinetic energy k / (q_d^2 A); weight: m g cos(theta) / (q_d A), below 1. The left side is convex; from a start to the
+    right of its minimum Newton's method comes down to the root from above.
+    """
+    if energy <= 0.0 and weight <= 0.0:
+        return 0.0
+    high = (1.0 + energy) / (1.0 - weight)
+    soft = weight + math.sqrt(weight * weight + 2.0 * energy)
+    a = high if weight > 0.5 else min(high, soft * (1.0 + 0.25 * soft))
+    for _ in range(_LONGEST):
+        change = (strain_work(a) - weight * a - energy) / (-math.expm1(-a) - weight)
+        a -= change
+        if abs(change) <= 1e-15 * a:
+            break
+    return a
+
+
+@kernel
+def restitution(speed, mass, radius, gravity, strength, stiffness, hardening, area, treatment):
+    """Equations (26)-(28): coefficient of restitution e and penetration delta (m) of a rock with this normal speed (m/s).
+
+    gravity: its component along the normal, m/s2; treatment: PRINTED, NONE or CONSISTENT. The penetration ends at 2 r, where
+    the rock is all in the ground; then, and where the radicand is negative, e = 0: the rock stays embedded.
+    """
+    if speed <= 0.0:
+        return 0.0, 0.0
+    weight = mass * gravity / (strength * area) if treatment == CONSISTENT else 0.0
+    if weight >= 1.0:
+        return 0.0, 2.0 * radius
+    a = penetration(0.5 * mass * speed * speed * stiffness / (strength * strength * area), weight)
+    delta = a * strength / stiffness
+    if delta >= 2.0 * radius:
+        return 0.0, 2.0 * radius
+    force = -strength * area * math.expm1(-a)
+    radicand = hardening * force * force / (mass * stiffness * area)
+    if treatment in (PRINTED, CONSISTENT):
+        radicand -= 2.0 * gravity * delta
+    return (math.sqrt(radicand) / speed if radicand > 0.0 else 0.0), delta
+
+
+@kernel
+def contact_tilt(delta, radius, u, v, e, capped):
+    """Equation (20): sine and cosine of the angle phi of the contact force; phi = arccos(1 - delta / r) / 2.
+
+    capped: phi <= arctan(|u| / ((1 + e) |v|)), beyond which the normal force would throw the rock back and may add energy.
+    """
+    half = 0.5 * delta / radius
+    s, c = math.sqrt(half), math.sqrt(max(0.0, 1.0 - half))
+    across = (1.0 + e) * abs(v)
+    if capped and s * across > c * abs(u):
+        length = math.sqrt(across * across + u * u)
+        return abs(u) / length, across / length
+    return s, c
+
+
+@kernel
+def rebound(u, v, omega, e, s, c, friction, radius, ratio):
+    """Equations (21)-(23): u, v, omega after the impact of a rock with v < 0. ratio: I / (m r^2); s, c: of :func:`contact_tilt`.
+
+    Slip stops if the impulse that it takes, |Int S|, is at most mu Int P. Otherwise slip goes on, against the sign of that
+    impulse. Where mu tan(phi) >= 1 the contact locks itself: no slip can go on, and it stops.
+    """
+    pushed = (1.0 + e) * v
+    stuck = (pushed * s + u * c - ratio * radius * omega) / (ratio + c)
+    shear = ratio * (stuck + radius * omega)
+    side = 1.0 if shear >= 0.0 else -1.0
+    locking = c - side * friction * s
+    if locking <= 0.0 or abs(shear) * c <= friction * (s * shear - pushed):
+        return stuck, -e * v, -stuck / radius
+    pressed = -pushed / locking
+    slid = u - pressed * (s + side * friction * c)
+    return slid, -e * v, omega - side * friction * pressed / (ratio * radius)
+
+
+@kernel
+def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
+    """u, v, omega after an impact with u >= 0 and v < 0.
+
+    capped: no impact adds energy. What the cap of phi leaves is a rock with strong back-spin on ground too soft to carry it, which
+    would wedge itself upwards; it meets the ground without tilt, and then friction and restitution can only take energy.
+    """
+    s, c = contact_tilt(delta, radius, u, v, e, capped)
+    after = rebound(u, v, omega, e, s, c, friction, radius, ratio)
+    if capped and motion(after[0], after[1], after[2], radius, ratio) > motion(u, v, omega, radius, ratio):
+        after = rebound(u, v, omega, e, 0.0, 1.0, friction, radius, ratio)
+    return after
+
+
+@kernel
+def motion(u, v, omega, radius, ratio):
+    """Kinetic energy per half mass (m2/s2)."""
+    return u * u + v * v + ratio * radius * radius * omega * omega

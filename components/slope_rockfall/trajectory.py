@@ -1,0 +1,262 @@
+"""Whole trials without FMI: from the start to rest or to the end of the profile, with what a campaign keeps of each.
+
+A trial is a function of the prepared buffers, the seed and its number alone, so trials may be computed in any order, on any number
+of threads; each needs its own ``body``.
+"""
+
+import math
+from collections import namedtuple
+
+from ..compilation import kernel, released
+from ..counter_random import stream
+from .declarations import BODY, LAYOUT, NEVER, PATH, REST
+from .events import begin, happen, world
+from .flight import passing
+from .geometry import height_above, line_below
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+RESTED, PASSED_RIGHT, PASSED_LEFT, UNFINISHED, BELOW, STOPPED = range(6)
+"""How a trial ends: at rest, beyond the right or left end, not within :data:`MOST_EVENTS`, not at all for it starts below, or
+stopped by a barrier."""
+MOST_EVENTS = 100_000
+
+Passage = namedtuple("Passage", "time x y height speed omega kinetic count")
+PASSAGE = Passage(*range(8))
+"""What is kept of the first passage of a search line, and the number of passages."""
+Barrier = namedtuple("Barrier", "reach capacity")
+BARRIER = Barrier(*range(2))
+"""What makes a search line a barrier: it stops a rock that passes it not farther than ``reach`` (m) from its first point, with no
+more kinetic energy than its capacity (J). A negative reach: it stops none."""
+Peak = namedtuple("Peak", "height speed kinetic")
+PEAK = Peak(*range(3))
+"""Largest values at a station; negative where the rock did not come by."""
+Outcome = namedtuple("Outcome", "end x y time impacts events height speed kinetic limit_speed barrier")
+OUTCOME = Outcome(*range(11))
+"""Of a trial: how and where it ended, numbers of impacts and events, the largest values on the way, V_lim, and the number of the
+search line that stopped it, or -1."""
+
+
+@kernel
+def trial(seed, number, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages, peaks, outcome):
+    """One trial, from the buffers of a prepared instance (:func:`.kernel.prepare`), none of which it changes.
+
+    left, right: x (m) at which it ends. lines: (n, 4), search lines x1, y1, x2, y2 (m); barriers: (n, len(BARRIER)).
+    Stations are vertical lines at x = first_station + i * station_distance. body: (len(BODY),) scratch. passages: (n,
+    len(PASSAGE)), peaks: (m, len(PEAK)) and outcome: (len(OUTCOME),) are overwritten.
+    """
+    constants, source = world(w, x, k), stream(seed, number)
+    clear_records(passages, peaks, outcome)
+    outcome[OUTCOME.end] = BELOW
+    if not begin(constants, seed, number, w, body):
+        return
+    outcome[OUTCOME.limit_speed] = body[BODY.limit_speed]
+    events, end = 0, UNFINISHED
+    while end == UNFINISHED and events < MOST_EVENTS:
+        wait, end = stretch(left, right, body)
+        until, barrier = first_stop(constants, lines, barriers, wait, body)
+        if barrier >= 0:
+            wait, end, outcome[OUTCOME.barrier] = until, STOPPED, barrier
+            note_passage(constants, barrier, until, body, passages)
+        record_lines(constants, lines, wait, body, passages)
+        record_stations(constants, first_station, station_distance, wait, body, peaks)
+        record_peaks(constants, wait, body, outcome)
+        events += 1
+        if end == UNFINISHED:
+            happen(constants, source, body)
+        else:
+            place(wait, body, outcome)
+    outcome[OUTCOME.end], outcome[OUTCOME.events], outcome[OUTCOME.impacts] = end, events, body[BODY.impacts]
+
+
+@kernel
+def clear_records(passages, peaks, outcome):
+    """Nothing has happened yet."""
+    for i in range(passages.shape[0]):
+        for q in range(passages.shape[1]):
+            passages[i, q] = 0.0
+    for i in range(peaks.shape[0]):
+        for q in range(peaks.shape[1]):
+            peaks[i, q] = -1.0
+    for q in range(outcome.size):
+        outcome[q] = 0.0
+    outcome[OUTCOME.barrier] = -1.0
+
+
+@kernel
+def stretch(left, right, b):
+    """Time (s) from the last event to the next or to the end of the trial, and how it ends."""
+    if b[BODY.mode] == REST:
+        return 0.0, RESTED
+    wait, end = b[BODY.next_time] - b[BODY.time], UNFINISHED
+    beyond = passing(b[BODY.x], b[BODY.vx], b[BODY.ax], right, 1.0) if b[BODY.x] <= right else 0.0
+    if beyond < wait:
+        wait, end = beyond, PASSED_RIGHT
+    beyond = passing(b[BODY.x], b[BODY.vx], b[BODY.ax], left, -1.0) if b[BODY.x] >= left else 0.0
+    if beyond < wait:
+        wait, end = beyond, PASSED_LEFT
+    return (0.0, RESTED) if wait >= NEVER else (wait, end)
+
+
+@kernel
+def at(time, b):
+    """Place (m) and velocity (m/s) ``time`` seconds after the last event."""
+    return (b[BODY.x] + time * (b[BODY.vx] + 0.5 * time * b[BODY.ax]), b[BODY.y] + time * (b[BODY.vy] + 0.5 * time * b[BODY.ay]),
+            b[BODY.vx] + time * b[BODY.ax], b[BODY.vy] + time * b[BODY.ay])
+
+
+@kernel
+def place(wait, b, outcome):
+    """Where and when the trial ends."""
+    outcome[OUTCOME.x], outcome[OUTCOME.y], _, _ = at(wait, b)
+    outcome[OUTCOME.time] = b[BODY.time] + wait
+
+
+@kernel
+def energy(world, square, omega):
+    """Kinetic energy (J) at this squared speed and angular velocity."""
+    spin = world.radius * omega
+    return 0.5 * world.mass * (square + world.ratio * spin * spin)
+
+
+@kernel
+def clearance(world, x, y):
+    """Distance (m) of a rock with its centre at (x, y) from the cell below it."""
+    return height_above(line_below(x, world.lines, world.path), x, y, world.path)
+
+
+# --- search lines ---
+
+@kernel
+def record_lines(world, lines, wait, b, passages):
+    """Passages of search lines within ``wait`` seconds from the last event."""
+    x0, x1 = b[BODY.x], b[BODY.x] + wait * (b[BODY.vx] + 0.5 * wait * b[BODY.ax])
+    low, high = min(x0, x1), max(x0, x1)
+    for i in range(lines.shape[0]):
+        if max(lines[i, 0], lines[i, 2]) >= low and min(lines[i, 0], lines[i, 2]) <= high:
+            for direction in (1.0, -1.0):
+                time = meeting(lines[i], direction, b)
+                if time < wait:
+                    note_passage(world, i, time, b, passages)
+
+
+@kernel
+def meeting(line, direction, b):
+    """Time (s) from the last event at which the centre passes a search line to its right (+1) or left (-1); NEVER if not."""
+    along_x, along_y = line[2] - line[0], line[3] - line[1]
+    place = (b[BODY.x] - line[0]) * along_y - (b[BODY.y] - line[1]) * along_x
+    time = passing(place, b[BODY.vx] * along_y - b[BODY.vy] * along_x, b[BODY.ax] * along_y - b[BODY.ay] * along_x, 0.0, direction)
+    if time >= NEVER:
+        return NEVER
+    x, y, _, _ = at(time, b)
+    share = (x - line[0]) * along_x + (y - line[1]) * along_y
+    return time if 0.0 <= share <= along_x * along_x + along_y * along_y else NEVER
+
+
+@kernel
+def note_passage(world, i, time, b, passages):
+    """The rock passes search line i."""
+    passages[i, PASSAGE.count] += 1.0
+    absolute = b[BODY.time] + time
+    if passages[i, PASSAGE.count] > 1.0 and absolute >= passages[i, PASSAGE.time]:
+        return
+    x, y, vx, vy = at(time, b)
+    omega = b[BODY.omega] + time * b[BODY.alpha]
+    passages[i, PASSAGE.time], passages[i, PASSAGE.x], passages[i, PASSAGE.y] = absolute, x, y
+    passages[i, PASSAGE.height] = clearance(world, x, y)
+    passages[i, PASSAGE.speed], passages[i, PASSAGE.omega] = math.sqrt(vx * vx + vy * vy), omega
+    passages[i, PASSAGE.kinetic] = energy(world, vx * vx + vy * vy, omega)
+
+
+# --- barriers ---
+
+@kernel
+def first_stop(world, lines, barriers, wait, b):
+    """When a barrier stops the rock within ``wait`` seconds from the last event, and its number; -1 if none does."""
+    number = -1
+    for i in range(lines.shape[0]):
+        if barriers[i, BARRIER.reach] >= 0.0:
+            for direction in (1.0, -1.0):
+                time = meeting(lines[i], direction, b)
+                if time < wait and holds(world, lines[i], barriers[i], time, b):
+                    wait, number = time, i
+    return wait, number
+
+
+@kernel
+def holds(world, line, barrier, time, b):
+    """Whether a barrier stops the rock that meets it ``time`` seconds after the last event."""
+    x, y, vx, vy = at(time, b)
+    away = math.sqrt((x - line[0]) * (x - line[0]) + (y - line[1]) * (y - line[1]))
+    load = energy(world, vx * vx + vy * vy, b[BODY.omega] + time * b[BODY.alpha])
+    return away <= barrier[BARRIER.reach] and load <= barrier[BARRIER.capacity]
+
+
+# --- stations ---
+
+@kernel
+def record_stations(world, first, distance, wait, b, peaks):
+    """Largest values at the stations that the rock passes within ``wait`` seconds from the last event."""
+    count = peaks.shape[0]
+    if count == 0 or (b[BODY.vx] == 0.0 and b[BODY.ax] == 0.0):
+        return
+    start, stop = b[BODY.x], b[BODY.x] + wait * (b[BODY.vx] + 0.5 * wait * b[BODY.ax])
+    direction = 1.0 if stop >= start else -1.0
+    low = max(0, math.ceil((min(start, stop) - first) / distance))
+    high = min(count - 1, math.floor((max(start, stop) - first) / distance))
+    if high < low:
+        return
+    j = line_below(first + low * distance, world.lines, world.path)
+    for i in range(low, high + 1):
+        place = first + i * distance
+        while world.path[j * len(PATH) + PATH.right] <= place:
+            j += 1
+        time = min(wait, passing(start, b[BODY.vx], b[BODY.ax], place, direction))
+        x, y, vx, vy = at(time, b)
+        square = vx * vx + vy * vy
+        peaks[i, PEAK.height] = max(peaks[i, PEAK.height], height_above(j, x, y, world.path))
+        peaks[i, PEAK.speed] = max(peaks[i, PEAK.speed], math.sqrt(square))
+        peaks[i, PEAK.kinetic] = max(peaks[i, PEAK.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha]))
+
+
+# --- largest values ---
+
+@kernel
+def record_peaks(world, wait, b, outcome):
+    """Largest height, speed and energy: at the events, and for the height where the rock moves parallel to a cell, eq. (18)."""
+    for time in (0.0, wait):
+        _, _, vx, vy = at(time, b)
+        square = vx * vx + vy * vy
+        outcome[OUTCOME.speed] = max(outcome[OUTCOME.speed], math.sqrt(square))
+        outcome[OUTCOME.kinetic] = max(outcome[OUTCOME.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha]))
+    if b[BODY.ay] == -world.gravity and wait < NEVER:
+        outcome[OUTCOME.height] = max(outcome[OUTCOME.height], highest(world, wait, b))
+
+
+@kernel
+def highest(world, wait, b):
+    """Largest distance (m) of a rock in flight from the cell below it."""
+    x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
+    end = x + wait * vx
+    peak = 0.0
+    for j in range(line_below(min(x, end), world.lines, world.path), line_below(max(x, end), world.lines, world.path) + 1):
+        at_j = j * len(PATH)
+        from_time, to_time = 0.0, wait
+        if vx != 0.0:
+            one, two = (world.path[at_j + PATH.left] - x) / vx, (world.path[at_j + PATH.right] - x) / vx
+            from_time, to_time = max(0.0, min(one, two)), min(wait, max(one, two))
+        s, c = world.path[at_j + PATH.sin], world.path[at_j + PATH.cos]
+        parallel = (vx * s + vy * c) / (world.gravity * c)
+        time = min(max(parallel, from_time), to_time)
+        peak = max(peak, height_above(j, x + time * vx, y + time * (vy - 0.5 * time * world.gravity), world.path))
+    return peak
+
+
+# --- campaigns ---
+
+@released
+def trials(seed, first, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages, peaks, outcomes):
+    """Trials number ``first`` on, as many as ``outcomes`` has rows; passages and peaks have a row each too. See :func:`trial`."""
+    for i in range(outcomes.shape[0]):
+        trial(seed, first + i, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages[i], peaks[i],
+              outcomes[i])
