@@ -214,8 +214,10 @@ def cut_off(run: "Run") -> float:
     the size of the discs, not from the impact, which lasts many times as long.
     """
     sand = run.provenance["components"][roles(run).sand]["parameters"]
-    factor, modulus, density, radius = (float(sand[name]["value"]) for name in (
-        "stiffness_factor", "modulus", "unit_weight", "disc.radius"))
+    factor, modulus, density, radius, solid = (float(sand[name]["value"]) for name in (
+        "stiffness_factor", "modulus", "unit_weight", "disc.radius", "solid_fraction"))
+    if sand["unit_weight_of"]["value"] == "layer":
+        density /= solid
     return SETTLING * math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
 
 

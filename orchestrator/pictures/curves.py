@@ -149,10 +149,11 @@ _PARTS = (
     ("rock, kinetic", "#2f5d8a", (("rock", "energy.kinetic"),)),
     ("sand, kinetic", "#8fb3d4", (("sand", "energy.kinetic"),)),
     ("gravity, above its least", "#c9cfd4", (("rock", "energy.gravity"), ("sand", "energy.gravity"), ("beam", "energy.gravity"))),
-    ("sand, elastic", "#7fae7a", (("sand", "energy.elastic"),)),
+    ("sand, elastic and capillary", "#7fae7a", (("sand", "energy.elastic"), ("sand", "energy.capillary"))),
     ("beam, kinetic and elastic", "#3d7d3f", (("beam", "energy.kinetic"), ("beam", "energy.elastic"))),
     ("lost in normal dashpots", "#f2cf96", (("sand", "energy.normal_dashpot"),)),
     ("lost in tangential dashpots", "#e3a857", (("sand", "energy.tangential_dashpot"),)),
+    ("lost in yielding contacts", "#d98e73", (("sand", "energy.plastic"),)),
     ("lost in sliding", "#c0561a", (("sand", "energy.sliding"),)),
     ("lost in rolling", "#8c2f12", (("sand", "energy.rolling"),)),
     ("lost in the beam", "#5c3a2e", (("beam", "energy.damping"),)),
@@ -188,13 +189,15 @@ def energy(run: Run, file: Path) -> None:
 
 
 def _layers(run: Run) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, colour and energy (J) of the layers that there are. Gravity counts from its least value, so that it stacks."""
+    """Name, colour and energy (J) of the layers that there are. Gravity and capillary energy count from their least value, so that
+    they stack."""
     role = {key: name for key, name in vars(h.roles(run)).items() if name}
     found = []
     for name, colour, members in _PARTS:
         columns = [run.series[f"{role[r]}.{output}"] for r, output in members if r in role and f"{role[r]}.{output}" in run.series]
         if columns:
-            parts = [values - values.min() if "gravity" in name else values for values in columns]
+            parts = [values - min(float(values.min()), 0.0) if "gravity" not in name else values - values.min()
+                     for values in columns]
             found.append((name, colour, np.sum(parts, axis=0)))
     total = max((float(values.max()) for _, _, values in found), default=0.0)
     yield from (layer for layer in found if layer[2].max() > _SHOWN * total)
