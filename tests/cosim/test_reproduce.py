@@ -34,7 +34,7 @@ def test_table_5_has_its_nine_rows_with_both_models(table_5):
         assert row["model_options"]["rotation"] == ("free" if row["model"] == "literal" else "locked")
         assert set(row["fmus"]) == {"sand", "rock", "beam"}
     assert "Table 5" in result.stdout
-    assert "runs: 18 of 18" in result.stderr
+    assert "runs: 27 of 27" in result.stderr
 
 
 def test_the_page_holds_its_figures(table_5):
