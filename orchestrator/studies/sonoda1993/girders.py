@@ -94,7 +94,7 @@ def _over_spans(energies: Sequence[Row], model: Model, found: Outcomes) -> list[
             Row("largest factor between computed and measured energy, eq. (7)", "1", computed=factor, **where)]
 
 
-SHOWN = ("calibrated", "poured")
+SHOWN = ("calibrated", "one-law")
 """Models in the figure of the forces."""
 
 

@@ -21,7 +21,7 @@ from .twelve import BOX_TESTS, error, exponent, twelve
 
 SEEDS = range(1, 9)
 """Packings of the static tests, and of the law itself."""
-VARIED_SEEDS = range(1, 5)
+VARIED_SEEDS = range(1, 4)
 """Packings of a law with one number changed."""
 RIGID_BASE = "rigid-base-crushed"
 _STATIC_STOP = 6.6
@@ -46,10 +46,8 @@ LAWS = (
     Law("unloading ratio 1 (elastic)", ("sand.unloading_ratio=1",)),
     Law("unloading ratio 2", ("sand.unloading_ratio=2",)),
     Law("unloading ratio 6", ("sand.unloading_ratio=6",)),
-    Law("E_bar 25", (_modulus(25.0),)),
     Law("E_bar 50", (_modulus(50.0),)),
     Law("rolling resistance 0.1", ("sand.rolling_resistance=0.1",)),
-    Law("damping constant h 0.4", ("sand.damping=0.4",)),
 )
 """What is compared; one line each."""
 
@@ -231,7 +229,7 @@ def _trade_off(listed: Sequence[Row], file: Path, found: Outcomes) -> list[Path]
                           "rigid base: settled ratio transmitted / rock",
                           f"laboratory: mean absolute error of the peak force, {BOX_TESTS}")
     with captioned(["What one number of the law moves: girders against rigid base (left) and laboratory (right). Lines: aims. "
-                    "Eight packings of the law itself, four of the others."], file, WIDTH, 3.6) as made:
+                    "Eight packings of the law itself, three of the others."], file, WIDTH, 3.6) as made:
         for axes, quantity, aim, name in zip(made.subplots(1, 2), (ratio, lab), (1.8, 7.5),
                                              ("rigid base: settled ratio", "laboratory: mean absolute error (%)")):
             for law in LAWS:
@@ -251,4 +249,4 @@ STUDY = Study("one-law", "One sand law for static test, laboratory, rigid base a
     f"State of the soil: solid fraction {LOOSE:g} as poured, {DENSE:g} compacted and at full scale; cohesion by Rumpf from each "
     "test's static k; 0.05 kgf/cm2 at full scale, where nothing is known.",
     "Calibrated: E_bar, unloading ratio and the two solid fractions (to the twelve peak forces and table 6), the cohesions (to k).",
-    "Mean and standard deviation over eight packings, four where one number of the law is changed; with --quick one packing."))
+    "Mean and standard deviation over eight packings, three where one number of the law is changed; with --quick one packing."))

@@ -55,7 +55,7 @@ def formulas() -> list[Row]:
                                       "handbook's formula is this one, for a rock of ordinary density")]
 
 
-SHOWN = ("calibrated", "poured")
+SHOWN = ("calibrated", "literal")
 """Models in the figure."""
 
 
