@@ -308,6 +308,24 @@ def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda
             raise typer.Exit(INTERRUPTED)
 
 
+@app.command()
+def rockfall(site: Annotated[Path, typer.Argument(metavar="PROFILE.toml", help="Rock, profile, ground, search lines, barriers.")],
+             trials: Annotated[int | None, typer.Option(min=1, help="Number of trials; default: the file's, or 10,000.")] = None,
+             preset: Annotated[str | None, typer.Option(metavar="paper", help="paper: 200 trials.")] = None,
+             seed: Annotated[int | None, typer.Option(min=0, help="Another sample.")] = None,
+             replay: Annotated[list[int] | None, typer.Option(metavar="TRIAL", help="Animate this trial. May be repeated.")] = None,
+             animation: Annotated[str | None, typer.Option(metavar="mp4|gif", help="Default: mp4 if it can be written.")] = None,
+             output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")] = None,
+             workers: Annotated[int | None, typer.Option(min=1, help="Threads; default: one for each core.")] = None,
+             no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+             as_json: Json = False, quiet: Quiet = False) -> None:
+    """Monte Carlo of rockfall on a slope: envelopes, percentiles with confidence intervals, end points, replays."""
+    with _screen(quiet, as_json) as screen:
+        from .rockfall.command import rockfall
+
+        rockfall(screen, RESULTS, site, trials, preset, seed, replay or [], animation, output_dir, workers, not no_figures)
+
+
 def main() -> None:
     """The entry point of the command ``rockshed``."""
     app()
