@@ -315,7 +315,7 @@ def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupli
 
 
 @app.command()
-def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993.")],
+def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993 or ushiro.")],
               only: Annotated[list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")] = None,
               quick: Annotated[bool, typer.Option("--quick", help="One run where the full reproduction has ten seeds.")] = False,
               output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")] = None,
@@ -384,6 +384,24 @@ def calibrate(target: Annotated[str | None, typer.Argument(metavar="[CURVE.csv|s
         for text in notes(found):
             screen.say(text)
         screen.say(f"results in {folder}: " + ", ".join(file.name for file in files))
+
+
+@app.command()
+def rockfall(site: Annotated[Path, typer.Argument(metavar="PROFILE.toml", help="Rock, profile, ground, search lines, barriers.")],
+             trials: Annotated[int | None, typer.Option(min=1, help="Number of trials; default: the file's, or 10,000.")] = None,
+             preset: Annotated[str | None, typer.Option(metavar="paper", help="paper: 200 trials.")] = None,
+             seed: Annotated[int | None, typer.Option(min=0, help="Another sample.")] = None,
+             replay: Annotated[list[int] | None, typer.Option(metavar="TRIAL", help="Animate this trial. May be repeated.")] = None,
+             animation: Annotated[str | None, typer.Option(metavar="mp4|gif", help="Default: mp4 if it can be written.")] = None,
+             output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")] = None,
+             workers: Annotated[int | None, typer.Option(min=1, help="Threads; default: one for each core.")] = None,
+             no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+             as_json: Json = False, quiet: Quiet = False) -> None:
+    """Monte Carlo of rockfall on a slope: envelopes, percentiles with confidence intervals, end points, replays."""
+    with _screen(quiet, as_json) as screen:
+        from .rockfall.command import rockfall
+
+        rockfall(screen, RESULTS, site, trials, preset, seed, replay or [], animation, output_dir, workers, not no_figures)
 
 
 def main() -> None:

@@ -81,8 +81,8 @@ def world(w, x, k):
                  math.pi * w[V.radius] * w[V.radius] * w[V.area_factor], int(w[V.restitution_gravity]),
                  w[V.tilt_cap] != 0.0, w[V.tilt_meaning] == ABSOLUTE, w[V.limit_speed_mean], w[V.limit_speed_deviation],
                  int(w[V.limit_speed_distribution]), int(w[V.roughness_distribution]), int(w[V.tilt_distribution]),
-                 normal_tail(w[V.truncation]), int(w[V.hypercube]), w[V.receiver_present] != 0.0, w[V.receiver_left], w[V.receiver_right],
-                 w[V.receiver_bottom], w[V.receiver_top])
+                 normal_tail(w[V.truncation]), int(w[V.hypercube]), w[V.receiver_present] != 0.0, w[V.receiver_left],
+                 w[V.receiver_right], w[V.receiver_bottom], w[V.receiver_top])
 
 
 # --- chance ---

@@ -103,19 +103,19 @@ def first_fault(w, k):
     return common_fault(w)
 
 
-def cell_problems(instance: "Instance") -> "Iterator[tuple[int, str]]":
-    """Every fault of every cell: number of the cell, from 0, and what is wrong in words."""
+def cell_problems(instance: "Instance") -> "Iterator[tuple[int, int, str]]":
+    """Every fault of every cell: number of the cell, from 0, the fault, and what is wrong in words."""
     w, k = instance.w, instance.k
     for c in range(instance.sizes["cells"]):
         facts = {"cell": c + 1, "end": instance["end.x"][c], "roughness": instance["roughness"][c], "tilt": instance["tilt"][c],
                  "friction": instance["friction"][c], "widest": widest_roughness(c, w, k), "locking": locking(c, w, k)}
-        yield from ((c, f"cell {c + 1} ({_FACTS[fault].format(**facts)}): {rule}") for fault, rule in RULES.items()
+        yield from ((c, fault, f"cell {c + 1} ({_FACTS[fault].format(**facts)}): {rule}") for fault, rule in RULES.items()
                     if has_fault(fault, c, w, k))
 
 
 def problems(instance: "Instance") -> list[str]:
     """Every fault of every cell, in words, and those of the other parameters."""
-    found = [text for _, text in cell_problems(instance)]
+    found = [text for _, _, text in cell_problems(instance)]
     if common := common_fault(instance.w):
         found.append(instance.message(common))
     return found

@@ -192,9 +192,9 @@ class RunFolder:
         _convert_rows(self.running)
         _convert_states(self.running)
         self.write_provenance({**self.provenance, "status": status, **facts})
-        self._swap()
+        self.swap()
 
-    def _swap(self) -> None:
+    def swap(self) -> None:
         """The new folder takes the place of the old one. Renaming is one step each for the file system."""
         if self.folder.exists():
             self.folder.rename(self._old)

@@ -40,14 +40,21 @@ def figure(run: Run, file: Path, width: float, height: float) -> AbstractContext
 @contextmanager
 def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> Iterator[Figure]:
     """A figure (inches) with these lines below, written to ``file`` at the end, as a whole or not at all."""
+    with styled(lines, width, height) as made:
+        yield made
+        beside = file.with_name(f".{file.name}")
+        made.savefig(beside, format="png", metadata={"Software": "rockshed"})
+        os.replace(beside, file)
+
+
+@contextmanager
+def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Figure]:
+    """A figure (inches) in this look, with these lines below."""
     with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
         wrapped = [line for text in lines for line in wrap(text, int(_LETTERS * width))]
         made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
         made.supxlabel("\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3)
         yield made
-        beside = file.with_name(f".{file.name}")
-        made.savefig(beside, format="png", metadata={"Software": "rockshed"})
-        os.replace(beside, file)
 
 
 def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> None:

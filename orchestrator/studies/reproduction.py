@@ -21,7 +21,8 @@ from .report import Part, as_data
 from .running import Done, run_all
 from .study import INTERRUPTED, Outcomes, Study
 
-PAPERS = {"sonoda1993": "Sonoda, Satoh, Ishikawa, Ohta 1993"}
+PAPERS = {"sonoda1993": "Sonoda, Satoh, Ishikawa, Ohta 1993",
+          "ushiro": "Ushiro, A study on computer simulation of rockfalls (DRSP)"}
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
 _PACKAGES = ("rockshed", "numpy", "numba", "fmpy", "pythonfmu")

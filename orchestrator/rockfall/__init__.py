@@ -1,0 +1,1 @@
+"""Monte Carlo of rockfall: from the description of a site to trials, statistics and files."""

@@ -1,0 +1,63 @@
+"""A campaign from beginning to end: trials, statistics, files, pictures, in a folder that appears as a whole or not at all."""
+
+import time
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..core.results import Figure, RunFolder
+from .campaign import Done, run
+from .preparation import Prepared
+from .replay import check
+from .results import Passing, envelopes, passings, write
+
+FIGURES = "figures"
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What came of a campaign. figures: the summary. pictures: files, animations included."""
+
+    folder: Path
+    trials: int
+    wall_time: float
+    figures: Sequence[Figure]
+    passings: Sequence[Passing]
+    pictures: Sequence[Path]
+
+
+def carry_out(made: Prepared, folder: Path, workers: int, counting: Callable[[str], AbstractContextManager[Done]],
+              with_pictures: bool = True, replays: Sequence[int] = (), animation: str = "gif") -> Finished:
+    """Compute all trials and write everything into ``folder``.
+
+    counting: opens a progress bar with this text. replays: trials that become animations of this kind.
+
+    Raises:
+        InputRefused: the folder cannot be written or holds something else, or there is no such trial to replay.
+    """
+    for number in replays:
+        check(made, number)
+    with RunFolder(folder) as place:
+        began = time.perf_counter()
+        with counting("trials") as done:
+            records = run(made.campaign, workers, done)
+        wall_time = time.perf_counter() - began
+        along = envelopes(made.campaign, records)
+        figures = write(made, records, along, place.running, wall_time, workers)
+        pictures: list[Path] = []
+        if with_pictures:
+            from ..pictures.rockfall import draw_all
+
+            with counting("drawing"):
+                pictures += draw_all(made, records, along, place.running / FIGURES)
+        for number in replays:
+            from ..pictures.rockfall import animate
+
+            (place.running / FIGURES).mkdir(exist_ok=True)
+            pictures.append(place.running / FIGURES / f"trial-{number}.{animation}")
+            with counting(f"replay of trial {number}, frames") as done:
+                animate(made, number, pictures[-1], done)
+        place.swap()
+    inside = [folder / file.relative_to(place.running) for file in pictures]
+    return Finished(folder, made.campaign.trials, wall_time, figures, passings(made.campaign, records), inside)
