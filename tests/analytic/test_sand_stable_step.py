@@ -30,3 +30,18 @@ def test_the_stable_step_is_stable_and_not_much_too_small(rotation, changes):
     """Measured limits on a hexagonal packing: 1.01 to 1.39 times the published step."""
     assert not grows(1.0, rotation=rotation, **changes)
     assert grows(1.45, rotation=rotation, **changes)
+
+
+@pytest.mark.parametrize("changes", [
+    {"unloading_ratio": 5.0}, {"cohesion": 5e3}, {"unloading_ratio": 3.0, "cohesion": 5e3, "rolling_resistance": 0.3},
+    {"base": "beam_discs", "beam.disc_mass": 1.5}, {"base": "beam_surface", "beam.disc_mass": 1.5}], ids=str)
+@pytest.mark.parametrize("rotation", ["free", "locked"])
+def test_the_stable_step_knows_the_options(rotation, changes):
+    assert not grows(1.0, rotation=rotation, **changes)
+
+
+def test_heavy_beam_discs_in_the_dashpots_ask_for_shorter_steps():
+    """Without them in the published step the sand would be told to go unstable."""
+    light, heavy = (cushion({**SMALL_BOX, "base": "beam_discs", "beam.disc_mass": m})["stable_step"] for m in (0.0, 1.5))
+    assert heavy < 0.5 * light
+    assert grows(light / heavy, rotation="locked", base="beam_discs", **{"beam.disc_mass": 1.5})
