@@ -5,6 +5,7 @@ from itertools import cycle
 from pathlib import Path
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -180,12 +181,12 @@ def animate(made: Prepared, number: int, file: Path, done: Callable[[int, int], 
         shown = replay(made, number, faster * interval)
     pace = f"{faster} times real time" if faster > 1 else "real time"
     with styled([*caption(made), f"Trial {number}, {pace}."], WIDTH, 5.6) as drawn:
-        draw = _stage(made, shown, drawn)
-        write_animation(file, drawn, len(shown.time) + _STILL, lambda i: draw(min(i, len(shown.time) - 1)), done)
+        draw, moving = _stage(made, shown, drawn)
+        write_animation(file, drawn, len(shown.time) + _STILL, lambda i: draw(min(i, len(shown.time) - 1)), moving, done)
 
 
-def _stage(made: Prepared, shown: Replay, drawn: Figure) -> Callable[[int], None]:
-    """The slope with the rock and its path, and its energy over time; returns what brings them to an instant."""
+def _stage(made: Prepared, shown: Replay, drawn: Figure) -> tuple[Callable[[int], None], list[Artist]]:
+    """The slope with the rock and its path, and its energy over time; returns what brings them to an instant, and what moves."""
     slope, energy = drawn.subplots(2, 1, height_ratios=[2.4, 1])
     _slope(made, slope)
     slope.set(xlabel="x (m)", aspect="equal")
@@ -207,4 +208,4 @@ def _stage(made: Prepared, shown: Replay, drawn: Figure) -> Callable[[int], None
         mark.set_data(shown.time[i:i + 1], shown.energy[i:i + 1] / kJ)
         mode = shown.end if i == last else MODES[int(shown.mode[i]) - 1]
         words.set_text(f"t = {shown.time[i]:.2f} s, {mode}\n{shown.speed[i]:.1f} m/s, {shown.height[i]:.2f} m above the slope")
-    return draw
+    return draw, [path, rock, spot, mark, words]
