@@ -153,6 +153,12 @@ def test_a_folder_with_something_else_is_not_touched(rockshed):
     assert [file.name for file in Path("mine").iterdir()] == ["letter"]
 
 
+def test_plot_says_that_a_campaign_is_no_run(rockshed, finished):
+    result = rockshed("plot", finished[0])
+    assert result.exit_code == 2
+    assert "is a rockfall campaign, which has no time series" in result.stderr
+
+
 def test_ctrl_c_leaves_nothing(tmp_path):
     command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "1000000", "--workers", "1",
                "--output-dir", str(tmp_path / "out")]

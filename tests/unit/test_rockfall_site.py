@@ -1,9 +1,12 @@
 """Sites: what is read, from TOML, CSV and DXF, and what is refused where."""
 
+import re
 import tomllib
+from pathlib import Path
 
 import pytest
 
+import orchestrator
 from orchestrator.core.errors import InputRefused
 from orchestrator.rockfall import profile
 from orchestrator.rockfall.materials import QUANTITIES, shipped, source_of
@@ -78,6 +81,15 @@ def test_every_shipped_material_is_complete_and_says_where_it_comes_from():
     for material in shipped().values():
         assert all(getattr(material, quantity) is not None for quantity in QUANTITIES)
         assert all(source_of(material, quantity) for quantity in QUANTITIES)
+
+
+def test_the_site_in_the_documentation_can_be_prepared(site, tmp_path):
+    text = (Path(orchestrator.__file__).parent / "README.md").read_text()
+    (tmp_path / "slope.csv").write_text("x,y\n20,76\n62,31\n140,4\n")
+    example = next(block for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL) if "[[barrier]]" in block)
+    made = site(example.replace("x = 1.0", "x = 25").replace("to = 62", "to = 140"), head="")
+    assert made.instance["moment_of_inertia"] == 150.0
+    assert made.campaign.names == ("road", "fence")
 
 
 # --- files ---
