@@ -16,8 +16,8 @@ from ..core.errors import InputRefused, Problem
 
 FRAMES_PER_SECOND = 25
 KINDS = ("mp4", "gif")
-_GIF_SIZE, _GIF_COLOURS = 0.6, 64
-"""GIF files are large: a part of the width and height, and few colours."""
+_GIF_SIZE, _GIF_COLOURS = 0.6, 256
+"""GIF files are large: a part of the width and height. All frames have the colours of the first."""
 
 Picture = NDArray[np.uint8]
 """A frame: (height, width, 3)."""

@@ -154,6 +154,9 @@ def test_a_drawing_without_ezdxf_says_what_to_install(refused, tmp_path, monkeyp
     (PROFILE + '[[barrier]]\nname = "a"\nx = 5\nheight = 0.5\ncapacity = 1\n', "line 15, column 1", "would hold no rock"),
     (PROFILE + '[[line]]\nname = "a"\n', "line 15, column 1", "a search line has two points, or an x"),
     (PROFILE + "[model]\ngravitation = 1\n", "line 16, column 1", "there is no such key"),
+    ("profile = 5\n", "line 10, column 1", "limit_speed.profile: there is no such key"),
+    (PROFILE + "[[line]]\nname = 5\n", "line 16, column 1", "line[1].name: input should be a valid string"),
+    (PROFILE + "[material]\nrock = 3\n", "line 16, column 1", "material.rock: input should be a table"),
     (PROFILE + 'colour = "red"\n', "line 15, column 1", "ground[1].colour: there is no such key"),
 ])
 def test_a_fault_is_told_with_line_and_column(refused, text, place, what):
