@@ -185,7 +185,7 @@ def test_without_further_packages_there_are_gif_files(rockshed, monkeypatch):
 
 def film(rockshed, kind):
     """The first metres of a trial as animation."""
-    Path("short.toml").write_text(EXAMPLE.read_text().replace("[profile] ", "[profile]\nend = 4.0 ").split("[[line]]")[0])
+    Path("short.toml").write_text(EXAMPLE.read_text().replace("[profile] ", "[profile]\nend = 2.5 ").split("[[line]]")[0])
     result = rockshed("rockfall", "short.toml", "--trials", 20, "--no-figures", "--replay", 1, "--animation", kind)
     assert result.exit_code == 0, result.stderr
     return Path(f"results/slope/figures/trial-1.{kind}")
@@ -195,7 +195,7 @@ def test_a_gif_has_a_frame_for_each_instant_in_real_time(rockshed):
     short = film(rockshed, "gif")
     made = prepare(Path("short.toml"), trials=20)
     shown = replay(made, 1, 1.0 / 25.0)
-    assert (shown.end, shown.x[-1]) == ("beyond the right end", pytest.approx(4.0))
+    assert (shown.end, shown.x[-1]) == ("beyond the right end", pytest.approx(2.5))
     with Image.open(short) as opened:
         assert opened.n_frames in (len(shown.time) + 1, len(shown.time))  # equal frames, as those of the end, become one
         lengths = []
