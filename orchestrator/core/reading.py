@@ -83,6 +83,9 @@ def read_run(folder: Path) -> Run:
         provenance = json.loads((found / RUN).read_text(encoding="utf-8"))
         if not isinstance(provenance, dict) or "status" not in provenance:
             raise ValueError("it does not describe a run")
+    if not (found / COLUMNS).is_file() and "kind" in provenance:
+        raise InputRefused([Problem(str(folder), f"is a {provenance['kind']} campaign, which has no time series",
+                                    "give the folder of a run; the campaign's pictures are in its folder figures")])
     with _undamaged(found / COLUMNS), (found / COLUMNS).open(encoding="utf-8", newline="") as file:
         columns = [Column(**entry) for entry in csv.DictReader(file)]
     with _undamaged(found / SUMMARY):

@@ -1,10 +1,11 @@
 """Pictures of a rockfall campaign: profile with paths and envelopes, histograms at the search lines, ends, replay of a trial."""
 
 from collections.abc import Callable, Sequence
-from itertools import cycle
+from itertools import cycle, groupby
 from pathlib import Path
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -67,9 +68,11 @@ def _slope(made: Prepared, axes: Axes) -> None:
     bottom = y.min() - 0.04 * (y.max() - y.min())
     names = [str(node.material) for node in made.nodes[:-1]]
     colours = dict(zip(made.materials, cycle(_GROUNDS)))
-    for i, name in enumerate(names):
-        axes.fill_between(x[i:i + 2], y[i:i + 2], bottom, color=colours[name], linewidth=0.0, antialiased=False, zorder=1,
-                          label=name if names.index(name) == i else None)
+    for name, cells in groupby(range(len(names)), names.__getitem__):
+        numbers = list(cells)
+        part = slice(numbers[0], numbers[-1] + 2)
+        axes.fill_between(x[part], y[part], bottom, color=colours[name], linewidth=0.0, zorder=1,
+                          label=name if names.index(name) == numbers[0] else None)
     axes.plot(x, y, color=INK, linewidth=1.0, zorder=3)
     axes.set(xlim=(x[0], x[-1]), ylim=(bottom, y.max() + 0.12 * (y.max() - y.min())), ylabel="y (m)")
     _marks(made, axes)
@@ -180,12 +183,12 @@ def animate(made: Prepared, number: int, file: Path, done: Callable[[int, int], 
         shown = replay(made, number, faster * interval)
     pace = f"{faster} times real time" if faster > 1 else "real time"
     with styled([*caption(made), f"Trial {number}, {pace}."], WIDTH, 5.6) as drawn:
-        draw = _stage(made, shown, drawn)
-        write_animation(file, drawn, len(shown.time) + _STILL, lambda i: draw(min(i, len(shown.time) - 1)), done)
+        draw, moving = _stage(made, shown, drawn)
+        write_animation(file, drawn, len(shown.time) + _STILL, lambda i: draw(min(i, len(shown.time) - 1)), moving, done)
 
 
-def _stage(made: Prepared, shown: Replay, drawn: Figure) -> Callable[[int], None]:
-    """The slope with the rock and its path, and its energy over time; returns what brings them to an instant."""
+def _stage(made: Prepared, shown: Replay, drawn: Figure) -> tuple[Callable[[int], None], list[Artist]]:
+    """The slope with the rock and its path, and its energy over time; returns what brings them to an instant, and what moves."""
     slope, energy = drawn.subplots(2, 1, height_ratios=[2.4, 1])
     _slope(made, slope)
     slope.set(xlabel="x (m)", aspect="equal")
@@ -193,8 +196,8 @@ def _stage(made: Prepared, shown: Replay, drawn: Figure) -> Callable[[int], None
     rock = slope.add_patch(Circle((shown.x[0], shown.y[0]), made.site.rock.radius, facecolor=ROCK, edgecolor=INK, linewidth=0.5,
                                   zorder=6))
     spot, = slope.plot([], [], "o", color=ROCK, markersize=3.0, zorder=5)
-    words = slope.annotate("", (1.0, 1.0), xycoords="axes fraction", xytext=(-4, -4), textcoords="offset points", ha="right",
-                           va="top", fontsize=8.5)
+    slope.set_title(" ")  # keeps the place of the words
+    words = slope.annotate("", (0.0, 1.0), xycoords="axes fraction", xytext=(0, 5), textcoords="offset points", va="bottom")
     energy.plot(shown.time, shown.energy / kJ, color=GREY, linewidth=0.8)
     mark, = energy.plot([], [], "o", color=ROCK, markersize=4.0)
     energy.set(xlabel="time (s)", ylabel="kinetic energy (kJ)", xlim=(0.0, max(shown.time[-1], 1e-3)))
@@ -206,5 +209,5 @@ def _stage(made: Prepared, shown: Replay, drawn: Figure) -> Callable[[int], None
         spot.set_data(shown.x[i:i + 1], shown.y[i:i + 1])
         mark.set_data(shown.time[i:i + 1], shown.energy[i:i + 1] / kJ)
         mode = shown.end if i == last else MODES[int(shown.mode[i]) - 1]
-        words.set_text(f"t = {shown.time[i]:.2f} s, {mode}\n{shown.speed[i]:.1f} m/s, {shown.height[i]:.2f} m above the slope")
-    return draw
+        words.set_text(f"t = {shown.time[i]:.2f} s, {mode}, {shown.speed[i]:.1f} m/s, {shown.height[i]:.2f} m above the slope")
+    return draw, [path, rock, spot, mark, words]

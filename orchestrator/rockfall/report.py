@@ -21,8 +21,8 @@ def tables(done: Finished) -> Iterator[str | Table]:
             made = plain_table("", "unit", "mean", "±", *names, right=("mean", "±", *names))
             for quantity in QUANTITIES:
                 values = passing.values[quantity.name] / quantity.scale
-                spread = f"{values.std(ddof=1):.3g}" if len(values) > 1 else ""
-                made.add_row(quantity.name.replace("_", " "), quantity.shown, f"{values.mean():.3g}", spread,
+                spread = _number(values.std(ddof=1)) if len(values) > 1 else ""
+                made.add_row(quantity.name.replace("_", " "), quantity.shown, _number(values.mean()), spread,
                              *(_cell(found, quantity) for found in passing.percentiles(quantity.name)))
             yield made
 
@@ -32,13 +32,18 @@ def _words(passing: Passing, trials: int) -> str:
         kept = passing.barrier
         return (f"barrier: {passing.count} of {trials} rocks arrive, {kept['stopped']} are stopped, {kept['overtopped']} overtop, "
                 f"{kept['broken_through']} break through")
-    return (f"{passing.count} of {trials} rocks pass, {100.0 * passing.share:.3g} % [{100.0 * passing.low:.3g}, "
-            f"{100.0 * passing.high:.3g}]")
+    return (f"{passing.count} of {trials} rocks pass, {100.0 * passing.share:.4g} % [{100.0 * passing.low:.4g}, "
+            f"{100.0 * passing.high:.4g}]")
 
 
 def _cell(found: Percentile, quantity: Quantity) -> str:
-    bounds = ["?" if bound is None else f"{bound / quantity.scale:.3g}" for bound in (found.low, found.high)]
-    return escape(f"{found.value / quantity.scale:.3g} [{bounds[0]}, {bounds[1]}]")
+    value, low, high = ("?" if v is None else _number(v / quantity.scale) for v in (found.value, found.low, found.high))
+    return escape(f"{value} [{low}, {high}]")
+
+
+def _number(value: float) -> str:
+    """Three digits, but none that are rounding: a rock that rolls has the height 0."""
+    return f"{round(value, 6):.3g}"
 
 
 def lines(made: Prepared, done: Finished) -> Iterator[str]:

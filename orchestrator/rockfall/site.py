@@ -1,5 +1,6 @@
 """A site as data: rock, start, profile, ground, search lines and barriers. Form only: preparation.py checks the meaning."""
 
+import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -191,7 +192,7 @@ def _sentence(error: Any) -> str:
     if error["type"] == "missing":
         return "is missing"
     given = "" if isinstance(error["input"], dict | list) else f" (given: {error['input']!r})"
-    message = str(error["msg"]).removeprefix("Value error, ")
+    message = re.sub(r"a valid dictionary.*", "a table", str(error["msg"]))
     return message[0].lower() + message[1:] + given
 
 
