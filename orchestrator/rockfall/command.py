@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 from ..building import is_cold
@@ -33,7 +32,7 @@ def rockfall(screen: Screen, results: Path, file: Path, trials: int | None, pres
     done = carry_out(made, folder or results / made.name, workers or os.cpu_count() or 1, screen.counting, with_pictures,
                      replays, kind)
     if screen.as_json:
-        screen.dump({"status": "complete", "folder": str(done.folder), "figures": [asdict(figure) for figure in done.figures],
+        screen.dump({"status": "complete", "folder": str(done.folder), "figures": [figure.as_entry() for figure in done.figures],
                      "pictures": [str(file) for file in done.pictures]})
         return
     screen.show(*tables(done), "")

@@ -11,7 +11,7 @@ figures/              pictures
 
 import platform
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -162,7 +162,7 @@ def write(made: Prepared, records: Records, along: dict[str, dict[str, NDArray[n
     table = _envelopes(made, records, along)
     pyarrow.parquet.write_table(table, folder / ENVELOPES, compression="zstd")
     pyarrow.csv.write_csv(table, folder / ENVELOPES_CSV)
-    write_json(folder / SUMMARY, [asdict(figure) for figure in found])
+    write_json(folder / SUMMARY, [figure.as_entry() for figure in found])
     write_json(folder / RUN, _facts(made, wall_time, workers))
     return found
 

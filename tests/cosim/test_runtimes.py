@@ -6,12 +6,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from components.catalogue import NAMES as CATALOGUE
 from fmus.build import BuildError
 from fmus.native_fmu import compiler, own_platform
 from orchestrator.cli import app
 from orchestrator.core.reading import read_run
 
-NAMES = ["FallingRock.fmu", "SandCushion.fmu", "RBSMBeam.fmu"]
+NAMES = [f"{name}.fmu" for name in CATALOGUE]
 SHORT = ["--stop-time", "0.001", "--no-figures"]
 
 

@@ -137,7 +137,7 @@ def test_simulate_fmu_runs_the_rock_alone(alone):
 def test_the_readmes_first_lines_for_fmpy_print_why_a_value_is_refused(folder, python, tmp_path):
     readme = (Path(package.__file__).parents[1] / "README.md").read_text(encoding="utf-8")
     code, = (code for code in re.findall(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE) if "fmpy" in code)
-    code = code.replace("fmus/dist", str(folder))
+    code = code.replace("fmus/dist/python", str(folder))
     fell = "print(len(result), result['velocity.y'][-1] < -8.9)"
     assert python(f"{code}\n{fell}", TMPDIR=str(tmp_path)).split() == ["101", "True"]
     assert "mass = -4 kg: allowed is 1e-06 kg or more" in python(code.replace("1000.0", "-4.0"), TMPDIR=str(tmp_path))
