@@ -161,7 +161,8 @@ def test_plot_says_that_a_campaign_is_no_run(rockshed, finished):
 def test_ctrl_c_leaves_nothing(tmp_path):
     command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "1000000", "--workers", "1",
                "--output-dir", str(tmp_path / "out")]
-    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # tests in the background ignore it
     assert run.stderr is not None
     assert any("trials: " in line for line in run.stderr)
     run.send_signal(signal.SIGINT)
