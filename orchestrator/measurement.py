@@ -1,7 +1,6 @@
 """What was measured in a static loading test: a spring constant with its unit, or a load-penetration curve from a CSV file."""
 
 import csv
-import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from components.units import cm, kgf, kN, mm, tf
 
 from .core.errors import InputRefused, Problem
+from .core.values import finite_number
 from .loading import DEPTH
 
 FORCES: Mapping[str, float] = {"N": 1.0, "kN": kN, "kgf": kgf, "tf": tf}
@@ -53,7 +53,7 @@ def stiffness_from(text: str) -> float:
     """
     found = re.fullmatch(r"\s*(\S*?\d\.?)\s*([A-Za-z]+/[A-Za-z]+)?\s*", text)
     units = f"write a number and one of {', '.join(STIFFNESSES)}: --stiffness '39.1 kgf/cm'"
-    value = _number(found.group(1)) if found else None
+    value = finite_number(found.group(1)) if found else None
     if found is None or value is None:
         raise InputRefused([Problem("--stiffness", f"{text!r} is no spring constant", units)])
     if found.group(2) not in STIFFNESSES:
@@ -124,7 +124,7 @@ def _row(file: Path, line: int, fields: Sequence[str], columns: Sequence[tuple[s
         return None
     values = {}
     for place, (field, (name, unit)) in enumerate(zip(fields, columns, strict=True), 1):
-        value = _number(field)
+        value = finite_number(field)
         if value is None:
             problems.append(Problem(f"{file}, line {line}, column {place} ({name})", f"{field.strip()!r} is no finite number",
                                     "write a number"))
@@ -150,11 +150,3 @@ def _shape(file: Path, rows: Sequence[_Row]) -> Iterator[Problem]:
                           "give the force that pushes the rock down as positive")
     if rows and not any(row.load > 0.0 for row in rows):
         yield Problem(str(file), "has no load above zero", "give the measured loads")
-
-
-def _number(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None

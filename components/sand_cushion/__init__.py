@@ -32,6 +32,8 @@ COMPONENT = Component(
                           "packing = random",
         kernel.TOO_DENSE: "the sand cannot be packed as densely as solid_fraction = {solid_fraction}: it reaches "
                           "{layer.solid_fraction}; ask for less, or raise disc.spread",
+        kernel.SMOOTH_BUT_COHESIVE: "cohesion = {cohesion} Pa needs friction: its capillary force has tan(phi) below the line, "
+                                    "and friction_angle is 0; give it a value, or cohesion = 0",
         kernel.BEAM_TOO_NARROW: "the beam is narrower than the cushion, whose box begins at box.left = {box.left} m and is "
                                 "box.width = {box.width} m wide: make the beam longer, move the box or set base = floor",
         kernel.BEAM_GAPS: "there are gaps between the beam discs: beam.radius = {beam.radius} m is less than half the distance of "

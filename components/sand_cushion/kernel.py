@@ -35,7 +35,7 @@ from .packing import disc_mass, mean_base, pack
 V, A = LAYOUT.scalar, LAYOUT.array
 
 (LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE, TOO_LOOSE,
- TOO_DENSE) = range(1, 11)
+ TOO_DENSE, SMOOTH_BUT_COHESIVE) = range(1, 12)
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""
@@ -96,6 +96,8 @@ def capillary_strength(w):
     Rumpf (1970): discs of diameter D that fill the part sf of the layer and pull each other with F at z contacts have the tensile
     strength sf z F / (pi D dL); with z = 4 and c = strength * tan(phi), F = pi c D dL / (4 sf tan(phi)).
     """
+    if w[V.cohesion] == 0.0:
+        return 0.0  # also without friction, where the cohesion has no strength to follow from
     return math.pi * w[V.cohesion] * w[V.depth] / (4.0 * w[V.solid_fraction] * math.tan(w[V.friction_angle]))
 
 
@@ -353,6 +355,8 @@ def initialise(w, x, k):
     w[V.stable_step] = stable_step_of(w)
     if 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) > w[V.box_width] * (1.0 + _GAP):
         return DISC_TOO_WIDE
+    if w[V.cohesion] > 0.0 and w[V.friction_angle] == 0.0:
+        return SMOOTH_BUT_COHESIVE
     for q in range(x.size):
         x[q] = 0.0
     set_laws(w, x, k)

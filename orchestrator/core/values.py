@@ -72,3 +72,12 @@ def written(port: Port, number: float) -> Value:
     if port.kind == BOOLEAN:
         return bool(number)
     return number if port.kind == REAL else int(number)
+
+
+def finite_number(text: str) -> float | None:
+    """The number that a field of a text file says; None if it is none, or not finite."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

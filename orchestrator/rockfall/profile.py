@@ -9,6 +9,7 @@ from typing import Any
 
 from ..core.errors import Problem
 from ..core.names import nearest
+from ..core.values import finite_number
 from .places import Places
 from .site import Ground, Profile
 
@@ -98,7 +99,7 @@ def _csv_node(path: Path, number: int, line: str, columns: int, problems: list[P
         return
     values = []
     for text, start in zip(fields[:2], starts):
-        value = _number(text)
+        value = finite_number(text)
         if value is None:
             column = start + len(text) - len(text.lstrip())
             problems.append(Problem(f"{path}, line {number}, column {column}", f"{text.strip()!r} is no finite number",
@@ -108,14 +109,6 @@ def _csv_node(path: Path, number: int, line: str, columns: int, problems: list[P
     if len(values) == 2:
         yield Node(values[0], values[1], (fields[2].strip() or None) if len(fields) == 3 else None,
                    f"{path}, line {number}, column 1")
-
-
-def _number(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
 
 
 # --- DXF ---

@@ -24,6 +24,17 @@ def test_an_unknown_choice_is_answered_with_the_known_ones():
         cushion({"rotation": "frei"})
 
 
+def test_cohesion_without_friction_has_no_force():
+    with pytest.raises(ComponentError, match=r"cohesion = 500 Pa needs friction.*friction_angle is 0"):
+        cushion({**SMALL_BOX, "cohesion": 500.0, "friction_angle": 0.0})
+
+
+def test_smooth_contacts_that_yield_are_no_fault():
+    sand = cushion({**SMALL_BOX, "unloading_ratio": 3.0, "friction_angle": 0.0})
+    run(sand, 1e-3)
+    assert math.isfinite(sand["energy.kinetic"] + sand["energy.plastic"] + sand["transmitted_force"])
+
+
 @pytest.mark.parametrize("sizes", [{"discs": 0}, {"elements": 0}])
 def test_nothing_is_no_size(sizes):
     with pytest.raises(ComponentError, match="allowed is 1 to"):

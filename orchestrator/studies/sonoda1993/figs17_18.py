@@ -59,16 +59,15 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     return [_fig_17(found, folder / "fig17.png"), _fig_18(found, folder / "fig18.png")]
 
 
-_COLOURS = {"calibrated": "#1f5a94", "literal": "#c0561a", "one-law": "#3d7d3f"}
 _CAPTION = "{} of Sonoda et al. 1993: (a) test 4, (b) test 10. Of the experiment only the peak is known here."
 
 
 def _fig_17(found: Outcomes, file: Path) -> Path:
-    from ...pictures.style import WIDTH, captioned, legend, reference_line
+    from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
 
     with captioned([_CAPTION.format("Fig. 17")], file, WIDTH, 3.2) as made:
         for axes, number, letter in zip(made.subplots(1, 2, sharey=True), TESTS, "ab"):
-            for model, colour in _COLOURS.items():
+            for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
                 outcome = found.of(impact(number, model))
                 if outcome.status == COMPLETE:
                     axes.plot(outcome.series["time"] / ms, outcome.series["sand.transmitted_force"] / kgf, color=colour,
@@ -81,12 +80,12 @@ def _fig_17(found: Outcomes, file: Path) -> Path:
 
 
 def _fig_18(found: Outcomes, file: Path) -> Path:
-    from ...pictures.style import WIDTH, captioned, legend, reference_line
+    from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
 
     curves = (("beam.energy.elastic", "-", "eqs (5), (6)"), ("beam.energy.strain_estimate", ":", "eq. (7)"))
     with captioned([_CAPTION.format("Fig. 18")], file, WIDTH, 3.2) as made:
         for axes, number, letter in zip(made.subplots(1, 2, sharey=True), TESTS, "ab"):
-            for model, colour in _COLOURS.items():
+            for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
                 outcome = found.of(impact(number, model))
                 for column, line, equation in curves if outcome.status == COMPLETE else ():
                     axes.plot(outcome.series["time"] / ms, outcome.series[column] / _ENERGY, line, color=colour, linewidth=1.1,
