@@ -2,7 +2,8 @@
 
 Numba keys its cache by the folder of the source file and by that one file's content. A kernel inside an FMU would then be
 compiled again on every run (the FMU is unpacked to a new folder each time), and an edit of a called function in another file
-would go unnoticed. Here the key is the content of the whole package.
+would go unnoticed. Here the key is the content of all files that a kernel may call: those of its component and those that all
+components share. A component does not import another one, so a change of it leaves the kernels of the others valid.
 """
 
 import hashlib
@@ -25,19 +26,20 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 @cache
-def source_stamp() -> str:
-    """Hash of all Python sources of this package; compiled kernels are valid for exactly one value of it."""
+def source_stamp(component: str | None) -> str:
+    """Hash of the Python sources that kernels of a component (its folder's name) follow from; None: of all components."""
     digest = hashlib.sha256(__name__.encode())
-    for path in sorted(_PACKAGE.rglob("*.py")):
+    shared = [path for path in _PACKAGE.glob("*.py") if path.name != "catalogue.py"]
+    for path in sorted([*shared, *_PACKAGE.glob(f"{component or '*'}/**/*.py")]):
         digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
 
 
 @cache
 def cache_directory() -> Path | None:
-    """Folder of the compiled kernels, made if need be; None where no such folder can be written (then nothing is kept)."""
+    """Folder of what was compiled, made if need be; None where no such folder can be written (then nothing is kept)."""
     root = os.environ.get(CACHE_VARIABLE) or os.path.join(os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed")
-    folder = Path(root).expanduser() / source_stamp()[:16]
+    folder = Path(root).expanduser()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
@@ -46,11 +48,26 @@ def cache_directory() -> Path | None:
     return folder
 
 
+def _component_of(module: str) -> str | None:
+    """The component that a module belongs to: ``sand_cushion`` of ``components.sand_cushion.forces``; None for any other module."""
+    package, _, rest = module.partition(f"{__package__}.")
+    folder = rest.partition(".")[0]
+    return folder if not package and (_PACKAGE / folder).is_dir() else None
+
+
+def has_kernels(component: str) -> bool:
+    """Whether kernels of the component in the folder of this name have been compiled and kept."""
+    folder = cache_directory()
+    return folder is not None and any((folder / source_stamp(component)[:16]).glob("*.nbc"))
+
+
 class _PackageLocator:
     """Numba's protocol of a cache locator: where a function's cache lies and when it is stale."""
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
-        self._function, self._folder = function, folder
+        self._function = function
+        self._stamp = source_stamp(_component_of(function.__module__))
+        self._folder = folder / self._stamp[:16]
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], _source: str) -> "_PackageLocator | None":
@@ -67,8 +84,8 @@ class _PackageLocator:
         return str(self._folder)
 
     def get_source_stamp(self) -> str:
-        """Changes with every change of any component's source: what was compiled before is stale then."""
-        return source_stamp()
+        """Changes with every change of the sources: what was compiled before is stale then."""
+        return self._stamp
 
     def get_disambiguator(self) -> str:
         """Part of the file's name that tells functions of one name apart."""

@@ -1,6 +1,6 @@
 """FMUs of our components, built where they are missing or out of date, and the sizes they are built in."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -186,9 +186,9 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, Value]) -> list[Pro
     return problems
 
 
-def is_cold() -> bool:
-    """Whether no kernel of the present components has been compiled and kept on this machine."""
-    from components.compilation import cache_directory
+def is_cold(names: Iterable[str]) -> bool:
+    """Whether kernels of any of these components have never been compiled and kept on this machine."""
+    from components.catalogue import component
+    from components.compilation import has_kernels
 
-    folder = cache_directory()
-    return folder is None or not any(folder.glob("*.nbc"))
+    return not all(has_kernels(component(name).folder.name) for name in names)

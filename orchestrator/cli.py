@@ -201,7 +201,7 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         if "runtime" in job.facts:
             screen.note(f"{job.facts['runtime']} FMUs ({job.facts['runtime_reason']})")
         folder = output_dir or RESULTS / job.name
-        if is_cold():
+        if is_cold(job.components):
             progress.describe(COLD_START)
         try:
             done = simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress,

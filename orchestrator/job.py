@@ -55,6 +55,13 @@ class Job:
     sources: Mapping[str, Source]
     facts: Mapping[str, Any]
 
+    @property
+    def components(self) -> frozenset[str]:
+        """Components of the catalogue whose kernels this process will compile if they have never been; those of a system file are
+        not known."""
+        is_native = self.facts.get("runtime") == "native"
+        return frozenset() if is_native or "case" not in self.facts else frozenset(case(self.facts["case"]).models.values())
+
 
 def is_file(target: str) -> bool:
     """Whether a target is meant as a system file and not as the name of a case."""

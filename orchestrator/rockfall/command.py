@@ -21,7 +21,7 @@ def rockfall(screen: Screen, results: Path, file: Path, trials: int | None, pres
         InputRefused: everything that is wrong with the options or the site.
     """
     count = _count(trials, preset)
-    if is_cold():
+    if is_cold(["SlopeRockfall"]):
         screen.note(COLD_START)
     from .carrying_out import carry_out
     from .preparation import prepare
