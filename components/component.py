@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .ports import Causality, Kind, Layout, Variable
+from .ports import Bond, Causality, Kind, Layout, NextEvent, Variable
 
 OK = 0
 """Status of a kernel that did what it was asked for. Every other value is a key of :attr:`Component.faults`."""
@@ -54,6 +54,8 @@ class Component:
     step(t, h, w, x, k) -> status: advance by ``h`` from time ``t`` (s) with the inputs in ``w``.
     faults: message of each status other than OK; ``{name}`` stands for the value of the scalar variable ``name``.
     check: everything that is wrong with parameters which are in range one by one, in words.
+    bonds: mechanical power bonds to other components.
+    next_event: where the component tells when it meets its next event, if it does.
     """
 
     name: str
@@ -68,6 +70,13 @@ class Component:
     check: Callable[["Instance"], list[str]] | None = None
     default_step: float = 1e-4
     default_stop_time: float = 0.02
+    bonds: tuple[Bond, ...] = ()
+    next_event: NextEvent | None = None
+
+    def __post_init__(self) -> None:
+        for bond in self.bonds:
+            if len({v.causality for v in bond.members(self.layout.variables).values()}) < 2:
+                raise ValueError(f"{self.name}: bond {bond.name!r} needs motion and force, one of them an input, one an output")
 
     def with_sizes(self, sizes: Mapping[str, int] | None = None) -> dict[str, int]:
         """The sizes to build with: the defaults, overridden by ``sizes``.

@@ -121,6 +121,43 @@ def out(name: str, description: str, unit: str = "1", **rest: Any) -> Variable:
     return Variable(name, Causality.OUTPUT, description, unit, **rest)
 
 
+BOND_MEMBERS = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "force.x", "force.y", "torque")
+"""Names of what a power bond may carry, in this order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bond:
+    """A mechanical power bond to another component: the motion of a body that one of them computes, and the force on it by the other.
+
+    Its members are the inputs and outputs of the component that are named ``prefix`` + one of :data:`BOND_MEMBERS`, be they
+    scalars or arrays. Two components fit together if their bonds have the same members.
+
+    name: of the terminal that FMI 3.0 makes of it.
+    """
+
+    name: str
+    description: str
+    prefix: str = ""
+
+    def members(self, variables: Sequence[Variable]) -> dict[str, Variable]:
+        """The variables of the bond by member, in the order of :data:`BOND_MEMBERS`."""
+        named = {v.name: v for v in variables if v.causality is not Causality.PARAMETER}
+        return {member: named[self.prefix + member] for member in BOND_MEMBERS if self.prefix + member in named}
+
+
+@dataclass(frozen=True, slots=True)
+class NextEvent:
+    """Where a component tells when it meets its next event, so that a communication step may end there.
+
+    time: output (s). A step that ends at this time has the event behind it, and the results are the same, bit for bit, however
+        the time is divided into steps.
+    while_zero: inputs that must be zero for that to hold.
+    """
+
+    time: str
+    while_zero: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class State:
     """A hidden array: its name, and its length as a function of the sizes."""

@@ -19,14 +19,17 @@ from components.component import Component
 
 from .description import model_description
 from .native_fmu import is_fresh, native_files
-from .parts import BuildError, Files, Runtime, archive, companions, component_sources, digest, replace
+from .parts import BuildError, Files, Fmi, Runtime, archive, component_sources, digest, documentation, picture, replace
 from .script import SCRIPT
 
-__all__ = ["BuildError", "Runtime", "build", "build_component", "build_if_needed", "file_name", "fmu_content", "fmu_files",
+__all__ = ["BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name", "folder_name", "fmu_content", "fmu_files",
            "fmu_folder", "native_is_fresh", "store"]
 
 FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
-"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python`` and ``native``."""
+"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python``, ``native`` and
+``native-fmi3``."""
+
+ONLY_NATIVE = "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes them; for FMI 3.0 there are native ones"
 
 _HERE = Path(__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
@@ -35,7 +38,7 @@ _SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "python_fmu.
 
 
 def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-          runtime: Runtime = Runtime.PYTHON) -> Path:
+          runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
     """Build the FMU of a component of the catalogue; return its file.
 
     sizes: numbers that differ from the defaults, ``{"elements": 48}``; they then are part of the file's name.
@@ -46,42 +49,46 @@ def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path |
         ComponentError: a size that the component has not, or that is out of range.
         BuildError: the folder cannot be written, or a native FMU cannot be compiled.
     """
-    return build_component(catalogued(name), sizes, destination, runtime=runtime)
+    return build_component(catalogued(name), sizes, destination, runtime=runtime, fmi=fmi)
 
 
 def build_if_needed(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-                    runtime: Runtime = Runtime.PYTHON) -> Path:
+                    runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
     """Like :func:`build`, but leave a file alone that is what would be built."""
-    return build_component(catalogued(name), sizes, destination, keep=True, runtime=runtime)
+    return build_component(catalogued(name), sizes, destination, keep=True, runtime=runtime, fmi=fmi)
 
 
 def build_component(component: Component, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-                    keep: bool = False, runtime: Runtime = Runtime.PYTHON) -> Path:
+                    keep: bool = False, runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
     """Build the FMU of any component; ``keep`` leaves a file alone that is what would be built."""
     chosen = component.with_sizes(sizes)
-    if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination):
-        return _file(component, chosen, destination, runtime)
-    return store(component, chosen, fmu_content(component, chosen, runtime), destination, runtime, keep)
+    if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination, fmi):
+        return _file(component, chosen, destination, runtime, fmi)
+    return store(component, chosen, fmu_content(component, chosen, runtime, fmi=fmi), destination, runtime, keep, fmi)
 
 
 def fmu_content(component: Component, sizes: Mapping[str, int], runtime: Runtime = Runtime.PYTHON,
-                platforms: Sequence[str] = ()) -> bytes:
+                platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO) -> bytes:
     """The FMU as bytes. platforms: of a native one, by default this machine's.
 
     Raises:
-        BuildError: a native FMU cannot be compiled.
+        BuildError: a native FMU cannot be compiled, or FMI 3 is asked for with Python.
     """
-    return archive(native_files(component, sizes, platforms) if runtime is Runtime.NATIVE else fmu_files(component, sizes))
+    if runtime is Runtime.NATIVE:
+        return archive(native_files(component, sizes, platforms, fmi))
+    if fmi is not Fmi.TWO:
+        raise BuildError(f"{component.name}: {ONLY_NATIVE}")
+    return archive(fmu_files(component, sizes))
 
 
 def store(component: Component, sizes: Mapping[str, int], content: bytes, destination: Path | None = None,
-          runtime: Runtime = Runtime.PYTHON, keep: bool = False) -> Path:
+          runtime: Runtime = Runtime.PYTHON, keep: bool = False, fmi: Fmi = Fmi.TWO) -> Path:
     """Write an FMU to its place, as a whole or not at all; ``keep`` leaves a file alone that has this content.
 
     Raises:
         BuildError: the folder cannot be written.
     """
-    file = _file(component, sizes, destination, runtime)
+    file = _file(component, sizes, destination, runtime, fmi)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
@@ -94,18 +101,23 @@ def store(component: Component, sizes: Mapping[str, int], content: bytes, destin
     return file
 
 
-def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None) -> bool:
+def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None, fmi: Fmi = Fmi.TWO) -> bool:
     """Whether the native FMU of a component is there for this machine, and is what would be built now."""
-    return is_fresh(_file(component, sizes, destination, Runtime.NATIVE), component, sizes)
+    return is_fresh(_file(component, sizes, destination, Runtime.NATIVE, fmi), component, sizes, fmi)
 
 
-def _file(component: Component, sizes: Mapping[str, int], destination: Path | None, runtime: Runtime) -> Path:
-    return (fmu_folder(runtime) if destination is None else Path(destination)) / file_name(component, sizes)
+def _file(component: Component, sizes: Mapping[str, int], destination: Path | None, runtime: Runtime, fmi: Fmi) -> Path:
+    return (fmu_folder(runtime, fmi) if destination is None else Path(destination)) / file_name(component, sizes)
 
 
-def fmu_folder(runtime: Runtime = Runtime.PYTHON) -> Path:
-    """Folder of built FMUs of a runtime."""
-    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / runtime
+def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
+    """Folder of built FMUs of a runtime and version of FMI."""
+    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / folder_name(runtime, fmi)
+
+
+def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
+    """``python``, ``native`` or ``native-fmi3``."""
+    return runtime if fmi is Fmi.TWO else f"{runtime}-fmi{fmi}"
 
 
 def file_name(component: Component, sizes: Mapping[str, int]) -> str:
@@ -119,7 +131,7 @@ def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
     library = _library_files(component)
     library_name = f"rockshed_{digest(library)[:16]}_lib"
     files = {f"resources/{library_name}/{path}": content for path, content in library.items()}
-    files |= dict(_binaries(component)) | companions(component, sizes)
+    files |= dict(_binaries(component)) | documentation(component, sizes) | picture(component, "model.png")
     files["documentation/licenses/pythonfmu.txt"] = _pythonfmu_license()
     stamp = digest(files | _stamped_files(component, sizes, library_name, "0" * 64))
     return files | _stamped_files(component, sizes, library_name, stamp)

@@ -1,4 +1,7 @@
-"""The model description of an FMU, derived from a component's declarations: the ``modelDescription.xml`` of FMI 2.0."""
+"""The model description of an FMU, derived from a component's declarations: the ``modelDescription.xml`` of FMI 2.0.
+
+That of FMI 3.0, :mod:`fmus.description3`, shares what does not differ.
+"""
 
 from collections.abc import Mapping
 from importlib.metadata import version
@@ -30,7 +33,7 @@ _NEEDS_TOOL = {Runtime.PYTHON: "true", Runtime.NATIVE: "false"}
 """An FMU with Python needs one with numpy and numba on the computer; the name of the tool stands in generationTool."""
 
 
-def _generation_tool(runtime: Runtime) -> str:
+def generation_tool(runtime: Runtime) -> str:
     if runtime is Runtime.NATIVE:
         return f"rockshed {version('rockshed')}, native code"
     return f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; runs in Python >= 3.11 with numpy and numba"
@@ -41,29 +44,36 @@ def model_description(component: Component, sizes: Mapping[str, int], guid: str,
     root = etree.Element("fmiModelDescription", {
         "fmiVersion": "2.0", "modelName": component.name, "guid": guid, "description": component.title,
         "author": "the rockshed authors", "version": version("rockshed"), "copyright": "the rockshed authors", "license": "MIT",
-        "generationTool": _generation_tool(runtime), "variableNamingConvention": "structured"})
+        "generationTool": generation_tool(runtime), "variableNamingConvention": "structured"})
     etree.SubElement(root, "CoSimulation", {"modelIdentifier": component.name, "needsExecutionTool": _NEEDS_TOOL[runtime],
                                             **_CAPABILITIES})
-    _unit_definitions(root, component)
+    unit_definitions(root, component)
     _type_definitions(root, component)
-    categories = etree.SubElement(root, "LogCategories")
-    for name, description in LOG_CATEGORIES.items():
-        etree.SubElement(categories, "Category", name=name, description=description)
-    etree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(component.default_stop_time),
-                     stepSize=repr(component.default_step))
+    log_categories_and_experiment(root, component)
     _model_variables(root, component, sizes)
     _model_structure(root, component, sizes)
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
 
 
-def _used_units(component: Component) -> list[str]:
+def log_categories_and_experiment(root: etree._Element, component: Component) -> None:
+    """The elements LogCategories and DefaultExperiment."""
+    categories = etree.SubElement(root, "LogCategories")
+    for name, description in LOG_CATEGORIES.items():
+        etree.SubElement(categories, "Category", name=name, description=description)
+    etree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(component.default_stop_time),
+                     stepSize=repr(component.default_step))
+
+
+def used_units(component: Component) -> list[str]:
+    """The units of the component's variables."""
     used = {v.unit for v in component.layout.variables if v.kind is Kind.REAL}
     return [unit for unit in UNITS if unit in used]
 
 
-def _unit_definitions(root: etree._Element, component: Component) -> None:
+def unit_definitions(root: etree._Element, component: Component) -> None:
+    """The element UnitDefinitions."""
     definitions = etree.SubElement(root, "UnitDefinitions")
-    for name in _used_units(component):
+    for name in used_units(component):
         exponents = {base: str(exponent) for base, exponent in UNITS[name].base.items()}
         factor = {} if UNITS[name].factor == 1.0 else {"factor": repr(UNITS[name].factor)}
         etree.SubElement(etree.SubElement(definitions, "Unit", name=name), "BaseUnit", {**exponents, **factor})
@@ -71,19 +81,24 @@ def _unit_definitions(root: etree._Element, component: Component) -> None:
 
 def _type_definitions(root: etree._Element, component: Component) -> None:
     definitions = etree.SubElement(root, "TypeDefinitions")
-    for unit in _used_units(component):
+    for unit in used_units(component):
         simple_type = etree.SubElement(definitions, "SimpleType", name=UNITS[unit].quantity)
         etree.SubElement(simple_type, "Real", quantity=UNITS[unit].quantity, unit=unit)
     for variable in component.layout.ordered:
         if variable.kind is Kind.ENUMERATION:
-            simple_type = etree.SubElement(definitions, "SimpleType", name=_enumeration_name(component, variable),
+            simple_type = etree.SubElement(definitions, "SimpleType", name=enumeration_name(component, variable),
                                            description=variable.description)
-            enumeration = etree.SubElement(simple_type, "Enumeration")
-            for value, word in enumerate(variable.choices, start=1):
-                etree.SubElement(enumeration, "Item", name=word, value=str(value))
+            add_items(etree.SubElement(simple_type, "Enumeration"), variable)
 
 
-def _enumeration_name(component: Component, variable: Variable) -> str:
+def add_items(enumeration: etree._Element, variable: Variable) -> None:
+    """The words of an enumeration and their numbers."""
+    for value, word in enumerate(variable.choices, start=1):
+        etree.SubElement(enumeration, "Item", name=word, value=str(value))
+
+
+def enumeration_name(component: Component, variable: Variable) -> str:
+    """Name of the type of an enumeration."""
     return f"{component.name}.{variable.name}"
 
 
@@ -105,23 +120,34 @@ def _model_variables(root: etree._Element, component: Component, sizes: Sizes) -
 def _variable(parent: etree._Element, component: Component, variable: Variable, name: str, reference: int, start: float) -> None:
     scalar = etree.SubElement(parent, "ScalarVariable", {
         "name": name, "valueReference": str(reference), "description": variable.description,
-        "causality": variable.causality.value, "variability": _variability(variable)})
-    if variable.causality is not Causality.INPUT:
-        scalar.set("initial", "exact" if variable.causality is Causality.PARAMETER else "calculated")
-    attributes = {}
-    if variable.kind is Kind.REAL:
-        attributes = {"declaredType": UNITS[variable.unit].quantity, "unit": variable.unit}
-    elif variable.kind is Kind.ENUMERATION:
-        attributes = {"declaredType": _enumeration_name(component, variable)}
-    if variable.kind is not Kind.BOOLEAN:
-        bounds = {"min": variable.minimum, "max": variable.maximum}
-        attributes |= {key: literal(variable.kind, bound) for key, bound in bounds.items() if bound is not None}
+        "causality": variable.causality.value, "variability": variability(variable), **initial(variable)})
+    attributes = type_and_bounds(component, variable)
     if variable.causality is not Causality.OUTPUT:
         attributes["start"] = literal(variable.kind, start)
     etree.SubElement(scalar, variable.kind.value, attributes)
 
 
-def _variability(variable: Variable) -> str:
+def initial(variable: Variable) -> dict[str, str]:
+    """The attribute ``initial``; inputs have none."""
+    kinds = {Causality.PARAMETER: "exact", Causality.OUTPUT: "calculated"}
+    return {"initial": kinds[variable.causality]} if variable.causality in kinds else {}
+
+
+def type_and_bounds(component: Component, variable: Variable) -> dict[str, str]:
+    """The attributes that tell a variable's type, unit and range."""
+    attributes = {}
+    if variable.kind is Kind.REAL:
+        attributes = {"declaredType": UNITS[variable.unit].quantity, "unit": variable.unit}
+    elif variable.kind is Kind.ENUMERATION:
+        attributes = {"declaredType": enumeration_name(component, variable)}
+    if variable.kind is not Kind.BOOLEAN:
+        bounds = {"min": variable.minimum, "max": variable.maximum}
+        attributes |= {key: literal(variable.kind, bound) for key, bound in bounds.items() if bound is not None}
+    return attributes
+
+
+def variability(variable: Variable) -> str:
+    """The attribute ``variability``."""
     if variable.causality is Causality.PARAMETER:
         return "fixed"
     return "continuous" if variable.kind is Kind.REAL else "discrete"

@@ -1,7 +1,8 @@
-"""Native FMUs: the kernels of a component as machine code behind ``shim.c``. Nothing of Python is in them.
+"""Native FMUs: the kernels of a component as machine code behind a slave in C. Nothing of Python is in them.
 
-Kernels are compiled by numba and LLVM for the processor :data:`CPU`, the shim by a C compiler for any x86-64; it looks at the
-processor before it makes an instance. The model description differs from that of the FMU with Python in GUID, tool and one flag.
+``slave.h`` is that slave, ``shim_fmi2.c`` and ``shim_fmi3.c`` are the functions of FMI 2.0 and 3.0 around it. Kernels are compiled by numba and LLVM for the processor :data:`CPU`, the shim by a C compiler for any x86-64; it looks at the
+processor before it makes an instance. The model description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and
+one flag.
 """
 
 import json
@@ -26,12 +27,13 @@ from components.compilation import CACHE_VARIABLE, cache_directory
 from components.component import HEADER, Component, Instance, allowed_range
 from components.ports import Causality, Kind, Sizes, Variable
 
-from .description import model_description
+from . import description, description3
 from .native_subset import UNKNOWN_PLACE
-from .parts import BuildError, Files, Runtime, companions, component_sources, digest
+from .parts import BuildError, Files, Fmi, Runtime, component_sources, digest, documentation, picture
 
 _HERE = Path(__file__).parent
-_SHIM = _HERE / "shim.c"
+_SLAVE = _HERE / "slave.h"
+_SHIMS = {Fmi.TWO: _HERE / "shim_fmi2.c", Fmi.THREE: _HERE / "shim_fmi3.c"}
 _KERNELS = (_HERE / "native_kernels.py", _HERE / "native_subset.py")
 _DESCRIPTION = "modelDescription.xml"
 
@@ -63,17 +65,18 @@ CPU = Baseline("x86-64-v3",
 
 @dataclass(frozen=True)
 class Platform:
-    """A platform of FMI: the suffix of its libraries, what zig calls it, and options of the linker."""
+    """A platform of FMI 2.0: what FMI 3.0 calls it, the suffix of its libraries, what zig calls it, and options of the linker."""
 
+    in_fmi3: str
     suffix: str
     zig: str
     options: tuple[str, ...] = ()
 
 
 PLATFORMS: Mapping[str, Platform] = {
-    "linux64": Platform(".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm")),
-    "win64": Platform(".dll", "x86_64-windows-gnu"),
-    "darwin64": Platform(".dylib", "x86_64-macos.11.0"),
+    "linux64": Platform("x86_64-linux", ".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm")),
+    "win64": Platform("x86_64-windows", ".dll", "x86_64-windows-gnu"),
+    "darwin64": Platform("x86_64-darwin", ".dylib", "x86_64-macos.11.0"),
 }
 """All platforms that there can be native FMUs for."""
 
@@ -94,8 +97,8 @@ def own_platform() -> str:
     return name
 
 
-def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = ()) -> Files:
-    """Everything that goes into a native FMU. Its GUID is a hash over all that it is made from.
+def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO) -> Files:
+    """Everything that goes into a native FMU. Its GUID, in FMI 3.0 its instantiation token, is a hash over all that it is made from.
 
     platforms: keys of :data:`PLATFORMS`; by default this machine's.
 
@@ -104,43 +107,53 @@ def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = 
     """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
     compilers = {name: compiler(name) for name in platforms}
-    files = _described(component, sizes)
+    files = _described(component, sizes, fmi)
     objects = _objects(component, sizes, platforms)
     header = model_header(component, sizes, _guid(files[_DESCRIPTION]))
     for name in platforms:
-        library = f"{component.name}{PLATFORMS[name].suffix}"
-        files[f"binaries/{name}/{library}"] = _linked(component.name, compilers[name], name, library, header, objects[name])
+        path = _library(component, name, fmi)
+        sources = {"model.h": header, "kernels.o": objects[name], _SLAVE.name: _SLAVE.read_bytes(), "shim.c": _SHIMS[fmi].read_bytes()}
+        files[path] = _linked(component.name, compilers[name], name, Path(path).name, sources)
     return files
 
 
-def is_fresh(file: Path, component: Component, sizes: Sizes) -> bool:
+def _library(component: Component, platform: str, fmi: Fmi) -> str:
+    """Path of the library for a platform inside the FMU."""
+    folder = platform if fmi is Fmi.TWO else PLATFORMS[platform].in_fmi3
+    return f"binaries/{folder}/{component.name}{PLATFORMS[platform].suffix}"
+
+
+def is_fresh(file: Path, component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> bool:
     """Whether a native FMU is there, is what would be built now, and has a binary for this machine."""
     try:
-        binary = f"binaries/{own_platform()}/{component.name}{PLATFORMS[own_platform()].suffix}"
+        binary = _library(component, own_platform(), fmi)
         with zipfile.ZipFile(file) as found:
-            return binary in found.namelist() and found.read(_DESCRIPTION) == _described(component, sizes)[_DESCRIPTION]
+            return binary in found.namelist() and found.read(_DESCRIPTION) == _described(component, sizes, fmi)[_DESCRIPTION]
     except (OSError, KeyError, zipfile.BadZipFile, BuildError):
         return False
 
 
-def _described(component: Component, sizes: Sizes) -> Files:
-    """Description, documentation and icon: what can be told without compiling anything."""
-    def description(guid: str) -> bytes:
-        return model_description(component, sizes, guid, Runtime.NATIVE)
+def _described(component: Component, sizes: Sizes, fmi: Fmi) -> Files:
+    """Description, documentation, icon and terminals: what can be told without compiling anything."""
+    def described(guid: str) -> bytes:
+        if fmi is Fmi.THREE:
+            return description3.model_description(component, sizes, guid)
+        return description.model_description(component, sizes, guid, Runtime.NATIVE)
 
-    files = companions(component, sizes)
+    files = documentation(component, sizes)
+    files |= description3.terminals_and_icon(component) if fmi is Fmi.THREE else picture(component, "model.png")
     made_from = files | component_sources(component) | {
-        _DESCRIPTION: description(""), "versions": repr([CPU, *_versions()]).encode(),
-        **{path.name: path.read_bytes() for path in (_SHIM, *_KERNELS, Path(__file__))}}
-    return files | {_DESCRIPTION: description(f"{{{uuid.UUID(digest(made_from)[:32])}}}")}
+        _DESCRIPTION: described(""), "versions": repr([CPU, *_versions()]).encode(),
+        **{path.name: path.read_bytes() for path in (_SLAVE, _SHIMS[fmi], *_KERNELS, Path(__file__))}}
+    return files | {_DESCRIPTION: described(f"{{{uuid.UUID(digest(made_from)[:32])}}}")}
 
 
 def _versions() -> list[str]:
     return [f"{package} {version(package)}" for package in ("numba", "llvmlite")]
 
 
-def _guid(description: bytes) -> str:
-    found = re.search(rb'guid="([^"]*)"', description)
+def _guid(xml: bytes) -> str:
+    found = re.search(rb'(?:guid|instantiationToken)="([^"]*)"', xml)
     assert found is not None
     return found.group(1).decode()
 
@@ -198,16 +211,20 @@ def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
     header = instance.to_bytes()[:HEADER.size]
     lengths = [len(variable.element_names(sizes)) for variable in component.layout.ordered]
     owners = [number for number, length in enumerate(lengths) for _ in range(length)]
+    event = component.next_event
+    waits = [instance.references[name] for name in event.while_zero] if event else []
     traits = [_traits(variable) for variable, length in zip(component.layout.ordered, lengths) for _ in range(length)]
     lines = [
         f"#define NAME {_text(component.name)}", f"#define GUID {_text(guid)}", f"#define CPU {_text(CPU.name)}",
         f"enum {{ NW = {len(instance.w)}, NX = {len(instance.x)}, NK = {len(instance.k)}, NC = {len(sizes)},",
         f"       INTERNAL_STEP = {instance.references.get('internal_step', -1)}, "
-        f"STABLE_STEP = {instance.references.get('stable_step', -1)} }};",
+        f"STABLE_STEP = {instance.references.get('stable_step', -1)},",
+        f"       EVENT_TIME = {instance.references[event.time] if event else -1} }};",
         f"#define CPU_1C 0x{CPU.leaf_1:x}u", f"#define CPU_7B 0x{CPU.leaf_7:x}u", f"#define CPU_81C 0x{CPU.leaf_81:x}u",
         f"#define MARK 0x{instance.kind[:8].hex()}u",
         _array("double", "START", map(_real, instance.w.tolist())), _array("int64_t", "TABLE", map(str, entries or [0])),
-        _array("int", "SIZES", map(str, [*sizes.values(), 0])), _array("unsigned char", "HEADER", map(str, header)),
+        _array("int", "SIZES", map(str, [*sizes.values(), 0])), _array("Text", "READ_ONLY", map(_text, [*sizes, description3.TIME])),
+        _array("int", "ZERO_UNTIL_EVENT", map(str, [*waits, -1])), _array("unsigned char", "HEADER", map(str, header)),
         _array("Variable", "VARIABLES", _variables(component, sizes)), _array("unsigned short", "VARIABLE_OF", map(str, owners)),
         _array("unsigned char", "TRAITS", traits), _array("unsigned short", "ALIKE", map(str, _alike(traits))),
         _array("Fault", "FAULTS", chain(_faults(component, instance), ["{ 0, 0 }"]))]
@@ -281,17 +298,16 @@ def compiler(platform: str) -> list[str]:
                      f"{_PYTHON_REMAINS}")
 
 
-def _linked(name: str, compiler: Sequence[str], platform: str, library: str, header: bytes, kernels: bytes) -> bytes:
-    """The shared library of an FMU.
+def _linked(name: str, compiler: Sequence[str], platform: str, library: str, sources: Files) -> bytes:
+    """The shared library of an FMU, from shim.c with all that it includes and kernels.o.
 
     Raises:
         BuildError: the compiler fails; its messages.
     """
     with tempfile.TemporaryDirectory(prefix="rockshed_") as folder:
         work = Path(folder)
-        (work / "model.h").write_bytes(header)
-        (work / "shim.c").write_bytes(_SHIM.read_bytes())
-        (work / "kernels.o").write_bytes(kernels)
+        for source, content in sources.items():
+            (work / source).write_bytes(content)
         command = [*compiler, *_OPTIONS, "-o", library, "shim.c", "kernels.o", *PLATFORMS[platform].options]
         try:
             done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)

@@ -5,7 +5,7 @@ import io
 import os
 import tempfile
 import zipfile
-from enum import StrEnum
+from enum import IntEnum, StrEnum
 from pathlib import Path
 
 import components
@@ -28,6 +28,13 @@ class Runtime(StrEnum):
     NATIVE = "native"
 
 
+class Fmi(IntEnum):
+    """Versions of FMI that an FMU can be for."""
+
+    TWO = 2
+    THREE = 3
+
+
 class BuildError(Exception):
     """An FMU cannot be built or stored; the message says why and what to do."""
 
@@ -40,11 +47,15 @@ def component_sources(component: Component) -> Files:
     return {name: path.read_bytes() for name, path in paths.items()}
 
 
-def companions(component: Component, sizes: Sizes) -> Files:
-    """Documentation and icon."""
-    files = {"documentation/index.html": index_html(component, sizes).encode()}
+def documentation(component: Component, sizes: Sizes) -> Files:
+    """The documentation."""
+    return {"documentation/index.html": index_html(component, sizes).encode()}
+
+
+def picture(component: Component, name: str) -> Files:
+    """The component's icon under a name, if it has one."""
     icon = component.folder / "icon.png"
-    return files | ({"model.png": icon.read_bytes()} if icon.is_file() else {})
+    return {name: icon.read_bytes()} if icon.is_file() else {}
 
 
 def digest(files: Files) -> str:

@@ -130,23 +130,25 @@ def _changed_at(file: Path) -> int:
     return file.stat().st_mtime_ns if file.is_file() else 0
 
 
-def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None, runtime: str = "python",
-              platforms: Sequence[str] = ()) -> list[Path]:
+def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | None, runtime: str | None = None,
+              platforms: Sequence[str] = (), fmi: int = 2) -> list[Path]:
     """Build the FMUs of these components, or of all; if one of them cannot be made, none is written.
 
-    A size goes to those of the components that have it. folder: the FMUs go into its folders ``python`` and ``native``.
+    A size goes to those of the components that have it. folder: the FMUs go into its folders ``python``, ``native`` and
+    ``native-fmi3``. fmi: 2 or 3, the version of FMI. runtime: by default Python, with FMI 3 native.
 
     Raises:
-        InputRefused: unknown components, sizes, runtimes or platforms, sizes out of range, a compiler that fails, a folder that
+        InputRefused: unknown components, sizes, runtimes, versions or platforms, sizes out of range, a compiler that fails, a folder that
             cannot be written.
     """
-    from fmus.build import BuildError, Runtime, fmu_content, store
+    from fmus.build import BuildError, Fmi, Runtime, fmu_content, folder_name, store
 
+    runtime = runtime or (Runtime.PYTHON if fmi == Fmi.TWO else Runtime.NATIVE).value
     problems: list[Problem] = []
     sizes = assignments("--size", size_texts, problems)
     chosen = list(dict.fromkeys(names or NAMES))
     problems += [Problem(name, "there is no such component", nearest(name, NAMES)) for name in chosen if name not in NAMES]
-    problems += _runtime_problems(runtime, platforms)
+    problems += _runtime_problems(runtime, platforms, fmi)
     known = [name for name in chosen if name in NAMES]
     if not problems:
         problems += _size_problems(known, sizes)
@@ -155,14 +157,15 @@ def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | No
     its_sizes = {n: component(n).with_sizes({s: int(v) for s, v in sizes.items() if s in component(n).sizes}) for n in known}
     runtimes = list(Runtime) if runtime == BOTH else [Runtime(runtime)]
     try:
-        made = [(r, n, fmu_content(component(n), its_sizes[n], r, platforms)) for r in runtimes for n in known]
-        return [store(component(n), its_sizes[n], content, folder / r if folder else None, r) for r, n, content in made]
+        made = [(r, n, fmu_content(component(n), its_sizes[n], r, platforms, Fmi(fmi))) for r in runtimes for n in known]
+        return [store(component(n), its_sizes[n], content, folder / folder_name(r, Fmi(fmi)) if folder else None, r, fmi=Fmi(fmi))
+                for r, n, content in made]
     except BuildError as error:
         raise InputRefused([Problem("build", str(error))]) from error
 
 
-def _runtime_problems(runtime: str, platforms: Sequence[str]) -> list[Problem]:
-    from fmus.build import Runtime
+def _runtime_problems(runtime: str, platforms: Sequence[str], fmi: int) -> list[Problem]:
+    from fmus.build import ONLY_NATIVE, Fmi, Runtime
     from fmus.native_fmu import PLATFORMS
 
     problems = [Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS)) for name in platforms
@@ -172,6 +175,10 @@ def _runtime_problems(runtime: str, platforms: Sequence[str]) -> list[Problem]:
     elif platforms and runtime == Runtime.PYTHON:
         problems.append(Problem("--platform", "is for native FMUs; those with Python inside run everywhere",
                                 "add --runtime native"))
+    if fmi not in list(Fmi):
+        problems.append(Problem(f"--fmi {fmi}", "there is no such version of FMI here", "choose 2 or 3"))
+    elif fmi == Fmi.THREE and runtime != Runtime.NATIVE:
+        problems.append(Problem(f"--fmi 3 --runtime {runtime}", ONLY_NATIVE, "add --runtime native"))
     return problems
 
 

@@ -96,17 +96,20 @@ def list_() -> None:
 def build(components: Annotated[list[str] | None, typer.Argument(metavar="COMPONENT", help="All of them by default.")] = None,
           size: Annotated[list[str] | None, typer.Option(metavar="NAME=NUMBER", help="A size other than the default. May be "
                                                          "repeated.")] = None,
-          runtime: Annotated[str, typer.Option(metavar="python|native|both", help="FMUs with Python inside, which every processor "
-                                               "runs, or native ones, which need no Python.")] = "python",
+          runtime: Annotated[str | None, typer.Option(metavar="python|native|both", help="FMUs with Python inside, which every "
+                                                      "processor runs, or native ones, which need no Python. By default python, "
+                                                      "with --fmi 3 native.")] = None,
+          fmi: Annotated[int, typer.Option(metavar="2|3", help="Version of FMI. That of 3.0 is for native FMUs only.")] = 2,
           platform: Annotated[list[str] | None, typer.Option(metavar="linux64|win64|darwin64", help="Of native FMUs; by default "
                                                              "this machine's. May be repeated.")] = None,
-          output_dir: Annotated[Path | None, typer.Option(help="The FMUs go into its folders python and native.")] = None,
+          output_dir: Annotated[Path | None, typer.Option(help="The FMUs go into its folders python, native and "
+                                                               "native-fmi3.")] = None,
           quiet: Quiet = False) -> None:
     """Build FMUs, always anew."""
     from .building import build_all
 
     with _screen(quiet) as screen, screen.busy("building"):
-        for file in build_all(components or [], size or [], output_dir, runtime, platform or []):
+        for file in build_all(components or [], size or [], output_dir, runtime, platform or [], fmi):
             screen.say(f"{file}  {file.stat().st_size / 1024:.0f} KiB")
 
 

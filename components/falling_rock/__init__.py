@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..component import Component
+from ..ports import Bond
 from . import kernel
 from .declarations import LAYOUT
 
@@ -17,4 +18,5 @@ COMPONENT = Component(
     faults={kernel.DIVERGED: "position or work is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
                              "reduce the exchange step or the step of the component that computes it"},
     default_step=1e-5,
+    bonds=(Bond("rock", "motion of the rock, force on it"),),
 )

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..component import Component
+from ..ports import Bond
 from . import kernel
 from .declarations import LAYOUT, SIZES
 
@@ -23,4 +24,6 @@ COMPONENT = Component(
                              "{internal_step} s and the largest stable one {stable_step} s: reduce internal_step below that, or,"
                              " if it is, the exchange step of the component that computes the forces"},
     default_step=1e-5,
+    bonds=(Bond("beam", "motion of the discs, force on them"),
+           Bond("support", "motion of the supports, force on them", "support.")),
 )

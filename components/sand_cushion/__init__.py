@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..component import Component
+from ..ports import Bond
 from . import kernel
 from .declarations import LAYOUT, SIZES
 
@@ -41,4 +42,6 @@ COMPONENT = Component(
         kernel.BEAM_UNORDERED: "the beam discs must follow each other from left to right (beam.position.x[i] ascending)",
     },
     default_step=1e-5,
+    bonds=(Bond("rock", "motion of the rock, force on it", "rock."),
+           Bond("beam", "motion of the beam's discs, force on them", "beam.")),
 )

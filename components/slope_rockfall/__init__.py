@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..component import Component
+from ..ports import Bond, NextEvent
 from . import kernel, refusals
 from .declarations import LAYOUT, SIZES
 
@@ -29,4 +30,6 @@ COMPONENT = Component(
     },
     default_step=1e-2,
     default_stop_time=20.0,
+    bonds=(Bond("rock", "motion of the rock, force on it in the receiver"),),
+    next_event=NextEvent("next_event.time", while_zero=("force.x", "force.y", "torque")),
 )

@@ -154,7 +154,7 @@ LAYOUT = Layout(
             maximum=float(len(_MODES))),
         out("cell", "number of the cell below the rock, from 1", kind=Kind.INTEGER),
         out("height", "distance of the rock from the cell below it, along the cell's normal", "m"),
-        out("next_event.time", "time at which the motion changes next if no force acts; 1e30 if never", "s"),
+        out("next_event.time", "time at which the motion changes next if no force acts, rounded up to a picosecond; 1e30 if never", "s"),
         out("impacts", "number of impacts so far", kind=Kind.INTEGER),
         out("received", "the rock is handed over: it is in the receiver", kind=Kind.BOOLEAN),
         out("handover.time", "time of the last hand-over; 1e30 before the first", "s"),

@@ -32,6 +32,17 @@ def on_grid(time):
     return math.floor(time * _GRID + 0.5) / _GRID
 
 
+@kernel
+def grid_after(time):
+    """The first whole picosecond (s) that is not before the time (s): a step that ends there has what happens then behind it."""
+    if time >= NEVER:
+        return NEVER
+    number = math.floor(time * _GRID)
+    while number / _GRID < time:
+        number += 1
+    return number / _GRID
+
+
 # --- start ---
 
 @kernel
@@ -162,7 +173,7 @@ def publish_place(world, b, w, x, k):
     w[V.mode] = b[BODY.mode]
     w[V.cell] = world.path[j * len(PATH) + PATH.cell] + 1.0
     w[V.height] = height_above(j, w[V.position_x], w[V.position_y], world.path)
-    w[V.next_event_time] = min(NEVER, origin + b[BODY.next_time])
+    w[V.next_event_time] = min(NEVER, origin + grid_after(b[BODY.next_time]))
     w[V.impacts], w[V.handovers] = b[BODY.impacts], b[BODY.handovers]
     w[V.received] = 1.0 if b[BODY.mode] == RECEIVED else 0.0
     w[V.handover_time] = min(NEVER, origin + b[BODY.handover_time])

@@ -1,6 +1,8 @@
-/* FMI 2.0 co-simulation slave around the kernels of one component. model.h, generated from the component's declarations, has the
-   tables of its variables. It behaves as python_fmu.py does, and takes and gives the same serialized states; but a call that is
-   refused returns fmi2Error itself. Compiled for every x86-64 processor: it looks whether the kernels can run on this one. */
+/* The slave of native FMUs around the kernels of one component, for every version of FMI. model.h, generated from the component's
+   declarations, has the tables of its variables. It behaves as python_fmu.py does, and takes and gives the same serialized states;
+   but a call that is refused returns an error itself. Compiled for every x86-64 processor: it looks whether the kernels can run on
+   this one. The file that includes it has the functions of one version of FMI, and defines the words of that version before:
+   TOKEN, TYPE_NAMES, TO_INITIALISE, CALL_OF(type of a variable): the type whose call moves it, HAS_TIME: whether that can be read. */
 #include <cpuid.h>
 #include <math.h>
 #include <stdarg.h>
@@ -10,7 +12,7 @@
 #include <string.h>
 
 typedef const char *Text;
-typedef unsigned int Reference;
+typedef uint32_t Reference;
 typedef enum { OK, WARNING, DISCARD, ERROR } Status;
 typedef enum { INSTANTIATED = 1, INITIALISING, RUNNING, TERMINATED, FAILED } Phase;
 enum { REAL, INTEGER, BOOLEAN, STRING, ENUMERATION };
@@ -22,11 +24,11 @@ enum { NOTHING, OUTPUTS, STATE }; /* what has to be computed before an output is
 typedef struct { Text name; int first, length, type, causality; double low, high; Text unit, range, description; } Variable;
 typedef struct { int64_t status; Text text; } Fault; /* {5} in the text: the value of reference 5 */
 #include "model.h"
+enum { TIME = NW + NC }; /* value reference of the time, behind those of the sizes */
 
-typedef struct { void (*logger)(void *, Text, Status, Text, Text, ...); void *(*allocate)(size_t, size_t); void (*release)(void *);
-                 void (*stepFinished)(void *, Status); void *environment; } Callbacks;
 typedef struct { uint64_t mark; uint32_t phase; double time, w[NW], x[NX + 1]; int64_t k[NK + 1]; } State;
-typedef struct { State s; Callbacks callbacks; char *name; double stop; int stale, previewed, told[ERROR + 1];
+typedef struct { void (*logger)(void); void *environment; int takes_early_return; } Host; /* what the importer gave to an instance */
+typedef struct { State s; Host host; char *name; double stop; int stale, previewed, told[ERROR + 1];
                  size_t length; char text[16384]; } Slave;
 
 extern int64_t rockshed_initialise(double *w, double *x, int64_t *k);
@@ -40,13 +42,15 @@ extern int64_t rockshed_step(double t, double h, double *w, double *x, int64_t *
 #endif
 #define SLAVE Slave *m = c; if (!m) return ERROR
 
+static void deliver(Slave *m, Status status, Text category); /* the message m->text to the importer */
+
 static const Text REMEDIES[] = { "",
-  "the slave is not initialised: set up the experiment, then enter and exit the initialization mode",
+  "the slave is not initialised: " TO_INITIALISE,
   "the initialization mode is not finished: exit it first",
   "the slave is initialised already: reset it first",
   "the slave is terminated: reset it first",
   "an earlier call was refused or has failed, see the log: reset the slave or restore an earlier state" };
-static const Text TYPES[] = { "Real", "Integer", "Boolean", "String", "Enumeration" };
+static const Text TYPES[] = TYPE_NAMES;
 static const Text CATEGORIES[] = { "", "logStatusWarning", "", "logStatusError" };
 static const Text DAMAGED = "this is no serialized state of a rockshed FMU, or it is damaged: restore another one";
 static const Text FOREIGN = "this is no serialized state of this component with these sizes";
@@ -77,9 +81,7 @@ static void because(Slave *m, Text format, ...) {
 }
 
 static void tell(Slave *m, Status status) {
-  for (char *c = m->text; *c; c++) if (*c == '%') *c = ' '; /* hosts may take the text for a format */
-  if (m->callbacks.logger && m->told[status])
-    m->callbacks.logger(m->callbacks.environment, m->name, status, CATEGORIES[status], m->text);
+  if (m->told[status]) deliver(m, status, CATEGORIES[status]);
   m->length = 0;
   m->text[0] = 0;
 }
@@ -120,7 +122,7 @@ static int is_known(Slave *m, Reference r, int type) {
     return 0;
   }
   int its = VARIABLES[VARIABLE_OF[r]].type;
-  if (type == (its == ENUMERATION ? INTEGER : its)) return 1;
+  if (type == CALL_OF(its)) return 1;
   because(m, "%s is of type %s, not %s: use the call of its type", name_of(r).text, TYPES[its], TYPES[type]);
   return 0;
 }
@@ -194,40 +196,29 @@ static int compute(Slave *m) { /* outputs at the start; the state, which may be 
   return 1;
 }
 
-EXPORT Text fmi2GetTypesPlatform(void) { return "default"; }
-EXPORT Text fmi2GetVersion(void) { return "2.0"; }
+static void free_slave(Slave *m) { if (m) { free(m->name); free(m); } }
 
-EXPORT void fmi2FreeInstance(void *c) { if (c) { free(((Slave *)c)->name); free(c); } }
-
-EXPORT void *fmi2Instantiate(Text name, int type, Text guid, Text resources, const Callbacks *callbacks, int visible, int logging) {
+static Slave *new_slave(Text name, Host host) { /* why it cannot be used is told in any case */
   Slave *m = calloc(1, sizeof *m);
-  if (!m || !callbacks || !name || !(m->name = malloc(strlen(name) + 1))) { free(m); return NULL; }
+  if (!m || !name || !(m->name = malloc(strlen(name) + 1))) { free(m); return NULL; }
   strcpy(m->name, name);
-  m->callbacks = *callbacks;
-  m->told[WARNING] = m->told[ERROR] = 1; /* why there is no instance is told in any case */
-  if (!guid || strcmp(guid, GUID)) because(m, "the GUID is %s, and this FMU has " GUID ": read its own modelDescription.xml",
-                                           guid ? guid : "missing");
-  if (type != 1) because(m, "model exchange is asked for, and this FMU is for co-simulation");
+  m->host = host;
+  m->told[WARNING] = m->told[ERROR] = 1;
+  return m;
+}
+
+static Slave *checked(Slave *m, Text token, int logging) { /* NULL if there is any reason against it */
+  if (!token || strcmp(token, GUID)) because(m, "the " TOKEN " is %s, and this FMU has " GUID ": read its own modelDescription.xml",
+                                             token ? token : "missing");
   if (!cpu_fits()) because(m, "this processor lacks instructions of " CPU ", for which this FMU was compiled: "
                            "use the FMU of this component that runs in Python");
-  if (m->length) { tell(m, ERROR); fmi2FreeInstance(m); return NULL; }
+  if (m->length) { tell(m, ERROR); free_slave(m); return NULL; }
   m->told[WARNING] = m->told[ERROR] = logging;
   start_anew(m);
   return m;
 }
 
-EXPORT Status fmi2SetDebugLogging(void *c, int on, size_t n, const Text categories[]) {
-  SLAVE;
-  for (Status status = WARNING; status <= ERROR; status += ERROR - WARNING) {
-    m->told[status] = on && !n;
-    for (size_t i = 0; on && i < n; i++)
-      m->told[status] |= !strcmp(categories[i], CATEGORIES[status]) || !strcmp(categories[i], "logAll");
-  }
-  return OK;
-}
-
-EXPORT Status fmi2SetupExperiment(void *c, int with_tolerance, double tolerance, double start, int with_stop, double stop) {
-  SLAVE;
+static Status set_up(Slave *m, double start, int with_stop, double stop) {
   if (m->s.phase != INSTANTIATED) return not_now(m, "set up the experiment");
   if (!isfinite(start) || (with_stop && !(stop >= start))) {
     because(m, "start time = %s s, stop time = %s s: the start must be a finite number, and the stop not before it",
@@ -239,16 +230,14 @@ EXPORT Status fmi2SetupExperiment(void *c, int with_tolerance, double tolerance,
   return OK;
 }
 
-EXPORT Status fmi2EnterInitializationMode(void *c) {
-  SLAVE;
+static Status enter_initialisation(Slave *m) {
   if (m->s.phase != INSTANTIATED) return not_now(m, "enter the initialization mode");
   if (isnan(m->s.time)) return refuse(m, "the start time is unknown: set up the experiment before entering the initialization mode");
   m->s.phase = INITIALISING;
   return OK;
 }
 
-EXPORT Status fmi2ExitInitializationMode(void *c) {
-  SLAVE;
+static Status exit_initialisation(Slave *m) {
   if (m->s.phase != INITIALISING) return not_now(m, "exit the initialization mode");
   if (!compute(m)) return refused(m);
   m->s.phase = RUNNING;
@@ -259,15 +248,12 @@ EXPORT Status fmi2ExitInitializationMode(void *c) {
   return WARNING;
 }
 
-EXPORT Status fmi2Terminate(void *c) {
-  SLAVE;
+static Status terminate(Slave *m) {
   if (m->s.phase == FAILED) return OK;
   if (m->s.phase != RUNNING) return not_now(m, "terminate");
   m->s.phase = TERMINATED;
   return OK;
 }
-
-EXPORT Status fmi2Reset(void *c) { SLAVE; start_anew(m); return OK; }
 
 static int may_step(Slave *m, double time, double step) {
   double tolerance = 1e-6 * step + 4.0 * (nextafter(fabs(m->s.time), INFINITY) - fabs(m->s.time));
@@ -281,16 +267,14 @@ static int may_step(Slave *m, double time, double step) {
   return 0;
 }
 
-EXPORT Status fmi2DoStep(void *c, double time, double step, int no_earlier_state) {
-  SLAVE;
-  if (!may_step(m, time, step)) { tell(m, ERROR); return ERROR; } /* nothing has changed, and the right step may follow */
+static Status advance(Slave *m, double time, double step, double end, Status failure) {
   int64_t status = rockshed_step(time, step, m->s.w, m->s.x, m->s.k);
-  if (!status) { m->s.time = time + step; return OK; }
+  if (!status) { m->s.time = end; return OK; }
   Short when;
   snprintf(when.text, sizeof when.text, "at t = %.9g s ", time);
   has_failed(m, status, when.text);
   refused(m);
-  return DISCARD; /* a shorter step from an earlier state may succeed */
+  return failure;
 }
 
 /* --- values */
@@ -307,15 +291,6 @@ static void preview(Slave *m) { /* what is wrong with the inputs may still be pu
   m->previewed = 1;
 }
 
-/* The ways of every exchange: a block of consecutive references to real variables that can be read as they are, or to inputs that
-   may have any finite value. Whatever else there is, is for get and set. */
-static int is_block(const Reference r[], size_t n, int trait) {
-  Reference different = 0;
-  if (!n || r[0] >= NW || !(TRAITS[r[0]] & trait) || n > ALIKE[r[0]]) return 0;
-  for (size_t i = 0; i < n; i++) different |= r[i] ^ (r[0] + (Reference)i);
-  return !different;
-}
-
 static int are_finite(const double v[], size_t n) {
   const uint64_t exponent = 0x7FFull << 52, last = 1ull << 52; /* all bits of the exponent are set: the sum reaches the first bit */
   uint64_t sums = 0, bits;
@@ -323,39 +298,42 @@ static int are_finite(const double v[], size_t n) {
   return !(sums >> 63);
 }
 
-static int get_block(const Slave *m, const Reference r[], size_t n, double v[]) {
-  if (m->s.phase == INITIALISING || !is_block(r, n, IS_REAL)) return 0;
-  memcpy(v, m->s.w + r[0], n * sizeof *v);
-  return 1;
+typedef enum { DOUBLES, INTS, LONGS, BYTES } Form; /* how a call holds its values */
+
+static double taken(const void *v, Form form, size_t i) {
+  return form == DOUBLES ? ((const double *)v)[i] : form == INTS ? ((const int32_t *)v)[i]
+       : form == LONGS ? (double)((const int64_t *)v)[i] : ((const unsigned char *)v)[i];
 }
 
-static int set_block(Slave *m, const Reference r[], size_t n, const double v[]) {
-  if (m->s.phase != RUNNING || !is_block(r, n, IS_FREE) || !are_finite(v, n)) return 0;
-  memcpy(m->s.w + r[0], v, n * sizeof *v);
-  return 1;
+static void give(void *v, Form form, size_t i, double value) {
+  if (form == DOUBLES) ((double *)v)[i] = value;
+  else if (form == INTS) ((int32_t *)v)[i] = (int32_t)value;
+  else if (form == LONGS) ((int64_t *)v)[i] = (int64_t)value;
+  else ((unsigned char *)v)[i] = value != 0.0;
 }
 
-static Status get(Slave *m, int type, const Reference r[], size_t n, double real[], int whole[]) {
+static int is_read_only(Reference r, int type) { /* a size, or the time */
+  return (type == INTEGER && r >= NW && r < TIME) || (HAS_TIME && type == REAL && r == TIME);
+}
+
+static Status get(Slave *m, int type, const Reference r[], size_t n, void *v, Form form) {
   int outputs = 0;
-  for (size_t i = 0; i < n; i++) {
-    if (type == INTEGER && r[i] >= NW && r[i] < NW + NC) continue;
-    if (is_known(m, r[i], type)) outputs |= VARIABLES[VARIABLE_OF[r[i]]].causality == OUTPUT;
-  }
+  for (size_t i = 0; i < n; i++)
+    if (!is_read_only(r[i], type) && is_known(m, r[i], type)) outputs |= VARIABLES[VARIABLE_OF[r[i]]].causality == OUTPUT;
   if (m->length) return refused(m);
   if (outputs && m->s.phase == INITIALISING) preview(m);
   for (size_t i = 0; i < n; i++)
-    if (type == REAL) real[i] = m->s.w[r[i]];
-    else whole[i] = r[i] >= NW ? SIZES[r[i] - NW] : type == BOOLEAN ? m->s.w[r[i]] != 0.0 : (int)m->s.w[r[i]];
+    give(v, form, i, r[i] < NW ? type == BOOLEAN ? m->s.w[r[i]] != 0.0 : m->s.w[r[i]] : r[i] < TIME ? SIZES[r[i] - NW] : m->s.time);
   return OK;
 }
 
-static Status set(Slave *m, int type, const Reference r[], size_t n, const double real[], const int whole[]) {
+static Status set(Slave *m, int type, const Reference r[], size_t n, const void *v, Form form) {
   int stale = NOTHING;
   if (m->s.phase >= TERMINATED) return not_now(m, "set a variable");
-  for (size_t i = 0; i < n; i++) check_set(m, r[i], type, type == REAL ? real[i] : whole[i]);
+  for (size_t i = 0; i < n; i++) check_set(m, r[i], type, taken(v, form, i));
   if (m->length) return refused(m);
   for (size_t i = 0; i < n; i++) {
-    double value = type == REAL ? real[i] : type == BOOLEAN ? whole[i] != 0 : whole[i];
+    double value = type == BOOLEAN ? taken(v, form, i) != 0.0 : taken(v, form, i);
     int needs = VARIABLES[VARIABLE_OF[r[i]]].causality == PARAMETER ? STATE : OUTPUTS;
     if (m->s.w[r[i]] != value && needs > stale) stale = needs;
     m->s.w[r[i]] = value;
@@ -366,17 +344,6 @@ static Status set(Slave *m, int type, const Reference r[], size_t n, const doubl
   }
   return OK;
 }
-
-EXPORT Status fmi2GetReal(void *c, const Reference r[], size_t n, double v[]) {
-  SLAVE; return get_block(m, r, n, v) ? OK : get(m, REAL, r, n, v, NULL); }
-EXPORT Status fmi2SetReal(void *c, const Reference r[], size_t n, const double v[]) {
-  SLAVE; return set_block(m, r, n, v) ? OK : set(m, REAL, r, n, v, NULL); }
-EXPORT Status fmi2GetInteger(void *c, const Reference r[], size_t n, int v[]) { SLAVE; return get(m, INTEGER, r, n, NULL, v); }
-EXPORT Status fmi2SetInteger(void *c, const Reference r[], size_t n, const int v[]) { SLAVE; return set(m, INTEGER, r, n, NULL, v); }
-EXPORT Status fmi2GetBoolean(void *c, const Reference r[], size_t n, int v[]) { SLAVE; return get(m, BOOLEAN, r, n, NULL, v); }
-EXPORT Status fmi2SetBoolean(void *c, const Reference r[], size_t n, const int v[]) { SLAVE; return set(m, BOOLEAN, r, n, NULL, v); }
-EXPORT Status fmi2GetString(void *c, const Reference r[], size_t n, Text v[]) { SLAVE; return n ? refuse(m, "this FMU has no string") : OK; }
-EXPORT Status fmi2SetString(void *c, const Reference r[], size_t n, const Text v[]) { SLAVE; return n ? refuse(m, "this FMU has no string") : OK; }
 
 /* --- complete state; serialized as seal (mark, checksum), clock (phase, time), header of the component, w, x, k */
 
@@ -409,15 +376,13 @@ static void carry_fields(State *s, char *at, int out) {
 
 static State *as_state(void *state) { State *s = state; return s && s->mark == MARK ? s : NULL; }
 
-EXPORT Status fmi2GetFMUstate(void *c, void **state) {
-  SLAVE;
+static Status get_state(Slave *m, void **state) {
   if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
   memcpy(*state, &m->s, sizeof(State));
   return OK;
 }
 
-EXPORT Status fmi2SetFMUstate(void *c, void *state) {
-  SLAVE;
+static Status set_state(Slave *m, void *state) {
   if (!as_state(state)) return refuse(m, DAMAGED);
   memcpy(&m->s, state, sizeof(State));
   m->stale = m->s.phase <= INITIALISING ? STATE : NOTHING;
@@ -425,20 +390,9 @@ EXPORT Status fmi2SetFMUstate(void *c, void *state) {
   return OK;
 }
 
-EXPORT Status fmi2FreeFMUstate(void *c, void **state) {
-  SLAVE;
-  if (state) { free(*state); *state = NULL; }
-  return OK;
-}
+static void free_state(void **state) { if (state) { free(*state); *state = NULL; } }
 
-EXPORT Status fmi2SerializedFMUstateSize(void *c, void *state, size_t *n) {
-  SLAVE;
-  *n = SERIALIZED;
-  return OK;
-}
-
-EXPORT Status fmi2SerializeFMUstate(void *c, void *state, char bytes[], size_t n) {
-  SLAVE;
+static Status serialize(Slave *m, void *state, char bytes[], size_t n) {
   if (!as_state(state)) return refuse(m, DAMAGED);
   if (n < SERIALIZED) { because(m, "a serialized state has %d bytes; there is room for %zu", (int)SERIALIZED, n); return refused(m); }
   carry_fields(state, bytes + SEAL, 1);
@@ -448,8 +402,7 @@ EXPORT Status fmi2SerializeFMUstate(void *c, void *state, char bytes[], size_t n
   return OK;
 }
 
-EXPORT Status fmi2DeSerializeFMUstate(void *c, const char bytes[], size_t n, void **state) {
-  SLAVE;
+static Status deserialize(Slave *m, const char bytes[], size_t n, void **state) {
   uint32_t sum = n < SEAL + CLOCK ? 0 : checksum((unsigned char *)bytes + SEAL, n - SEAL);
   if (n < SEAL + CLOCK || memcmp(bytes, "rockslav", 8) || memcmp(bytes + 8, &sum, 4)) return refuse(m, DAMAGED);
   if (n != SERIALIZED || memcmp(bytes + SEAL + CLOCK, HEADER, sizeof HEADER)) return refuse(m, FOREIGN);
@@ -457,26 +410,4 @@ EXPORT Status fmi2DeSerializeFMUstate(void *c, const char bytes[], size_t n, voi
   ((State *)*state)->mark = MARK;
   carry_fields(*state, (char *)bytes + SEAL, 0);
   return OK;
-}
-
-/* --- what this FMU has not, as its description says */
-
-EXPORT Status fmi2GetDirectionalDerivative(void *c, const Reference u[], size_t nu, const Reference k[], size_t nk, const double dk[],
-                                           double du[]) { SLAVE; return refuse(m, "this FMU has no directional derivatives"); }
-EXPORT Status fmi2SetRealInputDerivatives(void *c, const Reference r[], size_t n, const int order[], const double v[]) {
-  SLAVE; return refuse(m, "this FMU does not interpolate its inputs"); }
-EXPORT Status fmi2GetRealOutputDerivatives(void *c, const Reference r[], size_t n, const int order[], double v[]) {
-  SLAVE; return refuse(m, "this FMU has no derivatives of its outputs"); }
-EXPORT Status fmi2CancelStep(void *c) { SLAVE; return refuse(m, "no step is under way: steps end before fmi2DoStep returns"); }
-EXPORT Status fmi2GetStatus(void *c, int kind, Status *v) { return DISCARD; }
-EXPORT Status fmi2GetIntegerStatus(void *c, int kind, int *v) { return DISCARD; }
-EXPORT Status fmi2GetStringStatus(void *c, int kind, Text *v) { return DISCARD; }
-EXPORT Status fmi2GetRealStatus(void *c, int kind, double *v) { /* 2: time of the last step that succeeded */
-  SLAVE;
-  if (kind == 2) *v = m->s.time;
-  return kind == 2 ? OK : DISCARD;
-}
-EXPORT Status fmi2GetBooleanStatus(void *c, int kind, int *v) { /* 3: whether the slave wants to end */
-  if (kind == 3) *v = 0;
-  return kind == 3 ? OK : DISCARD;
 }
