@@ -127,7 +127,7 @@ BOND_MEMBERS = ("position.x", "position.y", "angle", "velocity.x", "velocity.y",
 
 @dataclass(frozen=True, slots=True)
 class Bond:
-    """A mechanical power bond to another component: the motion of a body that one of them computes, and the force on it by the other.
+    """A mechanical power bond to another component: the motion of a body, which one of them computes, and the force on it.
 
     Its members are the inputs and outputs of the component that are named ``prefix`` + one of :data:`BOND_MEMBERS`, be they
     scalars or arrays. Two components fit together if their bonds have the same members.

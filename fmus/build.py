@@ -22,8 +22,8 @@ from .native_fmu import is_fresh, native_files
 from .parts import BuildError, Files, Fmi, Runtime, archive, component_sources, digest, documentation, picture, replace
 from .script import SCRIPT
 
-__all__ = ["BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name", "folder_name", "fmu_content", "fmu_files",
-           "fmu_folder", "native_is_fresh", "store"]
+__all__ = ["BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name", "fmu_content",
+           "fmu_files", "fmu_folder", "folder_name", "native_is_fresh", "store"]
 
 FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
 """Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python``, ``native`` and

@@ -34,6 +34,7 @@ _NEEDS_TOOL = {Runtime.PYTHON: "true", Runtime.NATIVE: "false"}
 
 
 def generation_tool(runtime: Runtime) -> str:
+    """The attribute ``generationTool``."""
     if runtime is Runtime.NATIVE:
         return f"rockshed {version('rockshed')}, native code"
     return f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; runs in Python >= 3.11 with numpy and numba"

@@ -1,8 +1,8 @@
 """Native FMUs: the kernels of a component as machine code behind a slave in C. Nothing of Python is in them.
 
-``slave.h`` is that slave, ``shim_fmi2.c`` and ``shim_fmi3.c`` are the functions of FMI 2.0 and 3.0 around it. Kernels are compiled by numba and LLVM for the processor :data:`CPU`, the shim by a C compiler for any x86-64; it looks at the
-processor before it makes an instance. The model description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and
-one flag.
+``slave.h`` is that slave, ``shim_fmi2.c`` and ``shim_fmi3.c`` are the functions of FMI 2.0 and 3.0 around it. Kernels are compiled
+by numba and LLVM for the processor :data:`CPU`, the shim by a C compiler for any x86-64; it looks at the processor before it makes
+an instance. The model description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and one flag.
 """
 
 import json
@@ -98,7 +98,7 @@ def own_platform() -> str:
 
 
 def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO) -> Files:
-    """Everything that goes into a native FMU. Its GUID, in FMI 3.0 its instantiation token, is a hash over all that it is made from.
+    """Everything that goes into a native FMU. Its GUID (FMI 3.0: instantiation token) is a hash over all that it is made from.
 
     platforms: keys of :data:`PLATFORMS`; by default this machine's.
 
@@ -112,8 +112,8 @@ def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = 
     header = model_header(component, sizes, _guid(files[_DESCRIPTION]))
     for name in platforms:
         path = _library(component, name, fmi)
-        sources = {"model.h": header, "kernels.o": objects[name], _SLAVE.name: _SLAVE.read_bytes(), "shim.c": _SHIMS[fmi].read_bytes()}
-        files[path] = _linked(component.name, compilers[name], name, Path(path).name, sources)
+        sources = {"model.h": header, "kernels.o": objects[name], **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
+        files[path] = _linked(component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources)
     return files
 
 
@@ -223,7 +223,8 @@ def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
         f"#define CPU_1C 0x{CPU.leaf_1:x}u", f"#define CPU_7B 0x{CPU.leaf_7:x}u", f"#define CPU_81C 0x{CPU.leaf_81:x}u",
         f"#define MARK 0x{instance.kind[:8].hex()}u",
         _array("double", "START", map(_real, instance.w.tolist())), _array("int64_t", "TABLE", map(str, entries or [0])),
-        _array("int", "SIZES", map(str, [*sizes.values(), 0])), _array("Text", "READ_ONLY", map(_text, [*sizes, description3.TIME])),
+        _array("int", "SIZES", map(str, [*sizes.values(), 0])),
+        _array("Text", "READ_ONLY", map(_text, [*sizes, description3.TIME])),
         _array("int", "ZERO_UNTIL_EVENT", map(str, [*waits, -1])), _array("unsigned char", "HEADER", map(str, header)),
         _array("Variable", "VARIABLES", _variables(component, sizes)), _array("unsigned short", "VARIABLE_OF", map(str, owners)),
         _array("unsigned char", "TRAITS", traits), _array("unsigned short", "ALIKE", map(str, _alike(traits))),
@@ -298,8 +299,8 @@ def compiler(platform: str) -> list[str]:
                      f"{_PYTHON_REMAINS}")
 
 
-def _linked(name: str, compiler: Sequence[str], platform: str, library: str, sources: Files) -> bytes:
-    """The shared library of an FMU, from shim.c with all that it includes and kernels.o.
+def _linked(name: str, compiler: Sequence[str], platform: str, library: str, shim: str, sources: Files) -> bytes:
+    """The shared library of an FMU, from the shim with all that it includes and kernels.o.
 
     Raises:
         BuildError: the compiler fails; its messages.
@@ -308,7 +309,7 @@ def _linked(name: str, compiler: Sequence[str], platform: str, library: str, sou
         work = Path(folder)
         for source, content in sources.items():
             (work / source).write_bytes(content)
-        command = [*compiler, *_OPTIONS, "-o", library, "shim.c", "kernels.o", *PLATFORMS[platform].options]
+        command = [*compiler, *_OPTIONS, "-o", library, shim, "kernels.o", *PLATFORMS[platform].options]
         try:
             done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
         except OSError as error:

@@ -138,8 +138,8 @@ def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | No
     ``native-fmi3``. fmi: 2 or 3, the version of FMI. runtime: by default Python, with FMI 3 native.
 
     Raises:
-        InputRefused: unknown components, sizes, runtimes, versions or platforms, sizes out of range, a compiler that fails, a folder that
-            cannot be written.
+        InputRefused: unknown components, sizes, runtimes, versions or platforms, sizes out of range, a compiler that fails, a
+            folder that cannot be written.
     """
     from fmus.build import BuildError, Fmi, Runtime, fmu_content, folder_name, store
 

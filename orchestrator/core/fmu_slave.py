@@ -11,6 +11,7 @@ import tempfile
 import weakref
 import zipfile
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -38,6 +39,8 @@ from .errors import InputRefused, Problem
 from .slave import BOOLEAN, ERROR, FATAL, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
 
 _DESCRIPTION_FILE = "modelDescription.xml"
+DRIVEN, READABLE = ("2.0",), ("2.0", "3.0")
+"""Versions of FMI that this program drives, and those whose descriptions it can show."""
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 _MESSAGES_KEPT = 1000
 
@@ -67,14 +70,19 @@ class FmuFile:
             raise self._refusal("is not an FMU: not a zip archive", "export it again") from error
         if xml is None:
             raise self._refusal(f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again")
-        self._check_binary(names)
+        self._check_binary(names, fmpy.platform_tuple if _version(xml).startswith("3") else fmpy.platform)
         return xml
 
-    def _check_binary(self, names: list[str]) -> None:
+    def content(self, name: str) -> bytes | None:
+        """A file in the FMU, which has been looked at before; None if it is not in it."""
+        with zipfile.ZipFile(self.path) as archive:
+            return archive.read(name) if name in archive.namelist() else None
+
+    def _check_binary(self, names: list[str], platform: str) -> None:
         platforms = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and not name.endswith("/")})
-        if fmpy.platform not in platforms:
-            raise self._refusal(f"has no binary for this machine ({fmpy.platform}); it has {', '.join(platforms) or 'none'}",
-                                f"export it for {fmpy.platform}")
+        if platform not in platforms:
+            raise self._refusal(f"has no binary for this machine ({platform}); it has {', '.join(platforms) or 'none'}",
+                                f"export it for {platform}")
 
     def _refusal(self, what: str, remedy: str) -> InputRefused:
         return InputRefused([Problem(str(self.path), what, remedy)])
@@ -88,13 +96,13 @@ class FmuFile:
         return FmuSlave(self, name)
 
 
-def read_description(xml: bytes) -> Description:
-    """What ``modelDescription.xml`` says.
+def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Description:
+    """What ``modelDescription.xml`` says. An array of FMI 3.0 is described by its elements, ``name[1]``, ``name[2]``, ...
 
     Raises:
-        ValueError: it is no FMI 2.0 co-simulation, or cannot be understood.
+        ValueError: it is for another version of FMI or no co-simulation, or cannot be understood.
     """
-    _check_kind(xml)
+    _check_kind(xml, versions)
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as file:
         file.writestr(_DESCRIPTION_FILE, xml)
@@ -111,18 +119,27 @@ def read_description(xml: bytes) -> Description:
     return Description(model.modelName, model.guid, interface.modelIdentifier, model.generationTool or "",
                        interface.canBeInstantiatedOnlyOncePerProcess,
                        interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
-                       {v.name: _port(v, units) for v in model.modelVariables}, warnings)
+                       {port.name: port for v in model.modelVariables for port in _ports(v, units)}, warnings)
 
 
-def _check_kind(xml: bytes) -> None:
+def _check_kind(xml: bytes, versions: tuple[str, ...]) -> None:
     try:
         root = ElementTree.fromstring(xml)
     except ElementTree.ParseError as error:
         raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
-    if root.get("fmiVersion") != "2.0":
-        raise ValueError(f"is FMI {root.get('fmiVersion')}; this program drives FMI 2.0")
+    if not (root.get("fmiVersion") or "").startswith(versions):
+        what = "shows FMI 2.0 and 3.0" if versions == READABLE else "drives FMI 2.0"
+        raise ValueError(f"is FMI {root.get('fmiVersion')}; this program {what}")
     if root.find("CoSimulation") is None:
         raise ValueError("is for model exchange only; co-simulation is needed")
+
+
+def _version(xml: bytes) -> str:
+    """The version of FMI; empty where the description cannot be read."""
+    try:
+        return ElementTree.fromstring(xml).get("fmiVersion") or ""
+    except ElementTree.ParseError:
+        return ""
 
 
 def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:
@@ -139,6 +156,23 @@ def _unit(unit: Any) -> Unit:
     return Unit(unit.name, {symbol: n for symbol, n in exponents.items() if n}, unit.baseUnit.factor, unit.baseUnit.offset)
 
 
+_KINDS_OF_FMI_3 = {"Float32": REAL, "Float64": REAL, "Enumeration": INTEGER, **dict.fromkeys(
+    (f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)), INTEGER)}
+
+
+def _ports(variable: ModelVariable, units: dict[str, Unit]) -> Iterator[Port]:
+    """One port, or as many as an array of fixed size has elements."""
+    port = _port(variable, units)
+    lengths = [int(dimension.start or 1) for dimension in variable.dimensions]
+    if not lengths:
+        yield port
+        return
+    starts = (port.start or "").split()
+    for number, place in enumerate(itertools.product(*(range(1, length + 1) for length in lengths))):
+        start = starts[number] if number < len(starts) else starts[0] if len(starts) == 1 else None
+        yield replace(port, name=f"{port.name}[{','.join(map(str, place))}]", start=start)
+
+
 def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
     def attribute(name: str) -> Any:
         own = getattr(variable, name, None)
@@ -149,7 +183,7 @@ def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
 
     unit = attribute("unit")
     items = variable.declaredType.items if variable.declaredType is not None else []
-    return Port(variable.name, variable.valueReference, INTEGER if variable.type == "Enumeration" else variable.type,
+    return Port(variable.name, variable.valueReference, _KINDS_OF_FMI_3.get(variable.type, variable.type),
                 variable.causality, None if unit is None else units.get(unit, Unit(unit)), bound("min"), bound("max"),
                 {item.name: int(item.value) for item in items}, variable.start, variable.description or "")
 

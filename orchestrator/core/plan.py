@@ -150,7 +150,7 @@ class _Planner:
             except InputRefused as refusal:
                 self.problems += [Problem(name, f"{p.where}: {p.what}", p.remedy) for p in refusal.problems]
             except ValueError as error:
-                self._refuse(name, f"{self.system.components[name].fmu} {error}", "use another export of it")
+                self._refuse(name, f"{self.system.components[name].fmu} {error}", "use an FMU of it for FMI 2.0")
         self._check_instances()
 
     def _check_instances(self) -> None:

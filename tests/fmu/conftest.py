@@ -10,7 +10,7 @@ import pytest
 
 import components
 from components.catalogue import NAMES
-from fmus.build import BuildError, Runtime, build, build_component
+from fmus.build import BuildError, Fmi, Runtime, build, build_component
 from fmus.native_fmu import compiler, own_platform
 
 HERE = Path(__file__).parent
@@ -25,10 +25,10 @@ def probe():
     components.__path__.remove(str(HERE / "extra"))
 
 
-def built(runtime, probe, folder):
+def built(runtime, probe, folder, fmi=Fmi.TWO):
     """Files of the FMUs by name."""
-    return {name: build(name, destination=folder, runtime=runtime) for name in NAMES} | {
-        "Probe": build_component(probe, destination=folder, runtime=runtime)}
+    return {name: build(name, destination=folder, runtime=runtime, fmi=fmi) for name in NAMES} | {
+        "Probe": build_component(probe, destination=folder, runtime=runtime, fmi=fmi)}
 
 
 @pytest.fixture(scope="session")
@@ -45,6 +45,12 @@ def native_fmus(probe, tmp_path_factory):
     except BuildError as error:
         pytest.skip(str(error))
     return built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("native dist"))
+
+
+@pytest.fixture(scope="session")
+def fmi3_fmus(native_fmus, probe, tmp_path_factory):
+    """Native FMUs of FMI 3.0 by name. The object code is that of the native ones of FMI 2.0."""
+    return built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("fmi3 dist"), Fmi.THREE)
 
 
 @pytest.fixture(scope="session")
