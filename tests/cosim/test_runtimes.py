@@ -80,6 +80,9 @@ def test_a_compiler_that_fails_leaves_nothing(rockshed, tmp_path, monkeypatch):
     (["build", "--runtime", "java"], ["'java' is unknown", "choose one of python, native, both"]),
     (["build", "--runtime", "native", "--platform", "beos"], ["--platform beos", "no such platform", "linux64"]),
     (["build", "--platform", "win64"], ["--platform: is for native FMUs", "add --runtime native"]),
+    (["build", "--fmi", "3", "--runtime", "python"], ["--fmi 3 --runtime python: FMUs with Python inside are for FMI 2.0 only"]),
+    (["build", "--fmi", "3", "--runtime", "both"], ["--fmi 3 --runtime both: FMUs with Python", "add --runtime native"]),
+    (["build", "--fmi", "4"], ["--fmi 4: there is no such version of FMI here", "choose 2 or 3"]),
     (["run", "lab-impact", "--runtime", "both"], ["'both' is unknown", "auto, native, python"]),
     (["run", "lab-impact", "--runtime", "native", "--in-process"], ["--runtime: is for FMUs", "leave one of them out"]),
     (["run", "some.toml", "--runtime", "native"], ["--runtime: is for cases only", "a system file names FMU files"])])
@@ -107,3 +110,27 @@ def test_an_exported_system_of_both_runtimes_keeps_all_its_fmus(rockshed, needs_
     run = read_run(tmp_path / "results/system")
     assert len({part["sha256"] for part in run.provenance["components"].values()}) == 2
     assert (run.series["one.position.y"] == run.series["other.position.y"]).all()
+
+
+def test_fmus_of_fmi_3_are_built_and_shown_and_not_run(rockshed, needs_compiler, tmp_path):
+    built = rockshed("build", "SandCushion", "--fmi", "3", "--size", "discs=20", "--size", "elements=3")
+    assert built.exit_code == 0, built.stderr
+    file = tmp_path / "dist/native-fmi3/SandCushion-discs20-elements3.fmu"
+    assert built.stdout.split()[0] == str(file)
+    seen = " ".join(rockshed("info", file).stdout.split())
+    assert "FMI 3.0 " in seen
+    assert "beam.force.y[1..3] N" in seen
+    assert "rotation locked 1 = free | 2 = locked" in seen
+    assert "rock rock.position.x, rock.position.y, rock.angle," in seen
+    (tmp_path / "alone.toml").write_text(f"""
+        name = "alone"
+        stop_time = 0.001
+        exchange_step = 1e-4
+        connections = []
+        [components]
+        sand = {{ fmu = "{file}" }}
+    """)
+    refused = rockshed("run", "alone.toml")
+    assert refused.exit_code == 2
+    said = " ".join(refused.stderr.split())
+    assert f"sand: {file} is FMI 3.0; this program drives FMI 2.0 → use an FMU of it for FMI 2.0" in said

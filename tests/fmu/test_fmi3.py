@@ -9,6 +9,7 @@ import zipfile
 
 import pytest
 from fmpy import simulate_fmu
+from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution
 from fmpy.validation import validate_fmu
 
 from components.catalogue import NAMES
@@ -200,7 +201,8 @@ ORDER = {
     "a configuration": (lambda t: t.fmu.enterConfigurationMode(), "its sizes are fixed when the FMU is built"),
     "directional derivatives": (lambda t: (t.start(), t.fmu.getDirectionalDerivative([1], [0], [1.0])), "no directional deriv"),
     "output derivatives": (lambda t: (t.start(), t.fmu.getOutputDerivatives([1], [1])), "no derivatives of its outputs"),
-    "dependencies of elements": (lambda t: t.fmu.getNumberOfVariableDependencies(0), "the dependencies stand in model"),
+    "dependencies of elements": (lambda t: t.fmu.fmi3GetNumberOfVariableDependencies(
+        t.fmu.component, 0, ctypes.byref(ctypes.c_size_t())), "the dependencies stand in model"),
     "no state at all": (lambda t: t.fmu.setFMUState(ctypes.c_void_p()), "no serialized state"),
 }
 
@@ -276,12 +278,13 @@ def test_there_is_no_instance_with(fmi3_fmus, what):
     assert text in told
 
 
-def test_instances_of_other_kinds_are_refused_with_a_word(tank):
-    token, logger = tank.description.guid.encode(), tank.fmu.logMessage
-    assert not tank.fmu.dll.fmi3InstantiateModelExchange(b"other", token, None, False, False, None, logger)
-    assert not tank.fmu.dll.fmi3InstantiateScheduledExecution(b"other", token, None, False, False, None, logger, None, None, None)
-    assert ["asked for, and this FMU is for co-simulation" in text for text in tank.errors()] == [True, True]
-    assert not tank.fmu.dll.fmi3InstantiateCoSimulation(b"x", b"wrong", None, False, False, False, False, None, 0, None, None, None)
+@pytest.mark.parametrize(("kind", "asked"), [(FMU3Model, "model exchange"), (FMU3ScheduledExecution, "scheduled execution")])
+def test_an_instance_of_another_kind_is_refused_with_a_word(tank, kind, asked):
+    told = []
+    other = kind(guid=tank.description.guid, unzipDirectory=tank.folder, instanceName="other", modelIdentifier="Probe")
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        other.instantiate(logMessage=lambda _environment, status, _category, text: told.append((status, text.decode())))
+    assert told == [(ERROR, f"other (Probe): {asked} is asked for, and this FMU is for co-simulation")]
 
 
 def test_a_null_instance_is_an_error(tank):

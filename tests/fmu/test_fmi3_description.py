@@ -53,7 +53,7 @@ def test_the_sizes_and_the_time_stand_last(described):
 
 def test_units_and_types_are_those_of_fmi_2(described):
     _, description, in_fmi2 = described
-    units = [[(unit.name, unit.baseUnit) for unit in d.unitDefinitions] for d in (description, in_fmi2)]
+    units = [[(unit.name, repr(unit.baseUnit)) for unit in d.unitDefinitions] for d in (description, in_fmi2)]
     types = [[(t.name, t.unit, [(item.name, item.value) for item in t.items]) for t in d.typeDefinitions]
              for d in (description, in_fmi2)]
     assert units[0] == units[1]

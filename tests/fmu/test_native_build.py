@@ -16,7 +16,7 @@ import pytest
 
 import fmus.native_fmu as native_fmu
 from components.catalogue import NAMES, component
-from fmus.build import BuildError, Runtime, build_component, build_if_needed, file_name, native_is_fresh
+from fmus.build import BuildError, Fmi, Runtime, build_component, build_if_needed, file_name, native_is_fresh
 from fmus.native_fmu import CPU, compiler, model_header, native_files
 
 from .host import Host
@@ -30,14 +30,31 @@ C_LIBRARY = set(re.findall(r"\w+", """
     calloc cos fabs free malloc memcmp memcpy memmove memset nextafter snprintf strcmp strcpy strlen strtol tan vsnprintf
     __cxa_finalize __gmon_start__ _ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __stack_chk_fail
     __memcpy_chk __snprintf_chk __strcpy_chk __vsnprintf_chk"""))
-FUNCTIONS = set(re.findall(r"\w+", """
+FUNCTIONS = {Fmi.TWO: set(re.findall(r"\w+", """
     fmi2GetTypesPlatform fmi2GetVersion fmi2SetDebugLogging fmi2Instantiate fmi2FreeInstance fmi2SetupExperiment
     fmi2EnterInitializationMode fmi2ExitInitializationMode fmi2Terminate fmi2Reset fmi2GetReal fmi2GetInteger fmi2GetBoolean
     fmi2GetString fmi2SetReal fmi2SetInteger fmi2SetBoolean fmi2SetString fmi2GetFMUstate fmi2SetFMUstate fmi2FreeFMUstate
     fmi2SerializedFMUstateSize fmi2SerializeFMUstate fmi2DeSerializeFMUstate fmi2GetDirectionalDerivative
     fmi2SetRealInputDerivatives fmi2GetRealOutputDerivatives fmi2DoStep fmi2CancelStep fmi2GetStatus fmi2GetRealStatus
-    fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus"""))
-"""All functions of FMI 2.0 for co-simulation, as the standard lists them."""
+    fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus""")), Fmi.THREE: set(re.findall(r"\w+", """
+    fmi3GetVersion fmi3SetDebugLogging fmi3InstantiateModelExchange fmi3InstantiateCoSimulation
+    fmi3InstantiateScheduledExecution fmi3FreeInstance fmi3EnterInitializationMode fmi3ExitInitializationMode
+    fmi3EnterEventMode fmi3Terminate fmi3Reset fmi3GetFloat32 fmi3GetFloat64 fmi3GetInt8 fmi3GetUInt8 fmi3GetInt16
+    fmi3GetUInt16 fmi3GetInt32 fmi3GetUInt32 fmi3GetInt64 fmi3GetUInt64 fmi3GetBoolean fmi3GetString fmi3GetBinary
+    fmi3GetClock fmi3SetFloat32 fmi3SetFloat64 fmi3SetInt8 fmi3SetUInt8 fmi3SetInt16 fmi3SetUInt16 fmi3SetInt32
+    fmi3SetUInt32 fmi3SetInt64 fmi3SetUInt64 fmi3SetBoolean fmi3SetString fmi3SetBinary fmi3SetClock
+    fmi3GetNumberOfVariableDependencies fmi3GetVariableDependencies fmi3GetFMUState fmi3SetFMUState fmi3FreeFMUState
+    fmi3SerializedFMUStateSize fmi3SerializeFMUState fmi3DeserializeFMUState fmi3GetDirectionalDerivative
+    fmi3GetAdjointDerivative fmi3EnterConfigurationMode fmi3ExitConfigurationMode fmi3GetIntervalDecimal
+    fmi3GetIntervalFraction fmi3GetShiftDecimal fmi3GetShiftFraction fmi3SetIntervalDecimal fmi3SetIntervalFraction
+    fmi3SetShiftDecimal fmi3SetShiftFraction fmi3EvaluateDiscreteStates fmi3UpdateDiscreteStates
+    fmi3EnterContinuousTimeMode fmi3CompletedIntegratorStep fmi3SetTime fmi3SetContinuousStates
+    fmi3GetContinuousStateDerivatives fmi3GetEventIndicators fmi3GetContinuousStates fmi3GetNominalsOfContinuousStates
+    fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates fmi3EnterStepMode fmi3GetOutputDerivatives fmi3DoStep
+    fmi3ActivateModelPartition"""))}
+"""All functions of FMI 2.0 for co-simulation and of FMI 3.0, as the standards list them."""
+ALSO_IN_FMI_3 = {"strspn"}
+"""Functions of the C library that only the shim of FMI 3.0 needs."""
 
 
 @pytest.fixture
@@ -106,22 +123,26 @@ def library(file, platform, suffix):
 
 @linux
 @pytest.mark.parametrize("name", [*NAMES, "Probe"])
-def test_a_library_offers_fmi_and_needs_the_c_library_only(native_fmus, name):
-    needed, offered = elf_symbols(library(native_fmus[name], "linux64", ".so"))
-    assert offered == FUNCTIONS
-    assert needed - C_LIBRARY == set()
-    assert b"python" not in library(native_fmus[name], "linux64", ".so").lower().replace(b"runs in python", b"")
+def test_a_library_offers_fmi_and_needs_the_c_library_only(native_fmus, fmi3_fmus, name):
+    in_fmi2, in_fmi3 = library(native_fmus[name], "linux64", ".so"), library(fmi3_fmus[name], "x86_64-linux", ".so")
+    assert [elf_symbols(content)[1] for content in (in_fmi2, in_fmi3)] == [FUNCTIONS[Fmi.TWO], FUNCTIONS[Fmi.THREE]]
+    assert elf_symbols(in_fmi2)[0] - C_LIBRARY == set()
+    assert elf_symbols(in_fmi3)[0] - C_LIBRARY - ALSO_IN_FMI_3 == set()
+    for content in (in_fmi2, in_fmi3):
+        assert b"python" not in content.lower().replace(b"runs in python", b"")
 
 
 @needs_zig
-def test_windows_and_macos_libraries_offer_fmi(tmp_path):
+@pytest.mark.parametrize(("fmi", "linux64", "win64", "darwin64"), [
+    (Fmi.TWO, "linux64", "win64", "darwin64"), (Fmi.THREE, "x86_64-linux", "x86_64-windows", "x86_64-darwin")])
+def test_windows_and_macos_libraries_offer_fmi(fmi, linux64, win64, darwin64):
     for name in NAMES:
-        files = native_files(component(name), component(name).with_sizes(), ("linux64", "win64", "darwin64"))
-        assert {path.split("/")[1] for path in files if path.startswith("binaries/")} == {"linux64", "win64", "darwin64"}
-        assert dll_exports(files[f"binaries/win64/{name}.dll"]) == FUNCTIONS
-        needed, offered = dylib_symbols(files[f"binaries/darwin64/{name}.dylib"])
-        assert offered - {"_mh_dylib_header", "__dso_handle"} == FUNCTIONS  # these two are the loader's
-        assert needed - C_LIBRARY <= {"__stack_chk_guard", "dyld_stub_binder", "__bzero"}
+        files = native_files(component(name), component(name).with_sizes(), ("linux64", "win64", "darwin64"), fmi)
+        assert {path.split("/")[1] for path in files if path.startswith("binaries/")} == {linux64, win64, darwin64}
+        assert dll_exports(files[f"binaries/{win64}/{name}.dll"]) == FUNCTIONS[fmi]
+        needed, offered = dylib_symbols(files[f"binaries/{darwin64}/{name}.dylib"])
+        assert offered - {"_mh_dylib_header", "__dso_handle"} == FUNCTIONS[fmi]  # these two are the loader's
+        assert needed - C_LIBRARY - ALSO_IN_FMI_3 <= {"__stack_chk_guard", "dyld_stub_binder", "__bzero"}
 
 
 @needs_zig
@@ -189,7 +210,27 @@ def test_a_native_fmu_that_is_up_to_date_is_left_alone_and_any_other_is_replaced
 def test_the_files_of_both_runtimes_lie_apart(native_fmus, monkeypatch, tmp_path):
     monkeypatch.setenv("ROCKSHED_FMU_DIR", str(tmp_path))
     files = [build_if_needed("FallingRock", runtime=runtime) for runtime in Runtime]
-    assert files == [tmp_path / "python/FallingRock.fmu", tmp_path / "native/FallingRock.fmu"]
+    files.append(build_if_needed("FallingRock", runtime=Runtime.NATIVE, fmi=Fmi.THREE))
+    assert files == [tmp_path / f"{folder}/FallingRock.fmu" for folder in ("python", "native", "native-fmi3")]
+    assert native_is_fresh(component("FallingRock"), {}, fmi=Fmi.THREE)
+    assert not native_is_fresh(component("FallingRock"), {}, files[1].parent, Fmi.THREE)
+
+
+def test_fmi_3_with_python_inside_is_refused(tmp_path):
+    with pytest.raises(BuildError, match=r"FallingRock: FMUs with Python inside are for FMI 2.0 only"):
+        build_component(component("FallingRock"), destination=tmp_path, fmi=Fmi.THREE)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_both_versions_have_the_same_object_code(native_fmus, fmi3_fmus, monkeypatch):
+    def compile_anew(*_):
+        raise AssertionError("the kernels are compiled again")
+
+    monkeypatch.setattr(native_fmu, "_compile", compile_anew)
+    for fmi, fmus in ((Fmi.TWO, native_fmus), (Fmi.THREE, fmi3_fmus)):
+        files = native_files(component("FallingRock"), {}, fmi=fmi)
+        with zipfile.ZipFile(fmus["FallingRock"]) as archive:
+            assert {name: archive.read(name) for name in archive.namelist()} == files
 
 
 # ------------------------------------------------------------------ compilers that are missing or fail
