@@ -80,7 +80,7 @@ EXPORT Status fmi3Reset(void *c) { SLAVE; start_anew(m); return OK; }
 /* --- steps */
 
 static int event_is_known(const Slave *m) { /* what the component tells of its next event holds while these inputs are zero */
-  for (size_t i = 0; i < sizeof ZERO_UNTIL_EVENT / sizeof *ZERO_UNTIL_EVENT - 1; i++) if (m->s.w[ZERO_UNTIL_EVENT[i]] != 0.0) return 0;
+  for (const int *r = ZERO_UNTIL_EVENT; *r >= 0; r++) if (m->s.w[*r] != 0.0) return 0;
   return EVENT_TIME >= 0;
 }
 
