@@ -24,6 +24,8 @@ MOST_EVENTS = 1_000_000
 """Events in one communication step after which something must be wrong."""
 _GRID = 1e12
 """Times are taken in whole picoseconds, so that the rounding of a tool's clock does not reach the outputs."""
+_COARSE = 2.0**52 / _GRID
+"""Time (s) beyond which numbers are too far apart to tell picoseconds."""
 
 
 @kernel
@@ -35,8 +37,8 @@ def on_grid(time):
 @kernel
 def grid_after(time):
     """The first whole picosecond (s) that is not before the time (s): a step that ends there has what happens then behind it."""
-    if time >= NEVER:
-        return NEVER
+    if time > _COARSE:
+        return time
     number = math.floor(time * _GRID)
     while number / _GRID < time:
         number += 1

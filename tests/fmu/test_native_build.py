@@ -135,10 +135,11 @@ def test_a_library_offers_fmi_and_needs_the_c_library_only(native_fmus, fmi3_fmu
 
 
 @needs_zig
-@pytest.mark.parametrize(("fmi", "linux64", "win64", "darwin64"), [
-    (Fmi.TWO, "linux64", "win64", "darwin64"), (Fmi.THREE, "x86_64-linux", "x86_64-windows", "x86_64-darwin")])
-def test_windows_and_macos_libraries_offer_fmi(fmi, linux64, win64, darwin64):
-    for name in NAMES:
+@pytest.mark.parametrize(("fmi", "names", "linux64", "win64", "darwin64"), [
+    (Fmi.TWO, NAMES, "linux64", "win64", "darwin64"),
+    (Fmi.THREE, NAMES[:1], "x86_64-linux", "x86_64-windows", "x86_64-darwin")])  # the rest differs in the kernels only
+def test_windows_and_macos_libraries_offer_fmi(fmi, names, linux64, win64, darwin64):
+    for name in names:
         files = native_files(component(name), component(name).with_sizes(), ("linux64", "win64", "darwin64"), fmi)
         assert {path.split("/")[1] for path in files if path.startswith("binaries/")} == {linux64, win64, darwin64}
         assert dll_exports(files[f"binaries/{win64}/{name}.dll"]) == FUNCTIONS[fmi]
