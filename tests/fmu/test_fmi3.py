@@ -19,6 +19,7 @@ from .conftest import HERE
 from .host import DISCARD, ERROR, OK, WARNING, Host
 from .host3 import CALLS, Host3
 from .test_native import DRIVE, STEPS
+from .test_peers import needs
 
 ALL = [*NAMES, "Probe"]
 linux = pytest.mark.skipif(sys.platform != "linux", reason="runs a program of Linux")
@@ -329,7 +330,36 @@ def test_more_reasons_than_a_message_can_hold_are_cut(fmi3_fmus):
         assert text.endswith(" ...")
 
 
-# ------------------------------------------------------------------ a host without Python
+# ------------------------------------------------------------------ other hosts
+
+
+ECOS = """
+import ctypes, sys
+from importlib.metadata import files
+for file in files("tbb"):
+    if file.name == "libtbb.so.12":
+        ctypes.CDLL(str(file.locate()))
+from ecospy import EcosSimulation, EcosSimulationStructure
+with EcosSimulationStructure() as structure:
+    structure.add_model("rock", sys.argv[1])
+    structure.add_parameter_set("start", {"rock::velocity0.x": 2.0, "rock::force.x": 3.0})
+    with EcosSimulation(step_size=1e-3, structure=structure) as simulation:
+        assert simulation.init(parameter_set="start")
+        for _ in range(20):
+            simulation.step()
+        print("found:", *(simulation.get_real(f"rock::{name}").hex() for name in sys.argv[2:]))
+"""
+
+
+@needs("ecospy", "tbb")
+def test_ecos_runs_it(native_fmus, fmi3_fmus, python, tmp_path):
+    names = ["position.x", "position.y", "velocity.x", "velocity.y", "energy.kinetic"]
+    with Host(native_fmus["FallingRock"]) as host:
+        host.start(**{"velocity0.x": 2.0, "force.x": 3.0}).steps(20, 1e-3)
+        expected = [host[name] for name in names]
+    printed = python(ECOS, fmi3_fmus["FallingRock"], *names, TMPDIR=str(tmp_path))
+    found, = re.findall("^found: (.*)$", printed, re.MULTILINE)
+    assert [float.fromhex(text) for text in found.split()] == expected
 
 
 @pytest.fixture(scope="session")
