@@ -9,23 +9,11 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from .clock import to_seconds
-from .loop import (
-    CHANNEL,
-    MOVE,
-    NOT_FINITE,
-    OPERATION,
-    WATCHED,
-    Records,
-    Tables,
-    advance,
-    first_not_finite,
-    is_bad,
-    post,
-    watch,
-)
+from .machine_code import advance
 from .plan import End, Plan
 from .schedule import Action, Operation
 from .slave import REAL, WARNING, References, Slave
+from .tables import CHANNEL, MOVE, NOT_FINITE, OPERATION, WATCHED, Records, Tables, head
 
 _WORTH_A_CALL = 16
 """Consecutive value references go in a call of their own where the blocks of a component are at least this long on average:
@@ -79,7 +67,7 @@ def make_channels(plan: Plan) -> Records:
 def make_watched(plan: Plan) -> Records:
     """Extremes and integrals of the watched outputs, before the first value."""
     watched = np.zeros(plan.watched.size, WATCHED)
-    watched["place"], watched["low"], watched["high"] = plan.watched, np.inf, -np.inf
+    watched["place"] = plan.watched
     return watched
 
 
@@ -111,8 +99,9 @@ class State:
         blocks = self.getters.get(component)
         if not blocks:
             return None
-        place = first_not_finite(self.outputs, blocks[0].places.start, blocks[-1].places.stop)
-        return self.plan.outputs[place] if place >= 0 else None
+        begin, end = blocks[0].places.start, blocks[-1].places.stop
+        lost = np.flatnonzero(~np.isfinite(self.outputs[begin:end]))
+        return self.plan.outputs[begin + lost[0]] if lost.size else None
 
     def open_accounts(self) -> None:
         """Take the values at the start as those from which work, extremes and integrals are counted."""
@@ -120,7 +109,28 @@ class State:
         shown = channels["seen"] >= 0
         channels["last_seen"][shown] = self.inputs[channels["seen"][shown]]
         channels["last_force"], channels["last_position"] = self.outputs[channels["force"]], self.outputs[channels["position"]]
-        watch(self.watched, self.outputs, 0)
+        for name in ("low", "high", "last"):
+            self.watched[name] = self.outputs[self.watched["place"]]
+
+    def post(self) -> None:
+        """Enter the work of one exchange, as the compiled loop does."""
+        channels, inputs, outputs = self.channels, self.inputs, self.outputs
+        position = outputs[channels["position"]]
+        channels["taken"] += inputs[channels["given"]] * (position - channels["last_position"])
+        channels["last_position"] = position
+        shown = channels["seen"] >= 0
+        seen, force = inputs[channels["seen"][shown]], outputs[channels["force"][shown]]
+        channels["given_back"][shown] -= 0.5 * (force + channels["last_force"][shown]) * (seen - channels["last_seen"][shown])
+        channels["last_seen"][shown], channels["last_force"][shown] = seen, force
+
+    def watch(self, exchange: int) -> None:
+        """Enter the values after ``exchange`` exchanges into extremes and integrals, as the compiled loop does."""
+        watched = self.watched
+        value = self.outputs[watched["place"]]
+        for bound, exceeds in (("high", value > watched["high"]), ("low", value < watched["low"])):
+            watched[bound][exceeds], watched[f"{bound}_at"][exceeds] = value[exceeds], exchange
+        watched["area"] += 0.5 * (watched["last"] + value)
+        watched["last"] = value
 
 
 class Driver(Protocol):
@@ -143,10 +153,10 @@ class PlainDriver:
             origin = timing.start + n // schedule.period * schedule.period * schedule.exchange
             for operation in schedule.operations[n % schedule.period]:
                 status = self._operate(operation, origin)
-                if is_bad(status):
+                if status > WARNING or status == NOT_FINITE:
                     return Fault(n, operation, status)
-            post(state.channels, state.inputs, state.outputs)
-            watch(state.watched, state.outputs, n + 1)
+            state.post()
+            state.watch(n + 1)
         return None
 
     def _operate(self, operation: Operation, origin: int) -> int:
@@ -170,12 +180,12 @@ class CompiledDriver:
             plan.timing.start, plan.schedule.exchange, np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
             operations, moves, state.inputs, state.outputs, plan.source,
             np.zeros(max(len(plan.inputs), len(plan.outputs)), np.int32), state.channels, state.watched)
-        advance(self._tables, 0, 0)  # compiles, or loads what was compiled before
+        self._head, self._loop = head(self._tables), advance()
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
-        done, operation, status = advance(self._tables, first, count)
-        return Fault(first + done, self._operations[operation], status) if is_bad(status) else None
+        done, operation, status = self._loop(self._head, first, count)
+        return Fault(first + done, self._operations[operation], status) if done < count else None
 
 
 def _calls(planned: Sequence[Operation], state: State, slaves: Mapping[str, Slave]) -> tuple[Records, Records]:

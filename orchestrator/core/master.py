@@ -10,11 +10,11 @@ from typing import Any
 from .clock import to_seconds
 from .errors import RunFailed
 from .exchange import Driver, Fault, State
-from .loop import NOT_FINITE
 from .plan import Plan
 from .recording import Recorder, last_words
 from .schedule import Action
 from .slave import FATAL, STATUS_NAMES, Slave
+from .tables import NOT_FINITE
 
 _MOST_AT_ONCE = 1000
 _SECONDS_AT_ONCE = 0.1
