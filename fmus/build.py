@@ -4,7 +4,6 @@ The sources go in under names that contain a hash of their content, so that FMUs
 their modules (see :mod:`fmus.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`fmus.native_fmu`.
 """
 
-import os
 import re
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,15 +17,13 @@ from components.catalogue import component as catalogued
 from components.component import Component
 
 from .description import model_description
-from .native_fmu import is_fresh, native_files
-from .parts import BuildError, Files, Runtime, archive, companions, component_sources, digest, replace
+from .native_fmu import native_files
+from .parts import DESCRIPTION, BuildError, Files, Runtime, archive, companions, component_sources, digest, replace
+from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, native_is_fresh
 from .script import SCRIPT
 
-__all__ = ["BuildError", "Runtime", "build", "build_component", "build_if_needed", "file_name", "fmu_content", "fmu_files",
-           "fmu_folder", "native_is_fresh", "store"]
-
-FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
-"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python`` and ``native``."""
+__all__ = ["FOLDER_VARIABLE", "BuildError", "Runtime", "build", "build_component", "build_if_needed", "file_name", "fmu_content",
+           "fmu_files", "fmu_folder", "native_is_fresh", "store"]
 
 _HERE = Path(__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
@@ -60,7 +57,7 @@ def build_component(component: Component, sizes: Mapping[str, int] | None = None
     """Build the FMU of any component; ``keep`` leaves a file alone that is what would be built."""
     chosen = component.with_sizes(sizes)
     if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination):
-        return _file(component, chosen, destination, runtime)
+        return fmu_file(component, chosen, runtime, destination)
     return store(component, chosen, fmu_content(component, chosen, runtime), destination, runtime, keep)
 
 
@@ -81,7 +78,7 @@ def store(component: Component, sizes: Mapping[str, int], content: bytes, destin
     Raises:
         BuildError: the folder cannot be written.
     """
-    file = _file(component, sizes, destination, runtime)
+    file = fmu_file(component, sizes, runtime, destination)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
@@ -92,26 +89,6 @@ def store(component: Component, sizes: Mapping[str, int], content: bytes, destin
                   else "name another folder")
         raise BuildError(f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}") from error
     return file
-
-
-def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None) -> bool:
-    """Whether the native FMU of a component is there for this machine, and is what would be built now."""
-    return is_fresh(_file(component, sizes, destination, Runtime.NATIVE), component, sizes)
-
-
-def _file(component: Component, sizes: Mapping[str, int], destination: Path | None, runtime: Runtime) -> Path:
-    return (fmu_folder(runtime) if destination is None else Path(destination)) / file_name(component, sizes)
-
-
-def fmu_folder(runtime: Runtime = Runtime.PYTHON) -> Path:
-    """Folder of built FMUs of a runtime."""
-    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / runtime
-
-
-def file_name(component: Component, sizes: Mapping[str, int]) -> str:
-    """``Name.fmu`` with default sizes, otherwise all sizes are named: ``SandCushion-discs360-elements24.fmu``."""
-    suffix = "" if dict(sizes) == component.with_sizes() else "".join(f"-{name}{value}" for name, value in sizes.items())
-    return f"{component.name}{suffix}.fmu"
 
 
 def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
@@ -130,7 +107,7 @@ def _stamped_files(component: Component, sizes: Mapping[str, int], library: str,
     script = SCRIPT.substitute(
         name=component.name, library=library, package=component.folder.name, sizes=repr(dict(sizes)))
     return {
-        "modelDescription.xml": model_description(component, sizes, f"{{{uuid.UUID(stamp[:32])}}}"),
+        DESCRIPTION: model_description(component, sizes, f"{{{uuid.UUID(stamp[:32])}}}"),
         "resources/slavemodule.txt": module.encode(),
         f"resources/{module}.py": script.encode(),
     }

@@ -14,9 +14,9 @@ import subprocess
 import sys
 import tempfile
 import uuid
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import chain
@@ -26,14 +26,12 @@ from components.compilation import CACHE_VARIABLE, cache_directory
 from components.component import HEADER, Component, Instance, allowed_range
 from components.ports import Causality, Kind, Sizes, Variable
 
-from .description import model_description
 from .native_subset import UNKNOWN_PLACE
-from .parts import BuildError, Files, Runtime, companions, component_sources, digest
+from .parts import DESCRIPTION, BuildError, Files, Runtime, companions, component_sources, digest
 
 _HERE = Path(__file__).parent
 _SHIM = _HERE / "shim.c"
 _KERNELS = (_HERE / "native_kernels.py", _HERE / "native_subset.py")
-_DESCRIPTION = "modelDescription.xml"
 
 
 @dataclass(frozen=True)
@@ -104,45 +102,47 @@ def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = 
     """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
     compilers = {name: compiler(name) for name in platforms}
-    files = _described(component, sizes)
+    guid = stamp(component, sizes)
+    files = _described(component, sizes, guid)
     objects = _objects(component, sizes, platforms)
-    header = model_header(component, sizes, _guid(files[_DESCRIPTION]))
+    header = model_header(component, sizes, guid)
     for name in platforms:
-        library = f"{component.name}{PLATFORMS[name].suffix}"
+        library = _library(component, name)
         files[f"binaries/{name}/{library}"] = _linked(component.name, compilers[name], name, library, header, objects[name])
     return files
 
 
-def is_fresh(file: Path, component: Component, sizes: Sizes) -> bool:
-    """Whether a native FMU is there, is what would be built now, and has a binary for this machine."""
-    try:
-        binary = f"binaries/{own_platform()}/{component.name}{PLATFORMS[own_platform()].suffix}"
-        with zipfile.ZipFile(file) as found:
-            return binary in found.namelist() and found.read(_DESCRIPTION) == _described(component, sizes)[_DESCRIPTION]
-    except (OSError, KeyError, zipfile.BadZipFile, BuildError):
-        return False
+def own_binary(component: Component) -> str:
+    """Path of this machine's library in a native FMU.
+
+    Raises:
+        BuildError: there are no native FMUs for this machine.
+    """
+    return f"binaries/{own_platform()}/{_library(component, own_platform())}"
 
 
-def _described(component: Component, sizes: Sizes) -> Files:
+def _library(component: Component, platform: str) -> str:
+    return f"{component.name}{PLATFORMS[platform].suffix}"
+
+
+def stamp(component: Component, sizes: Sizes) -> str:
+    """GUID of a native FMU: a hash of the sources and versions that it follows from. Nothing has to be computed for it but that."""
+    beside = [path for path in component.folder.iterdir() if path.suffix in (".md", ".png")]
+    made_from = component_sources(component) | {path.name: path.read_bytes() for path in (*_HERE.glob("*.py"), _SHIM, *beside)}
+    made_from["versions"] = repr([CPU, dict(sizes), *_versions("rockshed", "numba", "llvmlite", "lxml", "markdown-it-py")]).encode()
+    return f"{{{uuid.UUID(digest(made_from)[:32])}}}"
+
+
+def _described(component: Component, sizes: Sizes, guid: str) -> Files:
     """Description, documentation and icon: what can be told without compiling anything."""
-    def description(guid: str) -> bytes:
-        return model_description(component, sizes, guid, Runtime.NATIVE)
+    from .description import model_description
 
-    files = companions(component, sizes)
-    made_from = files | component_sources(component) | {
-        _DESCRIPTION: description(""), "versions": repr([CPU, *_versions()]).encode(),
-        **{path.name: path.read_bytes() for path in (_SHIM, *_KERNELS, Path(__file__))}}
-    return files | {_DESCRIPTION: description(f"{{{uuid.UUID(digest(made_from)[:32])}}}")}
+    return companions(component, sizes) | {DESCRIPTION: model_description(component, sizes, guid, Runtime.NATIVE)}
 
 
-def _versions() -> list[str]:
-    return [f"{package} {version(package)}" for package in ("numba", "llvmlite")]
-
-
-def _guid(description: bytes) -> str:
-    found = re.search(rb'guid="([^"]*)"', description)
-    assert found is not None
-    return found.group(1).decode()
+@cache
+def _versions(*packages: str) -> list[str]:
+    return [f"{package} {version(package)}" for package in packages]
 
 
 # --- kernels
@@ -151,7 +151,7 @@ def _guid(description: bytes) -> str:
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Object code of the kernels by platform; kept in the cache of compiled kernels."""
     made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
-    stamp = digest(made_from | {"for": repr([CPU.name, dict(sizes), *_versions()]).encode()})[:24]
+    stamp = digest(made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()})[:24]
     folder = cache_directory()
     kept = {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms} if folder else {}
     if kept and all(path.is_file() for path in kept.values()):

@@ -12,9 +12,8 @@ import components
 from components.component import Component
 from components.ports import Sizes
 
-from .documentation import index_html
-
 COMPONENTS = Path(components.__file__).parent
+DESCRIPTION = "modelDescription.xml"
 _NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
 
 Files = dict[str, bytes]
@@ -42,6 +41,8 @@ def component_sources(component: Component) -> Files:
 
 def companions(component: Component, sizes: Sizes) -> Files:
     """Documentation and icon."""
+    from .documentation import index_html
+
     files = {"documentation/index.html": index_html(component, sizes).encode()}
     icon = component.folder / "icon.png"
     return files | ({"model.png": icon.read_bytes()} if icon.is_file() else {})
