@@ -81,6 +81,18 @@ class State:
         self.setters, self.getters = make_blocks(plan.inputs), make_blocks(plan.outputs)
         self.channels, self.watched = make_channels(plan), make_watched(plan)
 
+    @cached_property
+    def needs(self) -> dict[str, set[int]]:
+        """Places of the outputs that feed each component's inputs."""
+        return {name: {int(place) for block in self.setters.get(name, []) for place in self.plan.source[block.places]}
+                for name in self.plan.order}
+
+    @cached_property
+    def shows(self) -> dict[str, set[int]]:
+        """Places of each component's outputs."""
+        return {name: {place for block in self.getters.get(name, []) for place in range(block.places.start, block.places.stop)}
+                for name in self.plan.order}
+
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values. Returns the worst status."""
         worst = 0

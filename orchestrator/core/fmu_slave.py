@@ -11,6 +11,7 @@ import tempfile
 import weakref
 import zipfile
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -88,6 +89,7 @@ class FmuFile:
         return FmuSlave(self, name)
 
 
+@lru_cache(maxsize=32)
 def read_description(xml: bytes) -> Description:
     """What ``modelDescription.xml`` says.
 
