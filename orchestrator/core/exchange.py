@@ -1,37 +1,19 @@
 """The buses of a run, and two ways to carry out exchanges, call by call or in the compiled loop. Both give the same bits."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby, pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from .blocks import make_blocks
 from .clock import to_seconds
 from .machine_code import advance
 from .plan import End, Plan
 from .schedule import Action, Operation
-from .slave import REAL, WARNING, References, Slave
+from .slave import REAL, WARNING, Slave
+from .snapshots import Snapshots
 from .tables import CHANNEL, MOVE, NOT_FINITE, OPERATION, WATCHED, Records, Tables, head
-
-_WORTH_A_CALL = 16
-"""Consecutive value references go in a call of their own where the blocks of a component are at least this long on average:
-pythonfmu's slaves take such a block as one slice."""
-
-
-@dataclass(frozen=True)
-class Block:
-    """Variables that one FMI call moves; their values lie on a bus from place ``begin`` on."""
-
-    kind: str
-    references: References
-    begin: int
-
-    @cached_property
-    def places(self) -> slice:
-        """Where the values lie."""
-        return slice(self.begin, self.begin + self.references.size)
 
 
 class Fault(NamedTuple):
@@ -40,20 +22,6 @@ class Fault(NamedTuple):
     exchange: int
     operation: Operation
     status: int
-
-
-def make_blocks(ends: Sequence[End]) -> dict[str, list[Block]]:
-    """Blocks of each component for ports that lie in this order on a bus."""
-    blocks: dict[str, list[Block]] = {}
-    for (component, kind), group in groupby(enumerate(ends), lambda item: (item[1].component, item[1].port.kind)):
-        members = list(group)
-        references = np.array([end.port.reference for _, end in members], np.uint32)
-        cuts = [0, *(np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1), len(references)]
-        if len(references) < _WORTH_A_CALL * (len(cuts) - 1):
-            cuts = [0, len(references)]
-        blocks.setdefault(component, []).extend(
-            Block(kind, references[a:b].copy(), members[a][0]) for a, b in pairwise(cuts))
-    return blocks
 
 
 def make_channels(plan: Plan) -> Records:
@@ -72,14 +40,14 @@ def make_watched(plan: Plan) -> Records:
 
 
 class State:
-    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, what is
-    watched."""
+    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, what is watched, what is recorded."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.inputs, self.outputs = np.zeros(len(plan.inputs)), np.zeros(len(plan.outputs))
         self.setters, self.getters = make_blocks(plan.inputs), make_blocks(plan.outputs)
         self.channels, self.watched = make_channels(plan), make_watched(plan)
+        self.snapshots = Snapshots(plan)
 
     @cached_property
     def needs(self) -> dict[str, set[int]]:
@@ -144,12 +112,28 @@ class State:
         watched["area"] += 0.5 * (watched["last"] + value)
         watched["last"] = value
 
+    def record(self, slaves: Mapping[str, Slave], number: int) -> tuple[str, int] | None:
+        """Take a snapshot into a row. Returns the component that does not give finite values, and its status."""
+        snapshots = self.snapshots
+        row = snapshots.rows[number]
+        row[:snapshots.exchanged] = self.outputs
+        row[snapshots.taken], row[snapshots.given_back] = self.channels["taken"], self.channels["given_back"]
+        for name, blocks in snapshots.blocks.items():
+            for block in blocks:
+                status = slaves[name].get(block.references, row[block.places], block.kind)
+                if status > WARNING:
+                    return name, status
+                if not np.isfinite(row[block.places]).all():
+                    return name, NOT_FINITE
+        return None
+
 
 class Driver(Protocol):
     """Carries out exchanges."""
 
     def advance(self, first: int, count: int) -> Fault | None:
-        """Carry out ``count`` exchanges from exchange number ``first`` on; stop at the first operation that fails."""
+        """Carry out ``count`` exchanges from exchange number ``first`` on; stop at the first operation that fails. Snapshots
+        that are due are taken, from row 0 on."""
 
 
 class PlainDriver:
@@ -169,6 +153,10 @@ class PlainDriver:
                     return Fault(n, operation, status)
             state.post()
             state.watch(n + 1)
+            if (n + 1) % state.snapshots.every == 0:
+                lost = state.record(self._slaves, (n + 1) // state.snapshots.every - first // state.snapshots.every - 1)
+                if lost is not None:
+                    return Fault(n, Operation(Action.RECORD, lost[0]), lost[1])
         return None
 
     def _operate(self, operation: Operation, origin: int) -> int:
@@ -185,33 +173,35 @@ class CompiledDriver:
     """Calls the C functions of FMUs from the compiled loop."""
 
     def __init__(self, state: State, slaves: Mapping[str, Slave]) -> None:
-        plan = state.plan
+        plan, snapshots = state.plan, state.snapshots
         self._operations = [operation for exchange in plan.schedule.operations for operation in exchange]
+        self._operations += [Operation(Action.RECORD, name) for name in snapshots.blocks]
         operations, moves = _calls(self._operations, state, slaves)
         self._tables = Tables(
-            plan.timing.start, plan.schedule.exchange, np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
+            plan.timing.start, plan.schedule.exchange, snapshots.every, snapshots.rows.shape[1],
+            np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
             operations, moves, state.inputs, state.outputs, plan.source,
-            np.zeros(max(len(plan.inputs), len(plan.outputs)), np.int32), state.channels, state.watched)
+            np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32), state.channels, state.watched, snapshots.rows.ravel())
         self._head, self._loop = head(self._tables), advance()
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
-        done, operation, status = self._loop(self._head, first, count)
-        return Fault(first + done, self._operations[operation], status) if done < count else None
+        done, number, status = self._loop(self._head, first, count)
+        return Fault(first + done, self._operations[number], status) if status else None
 
 
 def _calls(planned: Sequence[Operation], state: State, slaves: Mapping[str, Slave]) -> tuple[Records, Records]:
     """The tables of operations and of moves. The arrays of references that the moves point to belong to ``state``."""
     operations, moves = [], list[tuple[int, ...]]()
+    blocks = {Action.SET: state.setters, Action.GET: state.getters, Action.RECORD: state.snapshots.blocks}
     for operation in planned:
         addresses = slaves[operation.component].addresses
         assert addresses is not None
         first = len(moves)
         if operation.action is not Action.STEP:
-            setting = operation.action is Action.SET
-            functions, blocks = (addresses.set, state.setters) if setting else (addresses.get, state.getters)
+            functions = addresses.set if operation.action is Action.SET else addresses.get
             moves += [(functions[block.kind], addresses.instance, block.references.ctypes.data, block.references.size, block.begin,
-                       block.kind != REAL) for block in blocks.get(operation.component, [])]
+                       block.kind != REAL) for block in blocks[operation.action].get(operation.component, [])]
         operations.append((operation.action, addresses.instance, addresses.do_step, operation.begin, operation.length, first,
                            len(moves)))
     return np.array(operations, OPERATION), np.array(moves, MOVE)

@@ -16,7 +16,7 @@ from numba.extending import intrinsic
 from .clock import TICKS_PER_SECOND
 from .schedule import Action
 from .slave import WARNING
-from .tables import ENTRY, KINDS, NOT_FINITE, Tables
+from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
 
 _SET, _STEP = int(Action.SET), int(Action.STEP)
 _WARNING = WARNING
@@ -112,27 +112,27 @@ def _finite(values, begin, end):  # type: ignore[no-untyped-def]
 @_compiled
 def _give(tables, move):  # type: ignore[no-untyped-def]
     """Set connected inputs of a component to the newest values. Returns the status."""
-    begin, end = move["begin"], move["begin"] + move["number"]
-    for i in range(begin, end):
+    begin, number = move["begin"], move["number"]
+    for i in range(begin, begin + number):
         tables.inputs[i] = tables.outputs[tables.source[i]]
     address = tables.inputs.ctypes.data + 8 * begin
     if move["whole"]:
-        for i in range(begin, end):
-            tables.integers[i] = int(tables.inputs[i])
-        address = tables.integers.ctypes.data + 4 * begin
-    return _call_move(move["function"], move["instance"], move["references"], move["number"], address)
+        for i in range(number):
+            tables.integers[i] = int(tables.inputs[begin + i])
+        address = tables.integers.ctypes.data
+    return _call_move(move["function"], move["instance"], move["references"], number, address)
 
 
 @_compiled
-def _take(tables, move):  # type: ignore[no-untyped-def]
-    """Get exchanged outputs of a component. Returns the status, or :data:`NOT_FINITE`."""
-    begin, end = move["begin"], move["begin"] + move["number"]
-    address = (tables.integers.ctypes.data + 4 * begin) if move["whole"] else (tables.outputs.ctypes.data + 8 * begin)
-    status = _call_move(move["function"], move["instance"], move["references"], move["number"], address)
+def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
+    """Get outputs of a component into a row of numbers that begins at ``base``. Returns the status, or :data:`NOT_FINITE`."""
+    begin, number = base + move["begin"], move["number"]
+    address = tables.integers.ctypes.data if move["whole"] else values.ctypes.data + 8 * begin
+    status = _call_move(move["function"], move["instance"], move["references"], number, address)
     if move["whole"]:
-        for i in range(begin, end):
-            tables.outputs[i] = float(tables.integers[i])
-    if status <= _WARNING and _finite(tables.outputs, begin, end) < move["number"]:
+        for i in range(number):
+            values[begin + i] = float(tables.integers[i])
+    if status <= _WARNING and _finite(values, begin, begin + number) < number:
         return NOT_FINITE
     return status
 
@@ -144,17 +144,36 @@ def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
         time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
         return _call_step(operation["do_step"], operation["instance"], time, float(operation["length"]) / _TICKS_PER_SECOND)
     for m in range(operation["first_move"], operation["end_move"]):
-        status = _give(tables, tables.moves[m]) if operation["action"] == _SET else _take(tables, tables.moves[m])
+        status = _give(tables, tables.moves[m]) if operation["action"] == _SET else _take(
+            tables, tables.moves[m], tables.outputs, 0)
         if _is_bad(status):
             return status
     return 0
 
 
 @_compiled
-def advance(tables, first, count):  # type: ignore[no-untyped-def]
-    """Carry out ``count`` exchanges from exchange number ``first`` on.
+def _record(tables, base):  # type: ignore[no-untyped-def]
+    """Take a snapshot into the row that begins at ``base``. Returns the operation that failed, and its status."""
+    for i in range(tables.outputs.size):
+        tables.snapshots[base + i] = tables.outputs[i]
+    works = base + tables.width - 2 * tables.channels.size
+    for i in range(tables.channels.size):
+        tables.snapshots[works + i] = tables.channels[i]["taken"]
+        tables.snapshots[works + tables.channels.size + i] = tables.channels[i]["given_back"]
+    for o in range(tables.first[tables.first.size - 1], tables.operations.size):
+        for m in range(tables.operations[o]["first_move"], tables.operations[o]["end_move"]):
+            status = _take(tables, tables.moves[m], tables.snapshots, base)
+            if _is_bad(status):
+                return o, status
+    return 0, 0
 
-    Returns (exchanges carried out, operation, status): the operation that ended the run early and its status, OK if none did.
+
+@_compiled
+def advance(tables, first, count):  # type: ignore[no-untyped-def]
+    """Carry out ``count`` exchanges from exchange number ``first`` on, and take the snapshots that are due, from row 0 on.
+
+    Returns (number of exchanges before the one that failed, operation, status): the operation that ended the run early and its
+    status, OK if none did.
     """
     period = tables.first.size - 1
     for n in range(first, first + count):
@@ -165,6 +184,11 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
                 return n - first, o, status
         _post(tables.channels, tables.inputs, tables.outputs)
         _watch(tables.watched, tables.outputs, n + 1)
+        if (n + 1) % tables.every == 0:
+            row = (n + 1) // tables.every - first // tables.every - 1
+            o, status = _record(tables, row * tables.width)
+            if status != 0:
+                return n - first, o, status
     return count, 0, 0
 
 
@@ -173,7 +197,7 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     address of :func:`orchestrator.core.tables.head`, ``first``, ``count``, and the address of three numbers for the result.
     """
     arrays = [types.Array(from_dtype(kind), 1, "C") for kind in KINDS.values()]
-    signature = (types.NamedTuple([types.int64, types.int64, *arrays], Tables), types.int64, types.int64)
+    signature = (types.NamedTuple([*[types.int64] * len(NUMBERS), *arrays], Tables), types.int64, types.int64)
     advance.compile(signature)
     compiled = advance.overloads[signature]
     whole = llvm.parse_assembly(compiled.library.get_llvm_str())
@@ -205,9 +229,9 @@ def _entry(compiled: Any) -> ir.Module:
         return builder.gep(builder.inttoptr(address, integer.as_pointer()), [integer(place)])
 
     arguments = [builder.alloca(kinds[0].pointee), builder.alloca(kinds[1].pointee),
-                 builder.load(number(head, 0)), builder.load(number(head, 1))]
-    for place, kind in enumerate(KINDS.values(), start=1):
-        address, length = (builder.load(number(head, 2 * place + i)) for i in range(2))
+                 *(builder.load(number(head, place)) for place in range(len(NUMBERS)))]
+    for place, kind in enumerate(KINDS.values()):
+        address, length = (builder.load(number(head, len(NUMBERS) + 2 * place + i)) for i in range(2))
         fields = kinds[len(arguments):]
         size = integer(kind.itemsize)
         arguments += [fields[0](None), fields[1](None), length, size, builder.inttoptr(address, fields[4]), length,

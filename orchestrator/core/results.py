@@ -164,11 +164,16 @@ class RunFolder:
             writer.writeheader()
             writer.writerows(map(asdict, self.columns))
 
-    def row(self, at: float, values: NDArray[np.float64]) -> None:
-        """Append the values of all columns at a time (s)."""
-        self._block[self._filled, 0], self._block[self._filled, 1:] = at, values
-        self._filled += 1
-        if self._filled == _ROWS_PER_BATCH or time.monotonic() - self._written_at > _SECONDS_PER_BATCH:
+    def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
+        """Append the values of all columns, a row for each time (s)."""
+        for begin in range(0, len(times), _ROWS_PER_BATCH):
+            part = slice(begin, begin + _ROWS_PER_BATCH)
+            if self._filled + len(times[part]) > _ROWS_PER_BATCH:
+                self._flush()
+            end = self._filled + len(times[part])
+            self._block[self._filled:end, 0], self._block[self._filled:end, 1:] = times[part], values[part]
+            self._filled = end
+        if time.monotonic() - self._written_at > _SECONDS_PER_BATCH:
             self._flush()
 
     def _flush(self) -> None:

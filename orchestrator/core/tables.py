@@ -37,13 +37,17 @@ under it: its integral in units of the exchange step."""
 class Tables(NamedTuple):
     """Everything that the loop works on.
 
-    first: operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period. start, exchange: ticks.
+    first: operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those after the last of a period read
+    what is recorded. start, exchange: ticks.
     inputs, outputs: the two buses. source: for each input, the place of the output that feeds it.
-    integers: buffer for values on their way as integers, as long as the longer bus.
+    integers: buffer for values on their way as integers, as long as any row of them.
+    snapshots: rows of :class:`orchestrator.core.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges.
     """
 
     start: int
     exchange: int
+    every: int
+    width: int
     first: Integers
     operations: Records
     moves: Records
@@ -53,11 +57,15 @@ class Tables(NamedTuple):
     integers: NDArray[np.int32]
     channels: Records
     watched: Records
+    snapshots: Floats
 
+
+NUMBERS = ("start", "exchange", "every", "width")
+"""The numbers among the :class:`Tables`, which come first."""
 
 KINDS = {"first": np.dtype(np.int64), "operations": OPERATION, "moves": MOVE, "inputs": np.dtype(np.float64),
          "outputs": np.dtype(np.float64), "source": np.dtype(np.int64), "integers": np.dtype(np.int32), "channels": CHANNEL,
-         "watched": WATCHED}
+         "watched": WATCHED, "snapshots": np.dtype(np.float64)}
 """Types of the arrays among the :class:`Tables`, in their order."""
 
 ENTRY = "rockshed_advance"
@@ -65,12 +73,12 @@ ENTRY = "rockshed_advance"
 
 
 def head(tables: Tables) -> Integers:
-    """All that the loop is told: start and exchange, then address and length of each array, which has to stay where it is.
+    """All that the loop is told: numbers, then address and length of each array, which has to stay where it is.
 
     Raises:
         ValueError: an array is not of its kind, or not in one piece.
     """
-    entries = [tables.start, tables.exchange]
+    entries = [getattr(tables, name) for name in NUMBERS]
     for name, kind in KINDS.items():
         array = getattr(tables, name)
         if array.dtype != kind or array.ndim != 1 or not array.flags.c_contiguous:
