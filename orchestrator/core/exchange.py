@@ -13,7 +13,7 @@ from .plan import End, Plan
 from .schedule import Action, Operation
 from .slave import REAL, WARNING, Slave
 from .snapshots import Snapshots
-from .tables import CHANNEL, MOVE, NOT_FINITE, OPERATION, WATCHED, Records, Tables, head
+from .tables import CHANNEL, MOVE, NOT_FINITE, NUMBERS, OPERATION, WATCHED, Records, Tables, head
 
 
 class Fault(NamedTuple):
@@ -133,7 +133,7 @@ class Driver(Protocol):
 
     def advance(self, first: int, count: int) -> Fault | None:
         """Carry out ``count`` exchanges from exchange number ``first`` on; stop at the first operation that fails. Snapshots
-        that are due are taken, from row 0 on."""
+        that are due are taken, behind those that wait."""
 
 
 class PlainDriver:
@@ -154,7 +154,7 @@ class PlainDriver:
             state.post()
             state.watch(n + 1)
             if (n + 1) % state.snapshots.every == 0:
-                lost = state.record(self._slaves, (n + 1) // state.snapshots.every - first // state.snapshots.every - 1)
+                lost = state.record(self._slaves, len(state.snapshots.waiting) + len(state.snapshots.due(first, n)))
                 if lost is not None:
                     return Fault(n, Operation(Action.RECORD, lost[0]), lost[1])
         return None
@@ -178,14 +178,15 @@ class CompiledDriver:
         self._operations += [Operation(Action.RECORD, name) for name in snapshots.blocks]
         operations, moves = _calls(self._operations, state, slaves)
         self._tables = Tables(
-            plan.timing.start, plan.schedule.exchange, snapshots.every, snapshots.rows.shape[1],
+            plan.timing.start, plan.schedule.exchange, snapshots.every, snapshots.rows.shape[1], 0,
             np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
-            operations, moves, state.inputs, state.outputs, plan.source,
+            operations, moves, state.inputs, state.outputs, plan.source.astype(np.uint64),
             np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32), state.channels, state.watched, snapshots.rows.ravel())
-        self._head, self._loop = head(self._tables), advance()
+        self._waiting, self._head, self._loop = snapshots.waiting, head(self._tables), advance()
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
+        self._head[NUMBERS.index("row")] = len(self._waiting)
         done, number, status = self._loop(self._head, first, count)
         return Fault(first + done, self._operations[number], status) if status else None
 

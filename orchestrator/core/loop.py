@@ -101,24 +101,25 @@ def _is_bad(status):  # type: ignore[no-untyped-def]
 
 
 @_compiled
-def _finite(values, begin, end):  # type: ignore[no-untyped-def]
-    """How many of the values in these places are finite numbers, from the first on."""
-    for i in range(begin, end):
-        if not math.isfinite(values[i]):
-            return i - begin
-    return end - begin
+def _lost(values):  # type: ignore[no-untyped-def]
+    """How many of the values are no finite numbers. Without a way out in between, the compiler takes several at a time."""
+    count = 0
+    for i in range(values.size):
+        count += 0 if math.isfinite(values[i]) else 1
+    return count
 
 
 @_compiled
 def _give(tables, move):  # type: ignore[no-untyped-def]
     """Set connected inputs of a component to the newest values. Returns the status."""
     begin, number = move["begin"], move["number"]
-    for i in range(begin, begin + number):
-        tables.inputs[i] = tables.outputs[tables.source[i]]
+    inputs, source = tables.inputs[begin:begin + number], tables.source[begin:begin + number]
+    for i in range(number):
+        inputs[i] = tables.outputs[source[i]]
     address = tables.inputs.ctypes.data + 8 * begin
     if move["whole"]:
         for i in range(number):
-            tables.integers[i] = int(tables.inputs[begin + i])
+            tables.integers[i] = int(inputs[i])
         address = tables.integers.ctypes.data
     return _call_move(move["function"], move["instance"], move["references"], number, address)
 
@@ -132,7 +133,7 @@ def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
     if move["whole"]:
         for i in range(number):
             values[begin + i] = float(tables.integers[i])
-    if status <= _WARNING and _finite(values, begin, begin + number) < number:
+    if status <= _WARNING and _lost(values[begin:begin + number]) > 0:
         return NOT_FINITE
     return status
 
@@ -170,7 +171,7 @@ def _record(tables, base):  # type: ignore[no-untyped-def]
 
 @_compiled
 def advance(tables, first, count):  # type: ignore[no-untyped-def]
-    """Carry out ``count`` exchanges from exchange number ``first`` on, and take the snapshots that are due, from row 0 on.
+    """Carry out ``count`` exchanges from exchange number ``first`` on, and take the snapshots that are due.
 
     Returns (number of exchanges before the one that failed, operation, status): the operation that ended the run early and its
     status, OK if none did.
@@ -185,7 +186,7 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
         _post(tables.channels, tables.inputs, tables.outputs)
         _watch(tables.watched, tables.outputs, n + 1)
         if (n + 1) % tables.every == 0:
-            row = (n + 1) // tables.every - first // tables.every - 1
+            row = tables.row + (n + 1) // tables.every - first // tables.every - 1
             o, status = _record(tables, row * tables.width)
             if status != 0:
                 return n - first, o, status

@@ -19,6 +19,8 @@ from .tables import NOT_FINITE
 _MOST_AT_ONCE = 1000
 _SECONDS_AT_ONCE = 0.1
 """Exchanges between two looks at Ctrl-C, and the time (s) that they should take."""
+_GROWTH = 10
+"""So many times as many exchanges may follow as came before: what they take may grow."""
 
 Progress = Callable[[float, float], None]
 """Called with the time reached and the stop time (s)."""
@@ -58,6 +60,7 @@ class Master:
 
     def __init__(self, plan: Plan, slaves: Mapping[str, Slave], state: State, driver: Driver, recorder: Recorder) -> None:
         self._plan, self._slaves, self._state, self._driver, self._recorder = plan, slaves, state, driver, recorder
+        self._snapshots = state.snapshots
         self.exchanges, self.wall_time, self.recording_time, self._at_once = 0, 0.0, 0.0, 1
 
     def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
@@ -66,29 +69,36 @@ class Master:
         Raises:
             RunFailed: a slave failed, or gave a value that is no finite number.
         """
-        timing, stop = self._plan.timing, self._plan.timing.seconds(self._plan.timing.exchanges)
         began = time.perf_counter()
+        try:
+            return self._run(interruption, progress)
+        finally:
+            self._recorder.flush()
+            self.recording_time = time.perf_counter() - began - self.wall_time
+
+    def _run(self, interruption: Interruption, progress: Progress | None) -> bool:
+        timing, stop = self._plan.timing, self._plan.timing.seconds(self._plan.timing.exchanges)
         self._state.open_accounts()
         self._record()
         self._recorder.frames(0)
         while self.exchanges < timing.exchanges and not interruption.requested:
             due = min(self._recorder.next_frames(self.exchanges), timing.exchanges)
-            self._advance(min(due - self.exchanges, self._at_once, self._state.snapshots.most))
+            self._advance(min(due - self.exchanges, self._at_once, self._snapshots.room))
             if self.exchanges == due:
                 self._recorder.frames(due)
             if progress is not None:
                 progress(timing.seconds(self.exchanges), stop)
-        if self.exchanges > self._recorder.last:
+        if self.exchanges % self._snapshots.every:
             self._record()
-        self.recording_time = time.perf_counter() - began - self.wall_time
         return self.exchanges == timing.exchanges
 
     def _record(self) -> None:
         """Write a row now."""
-        lost = self._state.record(self._slaves, 0)
+        lost = self._state.record(self._slaves, len(self._snapshots.waiting))
         if lost is not None:
-            raise self._failure(Fault(self.exchanges - 1, Operation(Action.RECORD, lost[0]), lost[1]), 0)
-        self._recorder.rows([self.exchanges])
+            raise self._failure(Fault(self.exchanges - 1, Operation(Action.RECORD, lost[0]), lost[1]))
+        self._snapshots.waiting.append(self.exchanges)
+        self._recorder.look()
 
     def _advance(self, count: int) -> None:
         began = time.perf_counter()
@@ -99,20 +109,20 @@ class Master:
         if fault is not None:
             recording = fault.operation.action is Action.RECORD
             self.exchanges = fault.exchange + recording
-            rows = self._state.snapshots.due(first, self.exchanges)
-            self._recorder.rows(rows[:len(rows) - recording])
-            raise self._failure(fault, len(rows) - 1)
-        self._recorder.rows(self._state.snapshots.due(first, self.exchanges))
-        self._at_once = max(1, min(_MOST_AT_ONCE, 2 * self._at_once, int(count * _SECONDS_AT_ONCE / max(took, 1e-9))))
+            self._snapshots.waiting.extend(self._snapshots.due(first, self.exchanges - recording))
+            raise self._failure(fault)
+        self._snapshots.waiting.extend(self._snapshots.due(first, self.exchanges))
+        self._recorder.look()
+        self._at_once = max(1, min(_MOST_AT_ONCE, _GROWTH * self._at_once, int(count * _SECONDS_AT_ONCE / max(took, 1e-9))))
 
-    def _failure(self, fault: Fault, row: int) -> RunFailed:
-        """What went wrong, with the slave's own words. row: of the newest snapshot."""
+    def _failure(self, fault: Fault) -> RunFailed:
+        """What went wrong, with the slave's own words."""
         schedule, operation, timing = self._plan.schedule, fault.operation, self._plan.timing
         name, said = operation.component, last_words(self._slaves[operation.component])
         if fault.status == FATAL:
             self._slaves[name].messages.append((FATAL, "cannot be used any more"))
         if operation.action is Action.RECORD:
-            return RunFailed(name, timing.seconds(fault.exchange + 1), self._not_recorded(name, row) if fault.status == NOT_FINITE
+            return RunFailed(name, timing.seconds(fault.exchange + 1), self._not_recorded(name) if fault.status == NOT_FINITE
                              else f"does not give its values ({STATUS_NAMES[fault.status]}): {said}")
         period = timing.start + fault.exchange // schedule.period * schedule.period * schedule.exchange
         if fault.status == NOT_FINITE:
@@ -125,8 +135,9 @@ class Master:
         at = to_seconds(period + operation.begin) if operation.action is Action.STEP else timing.seconds(fault.exchange)
         return RunFailed(name, at, f"{what} ({STATUS_NAMES[fault.status]}): {said}")
 
-    def _not_recorded(self, name: str, row: int) -> str:
-        snapshots = self._state.snapshots
-        place = snapshots.lost(snapshots.rows[row], name)
-        return (f"{snapshots.ends[place].name} = {snapshots.rows[row, place]} is no finite number; reduce the steps, or leave the "
+    def _not_recorded(self, name: str) -> str:
+        snapshots = self._snapshots
+        row = snapshots.rows[len(snapshots.waiting)]
+        place = snapshots.lost(row, name)
+        return (f"{snapshots.ends[place].name} = {row[place]} is no finite number; reduce the steps, or leave the "
                 "variable out of the record if it may be so")

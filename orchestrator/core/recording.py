@@ -1,6 +1,7 @@
 """What is kept of a run: rows of the time series, frames of serialized states, the energies of the couplings."""
 
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
@@ -12,6 +13,9 @@ from .plan import Plan
 from .results import Column
 from .slave import Slave, without_name
 from .snapshots import Snapshots
+
+_SECONDS_TOGETHER = 1.0
+"""Time (s) after which rows are passed on: what a killed process may lose."""
 
 
 class Sink(Protocol):
@@ -31,8 +35,7 @@ class Recorder:
         self._plan, self._slaves, self._snapshots, self._accounts, self._sink = plan, slaves, snapshots, accounts, sink
         self._places = np.array([snapshots.place[end.name] for end in plan.recorded], np.int64)
         self._framed = [name for name in plan.order if plan.system.components[name].record_states]
-        self.last = -1
-        """The exchange after which the newest row was taken."""
+        self._flushed_at = time.monotonic()
 
     @property
     def columns(self) -> list[Column]:
@@ -40,13 +43,20 @@ class Recorder:
         recorded = [Column(end.name, end.port.unit_name, end.port.description) for end in self._plan.recorded]
         return recorded + self._accounts.described
 
-    def rows(self, exchanges: Sequence[int]) -> None:
-        """Pass on the snapshots that were taken after these exchanges."""
-        if exchanges:
-            found = self._snapshots.rows[:len(exchanges)]
-            times = np.array([self._plan.timing.seconds(exchange) for exchange in exchanges])
+    def look(self) -> None:
+        """Pass on the snapshots that wait, if they have done so for a while or there is no more room."""
+        if time.monotonic() - self._flushed_at > _SECONDS_TOGETHER or self._snapshots.room <= 0:
+            self.flush()
+
+    def flush(self) -> None:
+        """Pass on the snapshots that wait."""
+        waiting = self._snapshots.waiting
+        if waiting:
+            found = self._snapshots.rows[:len(waiting)]
+            times = np.array([self._plan.timing.seconds(exchange) for exchange in waiting])
             self._sink.rows(times, np.concatenate((found[:, self._places], self._accounts.values(found, times)), axis=1))
-            self.last = exchanges[-1]
+            waiting.clear()
+        self._flushed_at = time.monotonic()
 
     def next_frames(self, exchange: int) -> int:
         """The next exchange after which states are to be recorded; the last one where none are."""

@@ -15,7 +15,8 @@ _MOST_ROWS, _MOST_NUMBERS = 1000, 4_000_000
 class Snapshots:
     """Rows of numbers: all exchanged outputs, then what is recorded or needed beside them, then the works of all channels.
 
-    rows: those taken since the last look, one for each ``every`` exchanges. blocks: calls that get what is not exchanged.
+    rows: one for each ``every`` exchanges. waiting: the exchanges after which those were taken that nobody has worked on yet; they
+    stand in the first rows. blocks: calls that get what is not exchanged.
     place: in a row, by the name of the port. taken, given_back: where the works of the channels lie.
     """
 
@@ -31,16 +32,17 @@ class Snapshots:
         channels = sum(bond.force.size for bond in plan.bonds)
         self.taken = slice(len(self.ends), len(self.ends) + channels)
         self.given_back = slice(self.taken.stop, self.taken.stop + channels)
+        self.waiting: list[int] = []
         self.rows = np.zeros((max(1, min(_MOST_ROWS, _MOST_NUMBERS // max(1, self.given_back.stop))), self.given_back.stop))
 
     def due(self, first: int, last: int) -> range:
-        """The exchanges after ``first`` up to ``last`` after which a row is taken; the first of them goes to row 0."""
+        """The exchanges after ``first`` up to ``last`` after which a row is taken."""
         return range(first - first % self.every + self.every, last + 1, self.every)
 
     @property
-    def most(self) -> int:
-        """Exchanges that may be carried out in one go."""
-        return self.every * len(self.rows)
+    def room(self) -> int:
+        """Exchanges that may be carried out before there are no more rows."""
+        return self.every * (len(self.rows) - len(self.waiting))
 
     def lost(self, row: NDArray[np.float64], component: str) -> int:
         """Place in a row of the first value of a component that is no finite number.

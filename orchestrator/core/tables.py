@@ -39,32 +39,35 @@ class Tables(NamedTuple):
 
     first: operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those after the last of a period read
     what is recorded. start, exchange: ticks.
-    inputs, outputs: the two buses. source: for each input, the place of the output that feeds it.
+    inputs, outputs: the two buses. source: for each input, the place of the output that feeds it; unsigned, so that numba does not
+    look whether it counts from the end.
     integers: buffer for values on their way as integers, as long as any row of them.
-    snapshots: rows of :class:`orchestrator.core.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges.
+    snapshots: rows of :class:`orchestrator.core.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges, the
+    next one in ``row``.
     """
 
     start: int
     exchange: int
     every: int
     width: int
+    row: int
     first: Integers
     operations: Records
     moves: Records
     inputs: Floats
     outputs: Floats
-    source: Integers
+    source: NDArray[np.uint64]
     integers: NDArray[np.int32]
     channels: Records
     watched: Records
     snapshots: Floats
 
 
-NUMBERS = ("start", "exchange", "every", "width")
+NUMBERS = ("start", "exchange", "every", "width", "row")
 """The numbers among the :class:`Tables`, which come first."""
 
 KINDS = {"first": np.dtype(np.int64), "operations": OPERATION, "moves": MOVE, "inputs": np.dtype(np.float64),
-         "outputs": np.dtype(np.float64), "source": np.dtype(np.int64), "integers": np.dtype(np.int32), "channels": CHANNEL,
+         "outputs": np.dtype(np.float64), "source": np.dtype(np.uint64), "integers": np.dtype(np.int32), "channels": CHANNEL,
          "watched": WATCHED, "snapshots": np.dtype(np.float64)}
 """Types of the arrays among the :class:`Tables`, in their order."""
 

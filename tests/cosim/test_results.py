@@ -172,13 +172,14 @@ def test_two_processes_into_one_folder(tmp_path):
 
 def test_a_stream_that_was_cut_off_is_read_up_to_the_cut(tmp_path):
     first = writing(tmp_path / "run")
-    for n in range(1100):
-        first.rows(np.array([n * 0.1]), np.array([[float(n)]]))
+    for n in range(0, 1100, 100):
+        numbers = np.arange(n, n + 100.0)
+        first.rows(0.1 * numbers, numbers[:, None])
     stream = running_folder(tmp_path / "run") / "timeseries.arrows"
     stream.write_bytes(stream.read_bytes()[:-100])
     kept = read_run(tmp_path / "run")
     assert kept.status == "running"
-    assert kept.series["x"].tolist() == list(range(512))
+    assert kept.series["x"].tolist() == list(range(1000))
     assert {column.name: column.unit for column in kept.columns} == {"time": "s", "x": "m"}
     first.__exit__(None, None, None)
 
