@@ -11,8 +11,7 @@ from .plan import End
 from .slave import References
 
 _WORTH_A_CALL = 16
-"""Consecutive value references go in a call of their own where the blocks of a component are at least this long on average:
-pythonfmu's slaves take such a block as one slice."""
+"""So many consecutive value references go in a call of their own: our slaves take them as one slice. What lies between goes together."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +34,9 @@ def make_blocks(ends: Sequence[End], begin: int = 0) -> dict[str, list[Block]]:
     for (component, kind), group in groupby(enumerate(ends, begin), lambda item: (item[1].component, item[1].port.kind)):
         members = list(group)
         references = np.array([end.port.reference for _, end in members], np.uint32)
-        cuts = [0, *(np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1), len(references)]
-        if len(references) < _WORTH_A_CALL * (len(cuts) - 1):
-            cuts = [0, len(references)]
+        ends_of_runs = [0, *(np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1), len(references)]
+        long = [run for run in pairwise(ends_of_runs) if run[1] - run[0] >= _WORTH_A_CALL]
+        cuts = sorted({0, len(references), *(cut for run in long for cut in run)})
         blocks.setdefault(component, []).extend(
             Block(kind, references[a:b].copy(), members[a][0]) for a, b in pairwise(cuts))
     return blocks
