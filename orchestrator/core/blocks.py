@@ -11,7 +11,8 @@ from .plan import End
 from .slave import References
 
 _WORTH_A_CALL = 16
-"""So many consecutive value references go in a call of their own: our slaves take them as one slice. What lies between goes together."""
+"""So many consecutive value references go in a call of their own: our slaves take them as one slice. What lies between goes
+together."""
 
 
 @dataclass(frozen=True)
