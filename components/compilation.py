@@ -1,4 +1,7 @@
-"""Compilation of kernels: one decorator, and a cache that is found again wherever the source lies.
+"""Compilation of kernels: decorators, and a cache that is found again wherever the source lies.
+
+A kernel is compiled when it is first used, and numba is imported then and not before: it takes 0.4 s, and who reads declarations
+only, or runs native FMUs, needs none of it.
 
 Numba keys its cache by the folder of the source file and by that one file's content. A kernel inside an FMU would then be
 compiled again on every run (the FMU is unpacked to a new folder each time), and an edit of a called function in another file
@@ -10,20 +13,16 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, update_wrapper
+from importlib import import_module
 from pathlib import Path
-from typing import Any, TypeVar
-
-from numba import njit
-from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from threading import RLock
+from typing import Any
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
 """Environment variable that moves the cache of compiled kernels, by default ``~/.cache/rockshed``."""
 
 _PACKAGE = Path(__file__).parent
-
-F = TypeVar("F", bound=Callable[..., Any])
-
 
 @cache
 def source_stamp(component: str | None) -> str:
@@ -48,59 +47,60 @@ def cache_directory() -> Path | None:
     return folder
 
 
-def _component_of(module: str) -> str | None:
-    """The component that a module belongs to: ``sand_cushion`` of ``components.sand_cushion.forces``; None for any other module."""
-    package, _, rest = module.partition(f"{__package__}.")
-    folder = rest.partition(".")[0]
-    return folder if not package and (_PACKAGE / folder).is_dir() else None
-
-
 def has_kernels(component: str) -> bool:
     """Whether kernels of the component in the folder of this name have been compiled and kept."""
     folder = cache_directory()
     return folder is not None and any((folder / source_stamp(component)[:16]).glob("*.nbc"))
 
 
-class _PackageLocator:
-    """Numba's protocol of a cache locator: where a function's cache lies and when it is stale."""
-
-    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
-        self._function = function
-        self._stamp = source_stamp(_component_of(function.__module__))
-        self._folder = folder / self._stamp[:16]
-
-    @classmethod
-    def from_function(cls, function: Callable[..., Any], _source: str) -> "_PackageLocator | None":
-        """A locator, if the cache can be kept."""
-        folder = cache_directory()
-        return None if folder is None else cls(function, folder)
-
-    def ensure_cache_path(self) -> None:
-        """Make the folder."""
-        self._folder.mkdir(parents=True, exist_ok=True)
-
-    def get_cache_path(self) -> str:
-        """The folder of the cache."""
-        return str(self._folder)
-
-    def get_source_stamp(self) -> str:
-        """Changes with every change of the sources: what was compiled before is stale then."""
-        return self._stamp
-
-    def get_disambiguator(self) -> str:
-        """Part of the file's name that tells functions of one name apart."""
-        return hashlib.sha256(f"{self._function.__module__}:{self._function.__code__.co_firstlineno}".encode()).hexdigest()[:12]
+_making = RLock()
 
 
-class _PackageCacheImpl(CompileResultCacheImpl):
-    _locator_classes = (_PackageLocator,)
+class Deferred:
+    """A function that ``make`` turns into what numba calls a function, when it is first used.
+
+    Everything that is asked of it is asked of what ``make`` gives; compiled functions may call it like any other.
+    """
+
+    def __init__(self, function: Callable[..., Any], make: Callable[[Callable[..., Any]], Any]) -> None:
+        update_wrapper(self, function)
+        self._function, self._make = function, make
+
+    @property
+    def made(self) -> Any:
+        """What ``make`` gives."""
+        if "_made" not in vars(self):
+            from . import numba_bridge  # noqa: F401 (tells numba what a Deferred is)
+
+            with _making:  # two threads that come first get the same
+                if "_made" not in vars(self):
+                    self._made = self._make(self._function)
+        return self._made
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call what ``make`` gives."""
+        return self.made(*arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # copy and pickle look for what is not there before anything is
+            raise AttributeError(name)
+        return getattr(self.made, name)
 
 
-class _PackageCache(FunctionCache):
-    _impl_class = _PackageCacheImpl
+class Later:
+    """A module that is imported when something is first taken from it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(import_module(self._name), name)
 
 
-def kernel(function: F) -> F:
+numba_types: Any = Later("numba.types")
+
+
+def kernel(function: Callable[..., Any]) -> Any:
     """Compile ``function`` with numba: no fastmath (results are compared bit for bit), division by zero gives inf or NaN.
 
     Kernels keep to what also compiles without Python: explicit loops, scalar arithmetic, slices, other kernels. No
@@ -109,18 +109,38 @@ def kernel(function: F) -> F:
     return _compiled(function, inline="never")
 
 
-def inlined(function: F) -> F:
+def inlined(function: Callable[..., Any]) -> Any:
     """A :func:`kernel` that the compiler sets into its callers: for small functions inside hot loops."""
     return _compiled(function, inline="always")
 
 
-def released(function: F) -> F:
+def released(function: Callable[..., Any]) -> Any:
     """A :func:`kernel` during which other threads of Python run: for calls from Python that take milliseconds."""
     return _compiled(function, inline="never", nogil=True)
 
 
-def _compiled(function: F, inline: str, nogil: bool = False) -> F:
-    dispatcher = njit(error_model="numpy", inline=inline, nogil=nogil, _nrt=False)(function)
-    if cache_directory() is not None:
-        dispatcher._cache = _PackageCache(function)
-    return dispatcher
+def intrinsic(function: Callable[..., Any]) -> Any:
+    """A function that writes the code of a call itself, instruction by instruction: ``numba.extending.intrinsic``."""
+    def make(function: Callable[..., Any]) -> Any:
+        from numba.core.registry import cpu_target
+        from numba.extending import intrinsic
+
+        made = intrinsic(function)
+        cpu_target.typing_context.refresh()  # which does not know it before
+        return made
+
+    return Deferred(function, make)
+
+
+def _compiled(function: Callable[..., Any], inline: str, nogil: bool = False) -> Deferred:
+    def make(function: Callable[..., Any]) -> Any:
+        from numba import njit
+
+        from .numba_bridge import PackageCache
+
+        dispatcher = njit(error_model="numpy", inline=inline, nogil=nogil, _nrt=False)(function)
+        if cache_directory() is not None:
+            dispatcher._cache = PackageCache(function)
+        return dispatcher
+
+    return Deferred(function, make)

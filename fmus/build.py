@@ -4,7 +4,6 @@ The sources go in under names that contain a hash of their content, so that FMUs
 their modules (see :mod:`fmus.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`fmus.native_fmu`.
 """
 
-import os
 import re
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,16 +17,13 @@ from components.catalogue import component as catalogued
 from components.component import Component
 
 from .description import model_description
-from .native_fmu import is_fresh, native_files
-from .parts import BuildError, Files, Fmi, Runtime, archive, component_sources, digest, documentation, picture, replace
+from .native_fmu import native_files
+from .parts import DESCRIPTION, BuildError, Files, Fmi, Runtime, archive, component_sources, digest, documentation, picture, replace
+from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, folder_name, native_is_fresh
 from .script import SCRIPT
 
-__all__ = ["BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name", "fmu_content",
-           "fmu_files", "fmu_folder", "folder_name", "native_is_fresh", "store"]
-
-FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
-"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python``, ``native`` and
-``native-fmi3``."""
+__all__ = ["FOLDER_VARIABLE", "BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name",
+           "fmu_content", "fmu_files", "fmu_folder", "folder_name", "native_is_fresh", "store"]
 
 ONLY_NATIVE = "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes them; for FMI 3.0 there are native ones"
 
@@ -63,7 +59,7 @@ def build_component(component: Component, sizes: Mapping[str, int] | None = None
     """Build the FMU of any component; ``keep`` leaves a file alone that is what would be built."""
     chosen = component.with_sizes(sizes)
     if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination, fmi):
-        return _file(component, chosen, destination, runtime, fmi)
+        return fmu_file(component, chosen, runtime, destination, fmi)
     return store(component, chosen, fmu_content(component, chosen, runtime, fmi=fmi), destination, runtime, keep, fmi)
 
 
@@ -88,7 +84,7 @@ def store(component: Component, sizes: Mapping[str, int], content: bytes, destin
     Raises:
         BuildError: the folder cannot be written.
     """
-    file = _file(component, sizes, destination, runtime, fmi)
+    file = fmu_file(component, sizes, runtime, destination, fmi)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
@@ -99,31 +95,6 @@ def store(component: Component, sizes: Mapping[str, int], content: bytes, destin
                   else "name another folder")
         raise BuildError(f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}") from error
     return file
-
-
-def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None, fmi: Fmi = Fmi.TWO) -> bool:
-    """Whether the native FMU of a component is there for this machine, and is what would be built now."""
-    return is_fresh(_file(component, sizes, destination, Runtime.NATIVE, fmi), component, sizes, fmi)
-
-
-def _file(component: Component, sizes: Mapping[str, int], destination: Path | None, runtime: Runtime, fmi: Fmi) -> Path:
-    return (fmu_folder(runtime, fmi) if destination is None else Path(destination)) / file_name(component, sizes)
-
-
-def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
-    """Folder of built FMUs of a runtime and version of FMI."""
-    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / folder_name(runtime, fmi)
-
-
-def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
-    """``python``, ``native`` or ``native-fmi3``."""
-    return runtime if fmi is Fmi.TWO else f"{runtime}-fmi{fmi}"
-
-
-def file_name(component: Component, sizes: Mapping[str, int]) -> str:
-    """``Name.fmu`` with default sizes, otherwise all sizes are named: ``SandCushion-discs360-elements24.fmu``."""
-    suffix = "" if dict(sizes) == component.with_sizes() else "".join(f"-{name}{value}" for name, value in sizes.items())
-    return f"{component.name}{suffix}.fmu"
 
 
 def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
@@ -142,7 +113,7 @@ def _stamped_files(component: Component, sizes: Mapping[str, int], library: str,
     script = SCRIPT.substitute(
         name=component.name, library=library, package=component.folder.name, sizes=repr(dict(sizes)))
     return {
-        "modelDescription.xml": model_description(component, sizes, f"{{{uuid.UUID(stamp[:32])}}}"),
+        DESCRIPTION: model_description(component, sizes, f"{{{uuid.UUID(stamp[:32])}}}"),
         "resources/slavemodule.txt": module.encode(),
         f"resources/{module}.py": script.encode(),
     }

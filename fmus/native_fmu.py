@@ -15,9 +15,9 @@ import subprocess
 import sys
 import tempfile
 import uuid
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import chain
@@ -27,15 +27,13 @@ from components.compilation import CACHE_VARIABLE, cache_directory
 from components.component import HEADER, Component, Instance, allowed_range
 from components.ports import Causality, Kind, Sizes, Variable
 
-from . import description, description3
 from .native_subset import UNKNOWN_PLACE
-from .parts import BuildError, Files, Fmi, Runtime, component_sources, digest, documentation, picture
+from .parts import DESCRIPTION, BuildError, Files, Fmi, Runtime, component_sources, digest, documentation, picture
 
 _HERE = Path(__file__).parent
 _SLAVE = _HERE / "slave.h"
 _SHIMS = {Fmi.TWO: _HERE / "shim_fmi2.c", Fmi.THREE: _HERE / "shim_fmi3.c"}
 _KERNELS = (_HERE / "native_kernels.py", _HERE / "native_subset.py")
-_DESCRIPTION = "modelDescription.xml"
 
 
 @dataclass(frozen=True)
@@ -107,14 +105,24 @@ def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = 
     """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
     compilers = {name: compiler(name) for name in platforms}
-    files = _described(component, sizes, fmi)
+    guid = stamp(component, sizes, fmi)
+    files = _described(component, sizes, guid, fmi)
     objects = _objects(component, sizes, platforms)
-    header = model_header(component, sizes, _guid(files[_DESCRIPTION]))
+    header = model_header(component, sizes, guid)
     for name in platforms:
         path = _library(component, name, fmi)
         sources = {"model.h": header, "kernels.o": objects[name], **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
         files[path] = _linked(component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources)
     return files
+
+
+def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:
+    """Path of this machine's library in a native FMU.
+
+    Raises:
+        BuildError: there are no native FMUs for this machine.
+    """
+    return _library(component, own_platform(), fmi)
 
 
 def _library(component: Component, platform: str, fmi: Fmi) -> str:
@@ -123,39 +131,31 @@ def _library(component: Component, platform: str, fmi: Fmi) -> str:
     return f"binaries/{folder}/{component.name}{PLATFORMS[platform].suffix}"
 
 
-def is_fresh(file: Path, component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> bool:
-    """Whether a native FMU is there, is what would be built now, and has a binary for this machine."""
-    try:
-        binary = _library(component, own_platform(), fmi)
-        with zipfile.ZipFile(file) as found:
-            return binary in found.namelist() and found.read(_DESCRIPTION) == _described(component, sizes, fmi)[_DESCRIPTION]
-    except (OSError, KeyError, zipfile.BadZipFile, BuildError):
-        return False
+def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
+    """GUID of a native FMU, in FMI 3.0 its instantiation token: a hash of the sources and versions that it follows from. Nothing
+    has to be computed for it but that."""
+    beside = [path for path in component.folder.iterdir() if path.suffix in (".md", ".png")]
+    made_from = component_sources(component) | {
+        path.name: path.read_bytes() for path in (*_HERE.glob("*.py"), _SLAVE, _SHIMS[fmi], *beside)}
+    made_from["versions"] = repr([CPU, dict(sizes), *_versions("rockshed", "numba", "llvmlite", "lxml", "markdown-it-py")]).encode()
+    return f"{{{uuid.UUID(digest(made_from)[:32])}}}"
 
 
-def _described(component: Component, sizes: Sizes, fmi: Fmi) -> Files:
+def _described(component: Component, sizes: Sizes, guid: str, fmi: Fmi) -> Files:
     """Description, documentation, icon and terminals: what can be told without compiling anything."""
-    def described(guid: str) -> bytes:
-        if fmi is Fmi.THREE:
-            return description3.model_description(component, sizes, guid)
-        return description.model_description(component, sizes, guid, Runtime.NATIVE)
+    from . import description, description3
 
     files = documentation(component, sizes)
-    files |= description3.terminals_and_icon(component) if fmi is Fmi.THREE else picture(component, "model.png")
-    made_from = files | component_sources(component) | {
-        _DESCRIPTION: described(""), "versions": repr([CPU, *_versions()]).encode(),
-        **{path.name: path.read_bytes() for path in (_SLAVE, _SHIMS[fmi], *_KERNELS, Path(__file__))}}
-    return files | {_DESCRIPTION: described(f"{{{uuid.UUID(digest(made_from)[:32])}}}")}
+    if fmi is Fmi.THREE:
+        own = {DESCRIPTION: description3.model_description(component, sizes, guid)}
+        return files | own | description3.terminals_and_icon(component)
+    own = {DESCRIPTION: description.model_description(component, sizes, guid, Runtime.NATIVE)}
+    return files | own | picture(component, "model.png")
 
 
-def _versions() -> list[str]:
-    return [f"{package} {version(package)}" for package in ("numba", "llvmlite")]
-
-
-def _guid(xml: bytes) -> str:
-    found = re.search(rb'(?:guid|instantiationToken)="([^"]*)"', xml)
-    assert found is not None
-    return found.group(1).decode()
+@cache
+def _versions(*packages: str) -> list[str]:
+    return [f"{package} {version(package)}" for package in packages]
 
 
 # --- kernels
@@ -164,7 +164,7 @@ def _guid(xml: bytes) -> str:
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Object code of the kernels by platform; kept in the cache of compiled kernels."""
     made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
-    stamp = digest(made_from | {"for": repr([CPU.name, dict(sizes), *_versions()]).encode()})[:24]
+    stamp = digest(made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()})[:24]
     folder = cache_directory()
     kept = {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms} if folder else {}
     if kept and all(path.is_file() for path in kept.values()):
@@ -206,6 +206,8 @@ def _compile(component: Component, sizes: Sizes, platforms: Sequence[str], work:
 
 def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
     """``model.h``: what the shim has to know of a component."""
+    from .description3 import TIME
+
     instance = Instance(component, sizes)
     entries = component.layout.table(sizes)[0]
     header = instance.to_bytes()[:HEADER.size]
@@ -224,7 +226,7 @@ def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
         f"#define MARK 0x{instance.kind[:8].hex()}u",
         _array("double", "START", map(_real, instance.w.tolist())), _array("int64_t", "TABLE", map(str, entries or [0])),
         _array("int", "SIZES", map(str, [*sizes.values(), 0])),
-        _array("Text", "READ_ONLY", map(_text, [*sizes, description3.TIME])),
+        _array("Text", "READ_ONLY", map(_text, [*sizes, TIME])),
         _array("int", "ZERO_UNTIL_EVENT", map(str, [*waits, -1])), _array("unsigned char", "HEADER", map(str, header)),
         _array("Variable", "VARIABLES", _variables(component, sizes)), _array("unsigned short", "VARIABLE_OF", map(str, owners)),
         _array("unsigned char", "TRAITS", traits), _array("unsigned short", "ALIKE", map(str, _alike(traits))),

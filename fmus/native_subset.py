@@ -4,11 +4,12 @@ import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
-
-from numba.core.errors import NumbaError
+from typing import TYPE_CHECKING, Any
 
 from .parts import COMPONENTS
+
+if TYPE_CHECKING:
+    from numba.core.errors import NumbaError
 
 ALLOWED = frozenset(re.findall(r"\w+", """
     acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs floor fma fmax fmin fmod frexp
@@ -75,7 +76,7 @@ def _field(node: str, name: str) -> str:
     return (found.group(1) or found.group(2)) if found else ""
 
 
-def error_problem(error: NumbaError, name: str, kernel: Any, folder: Path) -> str:
+def error_problem(error: "NumbaError", name: str, kernel: Any, folder: Path) -> str:
     """What numba finds wrong with a kernel of a component, with the line as far as numba knows it."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
     reasons = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith(("Failed in", "During"))]

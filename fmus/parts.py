@@ -12,9 +12,8 @@ import components
 from components.component import Component
 from components.ports import Sizes
 
-from .documentation import index_html
-
 COMPONENTS = Path(components.__file__).parent
+DESCRIPTION = "modelDescription.xml"
 _NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
 
 Files = dict[str, bytes]
@@ -49,6 +48,8 @@ def component_sources(component: Component) -> Files:
 
 def documentation(component: Component, sizes: Sizes) -> Files:
     """The documentation."""
+    from .documentation import index_html
+
     return {"documentation/index.html": index_html(component, sizes).encode()}
 
 

@@ -15,7 +15,6 @@ from functools import wraps
 from typing import Any, ClassVar
 
 import numpy as np
-from numba import typeof
 
 from .foundations import Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
 from .interpreter import let_go_of_interpreter
@@ -189,6 +188,8 @@ class ComponentSlave(Fmi2Slave):
         compiler = getattr(self.component.step, "compile", None)
         if compiler is not None and not self._compiled:  # there is none with NUMBA_DISABLE_JIT, for debugging
             with ForeignFoldersHidden():
+                from numba import typeof
+
                 compiler(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
         self._compiled = True
 

@@ -349,13 +349,22 @@ static Status set(Slave *m, int type, const Reference r[], size_t n, const void 
 
 enum { SEAL = 12, CLOCK = 12, BUFFERS = 8 * (NW + NX + NK), SERIALIZED = SEAL + CLOCK + sizeof HEADER + BUFFERS };
 
-static uint32_t checksum(const unsigned char *bytes, size_t n) { /* the CRC-32 of zlib */
-  uint32_t table[256], sum = ~0u;
+static uint32_t checksum(const unsigned char *bytes, size_t n) { /* the CRC-32 of zlib, eight bytes at a time */
+  uint32_t table[8][256], sum = ~0u;
   for (uint32_t i = 0; i < 256; i++) {
-    table[i] = i;
-    for (int bit = 0; bit < 8; bit++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xEDB88320u : 0);
+    table[0][i] = i;
+    for (int bit = 0; bit < 8; bit++) table[0][i] = table[0][i] >> 1 ^ (table[0][i] & 1 ? 0xEDB88320u : 0);
   }
-  for (size_t i = 0; i < n; i++) sum = sum >> 8 ^ table[(sum ^ bytes[i]) & 255];
+  for (int ahead = 1; ahead < 8; ahead++)
+    for (int i = 0; i < 256; i++) table[ahead][i] = table[ahead - 1][i] >> 8 ^ table[0][table[ahead - 1][i] & 255];
+  for (; n >= 8; n -= 8, bytes += 8) {
+    uint64_t word;
+    memcpy(&word, bytes, 8);
+    word ^= sum;
+    sum = 0;
+    for (int i = 0; i < 8; i++) sum ^= table[7 - i][word >> 8 * i & 255];
+  }
+  for (; n; n--, bytes++) sum = sum >> 8 ^ table[0][(sum ^ *bytes) & 255];
   return ~sum;
 }
 

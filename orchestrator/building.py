@@ -14,7 +14,7 @@ from .core.names import nearest
 from .core.system import Value
 
 if TYPE_CHECKING:
-    from fmus.build import Runtime
+    from fmus.parts import Runtime
 
 AUTO, BOTH = "auto", "both"
 """What may stand in the place of a runtime: the best that is there, or every one."""
@@ -98,30 +98,44 @@ def case_fmus(chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, 
     Raises:
         InputRefused: they cannot be compiled or written.
     """
-    from fmus.build import BuildError, Runtime, build_if_needed, file_name, fmu_folder
+    from fmus.places import Runtime, fmu_file
 
-    runtime, reason = _best_runtime(chosen, sizes) if wanted == AUTO else (Runtime(wanted), "as asked for")
+    stale = _stale(chosen, sizes)
+    runtime, reason = _best_runtime(chosen, sizes, stale) if wanted == AUTO else (Runtime(wanted), "as asked for")
     files = {}
     for name, model in chosen.models.items():
-        before = _changed_at(fmu_folder(runtime) / file_name(component(model), sizes[name]))
-        try:
-            file = build_if_needed(model, sizes[name], runtime=runtime)
-        except BuildError as error:
-            raise InputRefused([Problem(name, str(error))]) from error
-        if _changed_at(file) != before:
-            note(f"built {file}")
+        file = fmu_file(component(model), sizes[name], runtime)
+        if runtime is not Runtime.NATIVE or name in stale:
+            _build_if_needed(name, model, sizes[name], runtime, file, note)
         files[name] = str(file)
     return CaseFmus(files, runtime.value, reason)
 
 
-def _best_runtime(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> "tuple[Runtime, str]":
-    from fmus.build import Runtime, file_name, fmu_folder, native_is_fresh
+def _build_if_needed(name: str, model: str, sizes: Mapping[str, int], runtime: "Runtime", file: Path, note: Note) -> None:
+    from fmus.build import BuildError, build_if_needed
 
-    stale = [name for name, model in chosen.models.items() if not native_is_fresh(component(model), sizes[name])]
+    before = _changed_at(file)
+    try:
+        build_if_needed(model, sizes, runtime=runtime)
+    except BuildError as error:
+        raise InputRefused([Problem(name, str(error))]) from error
+    if _changed_at(file) != before:
+        note(f"built {file}")
+
+
+def _stale(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> list[str]:
+    """Components of which there is no native FMU that is up to date."""
+    from fmus.places import native_is_fresh
+
+    return [name for name, model in chosen.models.items() if not native_is_fresh(component(model), sizes[name])]
+
+
+def _best_runtime(chosen: Case, sizes: Mapping[str, Mapping[str, int]], stale: Sequence[str]) -> "tuple[Runtime, str]":
+    from fmus.places import Runtime, fmu_file
+
     if not stale:
         return Runtime.NATIVE, "they are up to date"
-    folder = fmu_folder(Runtime.NATIVE)
-    there = [name for name in stale if (folder / file_name(component(chosen.models[name]), sizes[name])).is_file()]
+    there = [name for name in stale if fmu_file(component(chosen.models[name]), sizes[name], Runtime.NATIVE).is_file()]
     why = f"native {' and '.join(there)} out of date" if there else "there are no native ones"
     return Runtime.PYTHON, f"{why}; --runtime native makes them"
 
@@ -165,8 +179,9 @@ def build_all(names: Sequence[str], size_texts: Sequence[str], folder: Path | No
 
 
 def _runtime_problems(runtime: str, platforms: Sequence[str], fmi: int) -> list[Problem]:
-    from fmus.build import ONLY_NATIVE, Fmi, Runtime
+    from fmus.build import ONLY_NATIVE, Fmi
     from fmus.native_fmu import PLATFORMS
+    from fmus.parts import Runtime
 
     problems = [Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS)) for name in platforms
                 if name not in PLATFORMS]

@@ -222,20 +222,18 @@ def cut_off(run: "Run") -> float:
 
 
 def load_cell(time: "NDArray[np.float64]", force: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64]":
-    """What a load cell shows of a force (N) given at even times (s): a Butterworth low-pass of second order (scipy.signal), the
+    """What a load cell shows of a force (N) given at even times (s): a Butterworth low-pass of second order, the
     response of an oscillator with the damping ratio 1/sqrt(2). It looks back only, so it lags; at the start it is steady.
 
     Raises:
         ValueError: there are fewer than :data:`LOAD_CELL_ROWS` rows for each period of ``cut_off`` (Hz).
     """
-    from scipy.signal import butter, sosfilt, sosfilt_zi
+    from .filtering import looking_back
 
     rate = (time.size - 1) / float(time[-1] - time[0])
     if cut_off * LOAD_CELL_ROWS > rate * (1.0 + 1e-9):
         raise ValueError(f"rows {1.0 / rate:.3g} s apart carry a cut-off of {rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}")
-    sections = butter(_LOAD_CELL_ORDER, cut_off, fs=rate, output="sos")
-    shown: NDArray[np.float64] = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]
-    return shown
+    return looking_back(force, cut_off, rate, _LOAD_CELL_ORDER)
 
 
 def _load_cell(run: "Run") -> Iterator[Figure]:
@@ -252,21 +250,21 @@ def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":
 
 
 def low_pass(time: "NDArray[np.float64]", values: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64] | None":
-    """Values without what is faster than the cut-off (Hz): a Butterworth low-pass filter without shift in time (scipy.signal).
+    """Values without what is faster than the cut-off (Hz): a Butterworth low-pass filter without shift in time.
 
     None where the rows are too few or too far apart for it.
     """
     import numpy as np
-    from scipy.signal import butter, sosfiltfilt
 
-    if time.size < 2:
+    from .filtering import fewest, without_shift
+
+    if time.size < fewest(_ORDER):
         return None
     rate = (time.size - 1) / (time[-1] - time[0])
     if time.size * cut_off < rate or rate <= 2.0 * cut_off:
         return None
     even = np.linspace(time[0], time[-1], time.size)
-    filtered = sosfiltfilt(butter(_ORDER, cut_off, fs=rate, output="sos"), np.interp(even, time, values))
-    return np.interp(time, even, filtered)
+    return np.interp(time, even, without_shift(np.interp(even, time, values), cut_off, float(rate), _ORDER))
 
 
 def _settled(run: "Run") -> Iterator[Figure]:

@@ -12,10 +12,9 @@ same bits everywhere. ``plain_...`` are their twins in plain loops, for reading 
 from typing import Any
 
 from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 
-from ..compilation import kernel
+from ..compilation import intrinsic, kernel
+from ..compilation import numba_types as types
 
 LANES = 8
 """Pairs that are handled at once."""

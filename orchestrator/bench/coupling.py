@@ -46,7 +46,8 @@ def co_simulation(coupling: Coupling, plain: bool = False, runtime: Runtime = Ru
     def work() -> float:
         with tempfile.TemporaryDirectory() as folder:
             run = simulate(system, Path(folder) / "run", plain=plain)
-        return float(run.provenance["wall_time"]["exchanges"])
+        spent = run.provenance["wall_time"]
+        return float(spent["exchanges"] + spent["recording"])
 
     return work
 

@@ -1,49 +1,19 @@
 """The buses of a run, and two ways to carry out exchanges, call by call or in the compiled loop. Both give the same bits."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby, pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from .blocks import make_blocks
 from .clock import to_seconds
-from .loop import (
-    CHANNEL,
-    MOVE,
-    NOT_FINITE,
-    OPERATION,
-    WATCHED,
-    Records,
-    Tables,
-    advance,
-    first_not_finite,
-    is_bad,
-    post,
-    watch,
-)
+from .machine_code import advance
 from .plan import End, Plan
 from .schedule import Action, Operation
-from .slave import REAL, WARNING, References, Slave
-
-_WORTH_A_CALL = 16
-"""Consecutive value references go in a call of their own where the blocks of a component are at least this long on average:
-pythonfmu's slaves take such a block as one slice."""
-
-
-@dataclass(frozen=True)
-class Block:
-    """Variables that one FMI call moves; their values lie on a bus from place ``begin`` on."""
-
-    kind: str
-    references: References
-    begin: int
-
-    @cached_property
-    def places(self) -> slice:
-        """Where the values lie."""
-        return slice(self.begin, self.begin + self.references.size)
+from .slave import REAL, WARNING, Slave
+from .snapshots import Snapshots
+from .tables import CHANNEL, MOVE, NOT_FINITE, NUMBERS, OPERATION, WATCHED, Records, Tables, head
 
 
 class Fault(NamedTuple):
@@ -52,20 +22,6 @@ class Fault(NamedTuple):
     exchange: int
     operation: Operation
     status: int
-
-
-def make_blocks(ends: Sequence[End]) -> dict[str, list[Block]]:
-    """Blocks of each component for ports that lie in this order on a bus."""
-    blocks: dict[str, list[Block]] = {}
-    for (component, kind), group in groupby(enumerate(ends), lambda item: (item[1].component, item[1].port.kind)):
-        members = list(group)
-        references = np.array([end.port.reference for _, end in members], np.uint32)
-        cuts = [0, *(np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1), len(references)]
-        if len(references) < _WORTH_A_CALL * (len(cuts) - 1):
-            cuts = [0, len(references)]
-        blocks.setdefault(component, []).extend(
-            Block(kind, references[a:b].copy(), members[a][0]) for a, b in pairwise(cuts))
-    return blocks
 
 
 def make_channels(plan: Plan) -> Records:
@@ -79,19 +35,31 @@ def make_channels(plan: Plan) -> Records:
 def make_watched(plan: Plan) -> Records:
     """Extremes and integrals of the watched outputs, before the first value."""
     watched = np.zeros(plan.watched.size, WATCHED)
-    watched["place"], watched["low"], watched["high"] = plan.watched, np.inf, -np.inf
+    watched["place"] = plan.watched
     return watched
 
 
 class State:
-    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, what is
-    watched."""
+    """What a run carries from exchange to exchange: both buses, the accounts of the bonds, what is watched, what is recorded."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.inputs, self.outputs = np.zeros(len(plan.inputs)), np.zeros(len(plan.outputs))
         self.setters, self.getters = make_blocks(plan.inputs), make_blocks(plan.outputs)
         self.channels, self.watched = make_channels(plan), make_watched(plan)
+        self.snapshots = Snapshots(plan)
+
+    @cached_property
+    def needs(self) -> dict[str, set[int]]:
+        """Places of the outputs that feed each component's inputs."""
+        return {name: {int(place) for block in self.setters.get(name, []) for place in self.plan.source[block.places]}
+                for name in self.plan.order}
+
+    @cached_property
+    def shows(self) -> dict[str, set[int]]:
+        """Places of each component's outputs."""
+        return {name: {place for block in self.getters.get(name, []) for place in range(block.places.start, block.places.stop)}
+                for name in self.plan.order}
 
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values. Returns the worst status."""
@@ -111,8 +79,9 @@ class State:
         blocks = self.getters.get(component)
         if not blocks:
             return None
-        place = first_not_finite(self.outputs, blocks[0].places.start, blocks[-1].places.stop)
-        return self.plan.outputs[place] if place >= 0 else None
+        begin, end = blocks[0].places.start, blocks[-1].places.stop
+        lost = np.flatnonzero(~np.isfinite(self.outputs[begin:end]))
+        return self.plan.outputs[begin + lost[0]] if lost.size else None
 
     def open_accounts(self) -> None:
         """Take the values at the start as those from which work, extremes and integrals are counted."""
@@ -120,14 +89,51 @@ class State:
         shown = channels["seen"] >= 0
         channels["last_seen"][shown] = self.inputs[channels["seen"][shown]]
         channels["last_force"], channels["last_position"] = self.outputs[channels["force"]], self.outputs[channels["position"]]
-        watch(self.watched, self.outputs, 0)
+        for name in ("low", "high", "last"):
+            self.watched[name] = self.outputs[self.watched["place"]]
+
+    def post(self) -> None:
+        """Enter the work of one exchange, as the compiled loop does."""
+        channels, inputs, outputs = self.channels, self.inputs, self.outputs
+        position = outputs[channels["position"]]
+        channels["taken"] += inputs[channels["given"]] * (position - channels["last_position"])
+        channels["last_position"] = position
+        shown = channels["seen"] >= 0
+        seen, force = inputs[channels["seen"][shown]], outputs[channels["force"][shown]]
+        channels["given_back"][shown] -= 0.5 * (force + channels["last_force"][shown]) * (seen - channels["last_seen"][shown])
+        channels["last_seen"][shown], channels["last_force"][shown] = seen, force
+
+    def watch(self, exchange: int) -> None:
+        """Enter the values after ``exchange`` exchanges into extremes and integrals, as the compiled loop does."""
+        watched = self.watched
+        value = self.outputs[watched["place"]]
+        for bound, exceeds in (("high", value > watched["high"]), ("low", value < watched["low"])):
+            watched[bound][exceeds], watched[f"{bound}_at"][exceeds] = value[exceeds], exchange
+        watched["area"] += 0.5 * (watched["last"] + value)
+        watched["last"] = value
+
+    def record(self, slaves: Mapping[str, Slave], number: int) -> tuple[str, int] | None:
+        """Take a snapshot into a row. Returns the component that does not give finite values, and its status."""
+        snapshots = self.snapshots
+        row = snapshots.rows[number]
+        row[:snapshots.exchanged] = self.outputs
+        row[snapshots.taken], row[snapshots.given_back] = self.channels["taken"], self.channels["given_back"]
+        for name, blocks in snapshots.blocks.items():
+            for block in blocks:
+                status = slaves[name].get(block.references, row[block.places], block.kind)
+                if status > WARNING:
+                    return name, status
+                if not np.isfinite(row[block.places]).all():
+                    return name, NOT_FINITE
+        return None
 
 
 class Driver(Protocol):
     """Carries out exchanges."""
 
     def advance(self, first: int, count: int) -> Fault | None:
-        """Carry out ``count`` exchanges from exchange number ``first`` on; stop at the first operation that fails."""
+        """Carry out ``count`` exchanges from exchange number ``first`` on; stop at the first operation that fails. Snapshots
+        that are due are taken, behind those that wait."""
 
 
 class PlainDriver:
@@ -143,10 +149,14 @@ class PlainDriver:
             origin = timing.start + n // schedule.period * schedule.period * schedule.exchange
             for operation in schedule.operations[n % schedule.period]:
                 status = self._operate(operation, origin)
-                if is_bad(status):
+                if status > WARNING or status == NOT_FINITE:
                     return Fault(n, operation, status)
-            post(state.channels, state.inputs, state.outputs)
-            watch(state.watched, state.outputs, n + 1)
+            state.post()
+            state.watch(n + 1)
+            if (n + 1) % state.snapshots.every == 0:
+                lost = state.record(self._slaves, len(state.snapshots.waiting) + len(state.snapshots.due(first, n)))
+                if lost is not None:
+                    return Fault(n, Operation(Action.RECORD, lost[0]), lost[1])
         return None
 
     def _operate(self, operation: Operation, origin: int) -> int:
@@ -163,33 +173,36 @@ class CompiledDriver:
     """Calls the C functions of FMUs from the compiled loop."""
 
     def __init__(self, state: State, slaves: Mapping[str, Slave]) -> None:
-        plan = state.plan
+        plan, snapshots = state.plan, state.snapshots
         self._operations = [operation for exchange in plan.schedule.operations for operation in exchange]
+        self._operations += [Operation(Action.RECORD, name) for name in snapshots.blocks]
         operations, moves = _calls(self._operations, state, slaves)
         self._tables = Tables(
-            plan.timing.start, plan.schedule.exchange, np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
-            operations, moves, state.inputs, state.outputs, plan.source,
-            np.zeros(max(len(plan.inputs), len(plan.outputs)), np.int32), state.channels, state.watched)
-        advance(self._tables, 0, 0)  # compiles, or loads what was compiled before
+            plan.timing.start, plan.schedule.exchange, snapshots.every, snapshots.rows.shape[1], 0,
+            np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
+            operations, moves, state.inputs, state.outputs, plan.source.astype(np.uint64),
+            np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32), state.channels, state.watched, snapshots.rows.ravel())
+        self._waiting, self._head, self._loop = snapshots.waiting, head(self._tables), advance()
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
-        done, operation, status = advance(self._tables, first, count)
-        return Fault(first + done, self._operations[operation], status) if is_bad(status) else None
+        self._head[NUMBERS.index("row")] = len(self._waiting)
+        done, number, status = self._loop(self._head, first, count)
+        return Fault(first + done, self._operations[number], status) if status else None
 
 
 def _calls(planned: Sequence[Operation], state: State, slaves: Mapping[str, Slave]) -> tuple[Records, Records]:
     """The tables of operations and of moves. The arrays of references that the moves point to belong to ``state``."""
     operations, moves = [], list[tuple[int, ...]]()
+    blocks = {Action.SET: state.setters, Action.GET: state.getters, Action.RECORD: state.snapshots.blocks}
     for operation in planned:
         addresses = slaves[operation.component].addresses
         assert addresses is not None
         first = len(moves)
         if operation.action is not Action.STEP:
-            setting = operation.action is Action.SET
-            functions, blocks = (addresses.set, state.setters) if setting else (addresses.get, state.getters)
+            functions = addresses.set if operation.action is Action.SET else addresses.get
             moves += [(functions[block.kind], addresses.instance, block.references.ctypes.data, block.references.size, block.begin,
-                       block.kind != REAL) for block in blocks.get(operation.component, [])]
+                       block.kind != REAL) for block in blocks[operation.action].get(operation.component, [])]
         operations.append((operation.action, addresses.instance, addresses.do_step, operation.begin, operation.length, first,
                            len(moves)))
     return np.array(operations, OPERATION), np.array(moves, MOVE)

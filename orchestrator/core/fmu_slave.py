@@ -12,6 +12,7 @@ import weakref
 import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -96,6 +97,7 @@ class FmuFile:
         return FmuSlave(self, name)
 
 
+@lru_cache(maxsize=32)
 def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Description:
     """What ``modelDescription.xml`` says. An array of FMI 3.0 is described by its elements, ``name[1]``, ``name[2]``, ...
 

@@ -73,35 +73,48 @@ def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, s
 
 
 def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int]) -> None:
-    """Do the same with all slaves, then see whether any of them refused: by its status, or by a message with the status Error."""
-    problems = []
-    for name, slave in slaves.items():
-        status = call(slave)
-        reasons = [text for severity, text in slave.messages if severity >= ERROR]
-        if status > WARNING or reasons:
-            texts = reasons or [text for _, text in slave.messages] or [f"returned {STATUS_NAMES[status]} without a message"]
-            problems += [Problem(name, without_name(name, text)) for text in dict.fromkeys(texts)]
+    """Do the same with all slaves, then see whether any of them refused."""
+    problems = [problem for slave in slaves.values() for problem in _refusals(slave, call(slave))]
     if problems:
         raise InputRefused(problems)
+
+
+def _refusals(slave: Slave, status: int) -> list[Problem]:
+    """What a slave refused: it says so by its status, or by a message with the status Error."""
+    reasons = [text for severity, text in slave.messages if severity >= ERROR]
+    if status <= WARNING and not reasons:
+        return []
+    texts = reasons or [text for _, text in slave.messages] or [f"returned {STATUS_NAMES[status]} without a message"]
+    return [Problem(slave.name, without_name(slave.name, text)) for text in dict.fromkeys(texts)]
 
 
 def _settle(state: State, slaves: Mapping[str, Slave]) -> str:
     """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing.
 
-    A warning about inputs that are then replaced is forgotten: the slave says it again if it still holds.
+    Those with the fewest inputs come first: what they show is then there for those that need much and may take long to compute what
+    follows from it. A warning about inputs that are then replaced is forgotten: the slave says it again if it still holds.
     """
-    outputs = state.outputs
-    before = np.full_like(outputs, np.nan)
+    outputs, needs = state.outputs, state.needs
+    turns = sorted(slaves.values(), key=lambda slave: len(needs[slave.name]))
+    before, taken = np.full_like(outputs, np.nan), set[int]()
+    said: dict[str, int] = {}
     for _ in range(_ROUNDS):
-        said = {name: len(slave.messages) for name, slave in slaves.items()}
-        _phase(slaves, state.take)
+        problems: list[Problem] = []
+        for slave in turns:
+            if needs[slave.name] <= taken:
+                if slave.name in said and needs[slave.name]:
+                    _forget_warnings(slave, said[slave.name])
+                problems += _refusals(slave, state.give(slave))
+            said[slave.name] = len(slave.messages)
+            refused = _refusals(slave, state.take(slave))
+            taken |= set() if refused else state.shows[slave.name]
+            problems += refused
+        if problems:
+            raise InputRefused(list(dict.fromkeys(problems)))
         changed = np.flatnonzero((outputs != before) & ~(np.isnan(outputs) & np.isnan(before)))
         if not changed.size:
             return ""
         before[:] = outputs
-        _phase(slaves, state.give)
-        for name in state.setters:
-            _forget_warnings(slaves[name], said[name])
     return state.plan.outputs[changed[0]].name
 
 

@@ -109,8 +109,8 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     import pyarrow.parquet
 
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
-        with _undamaged(folder / PARQUET):
-            table = pyarrow.parquet.read_table(folder / PARQUET, columns=[column.name for column in columns])
+        with _undamaged(folder / PARQUET), pyarrow.parquet.ParquetFile(folder / PARQUET) as file:  # read_table imports more
+            table = file.read(columns=[column.name for column in columns])
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
     with _undamaged(folder / COLUMNS):

@@ -18,7 +18,6 @@ import csv
 import json
 import os
 import shutil
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import chain
@@ -35,8 +34,6 @@ from .errors import InputRefused, Problem
 RUN, SUMMARY, COLUMNS = "run.json", "summary.json", "columns.csv"
 PARQUET, CSV, STATES = "timeseries.parquet", "timeseries.csv", "states.h5"
 ROWS_STREAM, STATES_STREAM = "timeseries.arrows", "states.arrows"
-_ROWS_PER_BATCH = 512
-_SECONDS_PER_BATCH = 1.0
 
 
 @dataclass(frozen=True)
@@ -150,8 +147,6 @@ class RunFolder:
         self._rows = _Stream(self.running / ROWS_STREAM, schema(self.columns))
         self._states = _Stream(self.running / STATES_STREAM,
                                pa.schema([("component", pa.string()), ("time", pa.float64()), ("state", pa.binary())]))
-        self._block = np.empty((_ROWS_PER_BATCH, len(self.columns)))
-        self._filled, self._written_at = 0, time.monotonic()
 
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
         """Replace ``run.json``."""
@@ -164,17 +159,10 @@ class RunFolder:
             writer.writeheader()
             writer.writerows(map(asdict, self.columns))
 
-    def row(self, at: float, values: NDArray[np.float64]) -> None:
-        """Append the values of all columns at a time (s)."""
-        self._block[self._filled, 0], self._block[self._filled, 1:] = at, values
-        self._filled += 1
-        if self._filled == _ROWS_PER_BATCH or time.monotonic() - self._written_at > _SECONDS_PER_BATCH:
-            self._flush()
-
-    def _flush(self) -> None:
-        if self._rows is not None and self._filled:
-            self._rows.append([self._block[:self._filled, i] for i in range(len(self.columns))])
-        self._filled, self._written_at = 0, time.monotonic()
+    def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
+        """Append the values of all columns, a row for each time (s)."""
+        if self._rows is not None:
+            self._rows.append([times, *np.ascontiguousarray(values.T)])
 
     def frame(self, component: str, at: float, state: bytes) -> None:
         """Append the serialized state of a component at a time (s)."""
@@ -185,7 +173,6 @@ class RunFolder:
 
     def finish(self, status: str, figures: Sequence[Figure], **facts: Any) -> None:
         """Write the final files and put them in the place of the folder. ``facts`` are added to the provenance."""
-        self._flush()
         for stream in filter(None, (self._rows, self._states)):
             stream.close()
         write_json(self.running / SUMMARY, [figure.as_entry() for figure in figures])

@@ -71,7 +71,7 @@ class _Session:
         self.warnings = [*self.plan.warnings, *initialise(self.plan, self.slaves, state, allow_unstable)]
         self.initialised = True
         self.accounts = Accounts(self.plan, self.slaves, state)
-        recorder = Recorder(self.plan, self.slaves, state, self.accounts, self.results)
+        recorder = Recorder(self.plan, self.slaves, state.snapshots, self.accounts, self.results)
         self.watched = state.watched
         self.master = Master(self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder)
         self.preparation = time.perf_counter() - began
@@ -86,7 +86,8 @@ class _Session:
             status, failure = "failed", error
         self.results.finish(status, self._figures(), error=str(failure) if failure else None, ended=datetime.now(UTC).isoformat(),
                             warnings=self.warnings + self.accounts.warnings,
-                            wall_time={"preparation": self.preparation, "exchanges": self.master.wall_time})
+                            wall_time={"preparation": self.preparation, "exchanges": self.master.wall_time,
+                                       "recording": self.master.recording_time})
         if failure is not None:
             raise failure
 

@@ -23,6 +23,8 @@ class Action(IntEnum):
     """Advance it."""
     GET = 3
     """Take the values of its outputs."""
+    RECORD = 4
+    """Read what is recorded besides, after the exchange. In no schedule."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import pytest
 
 from orchestrator.core.schedule import Action, Operation, fits, nearest_steps, plan
 
-SET, STEP, GET = Action
+SET, STEP, GET = Action.SET, Action.STEP, Action.GET
 
 
 def _told(schedule):

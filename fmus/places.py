@@ -1,0 +1,56 @@
+"""Where built FMUs lie, and whether a native one is what would be built now. Nothing is imported for it that builds or compiles."""
+
+import os
+import re
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from components.component import Component
+
+from .native_fmu import own_binary, stamp
+from .parts import DESCRIPTION, BuildError, Fmi, Runtime
+
+__all__ = ["FOLDER_VARIABLE", "Fmi", "Runtime", "file_name", "fmu_file", "fmu_folder", "folder_name", "native_is_fresh"]
+
+FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
+"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python``, ``native`` and
+``native-fmi3``."""
+
+_HERE = Path(__file__).parent
+
+
+def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
+    """Folder of built FMUs of a runtime and version of FMI."""
+    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / folder_name(runtime, fmi)
+
+
+def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
+    """``python``, ``native`` or ``native-fmi3``."""
+    return runtime if fmi is Fmi.TWO else f"{runtime}-fmi{fmi}"
+
+
+def file_name(component: Component, sizes: Mapping[str, int]) -> str:
+    """``Name.fmu`` with default sizes, otherwise all sizes are named: ``SandCushion-discs360-elements24.fmu``."""
+    suffix = "" if dict(sizes) == component.with_sizes() else "".join(f"-{name}{value}" for name, value in sizes.items())
+    return f"{component.name}{suffix}.fmu"
+
+
+def fmu_file(component: Component, sizes: Mapping[str, int], runtime: Runtime, destination: Path | None = None,
+             fmi: Fmi = Fmi.TWO) -> Path:
+    """The file that the FMU of a component has, built or not; ``destination``: another folder than that of built FMUs."""
+    return (fmu_folder(runtime, fmi) if destination is None else Path(destination)) / file_name(component, sizes)
+
+
+def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None, fmi: Fmi = Fmi.TWO) -> bool:
+    """Whether the native FMU of a component is there, is what would be built now, and has a binary for this machine."""
+    try:
+        with zipfile.ZipFile(fmu_file(component, sizes, Runtime.NATIVE, destination, fmi)) as found:
+            return own_binary(component, fmi) in found.namelist() and _guid(found.read(DESCRIPTION)) == stamp(component, sizes, fmi)
+    except (OSError, KeyError, zipfile.BadZipFile, BuildError):
+        return False
+
+
+def _guid(description: bytes) -> str:
+    found = re.search(rb'(?:guid|instantiationToken)="([^"]*)"', description)
+    return found.group(1).decode() if found else ""

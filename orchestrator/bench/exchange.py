@@ -1,0 +1,142 @@
+"""Price of a macro step: two relays with 50 inputs and 150 outputs each, in our loop and in other tools."""
+
+import importlib
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+
+import components
+from components.component import Component
+from fmus.build import Runtime, build_component
+
+from ..core.exchange import State, make_driver
+from ..core.initialisation import free, initialise, instantiate
+from ..core.plan import make_plan
+from ..core.run import sources_of
+from ..core.system import system_from
+from .exchange_peer import INPUTS, STEP
+from .interleave import Contestant
+
+OURS, BARE = "our loop", "ctypes"
+PEERS: Mapping[str, str] = {BARE: "fmpy", "fmpy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy"}
+"""Other tools by the names of :mod:`orchestrator.bench.exchange_peer`, and the package that brings each."""
+_STEPS = {Runtime.NATIVE: 10_000, Runtime.PYTHON: 1000}
+"""Macro steps of one measurement."""
+_AT_ONCE = 1000
+_SETTLED = 2.0
+"""What both relays show in the end if they are connected: half of it and one is the same again."""
+
+
+def relay() -> Component:
+    """The component of the folder ``pair``, imported as if it lay among the others."""
+    here = str(Path(__file__).parent)
+    components.__path__.append(here)
+    try:
+        found = importlib.import_module("components.pair").COMPONENT
+    finally:
+        components.__path__.remove(here)
+    assert isinstance(found, Component)
+    return found
+
+
+class Pair:
+    """The two relays of a runtime in every tool, for so many measurements. A context manager.
+
+    contestants: those that there are. missing: why a tool is not among them. steps: of one measurement.
+
+    Raises:
+        BuildError: the FMU cannot be built.
+    """
+
+    def __init__(self, runtime: Runtime, measurements: int) -> None:
+        self._stack = ExitStack()
+        folder = self._stack.enter_context(tempfile.TemporaryDirectory(prefix="rockshed_"))
+        self.steps = _STEPS[runtime]
+        self._file = build_component(relay(), destination=Path(folder), runtime=runtime)
+        self.contestants: dict[str, Contestant] = {OURS: self._own_loop(measurements)}
+        self.missing: dict[str, str] = {}
+        for tool, package in PEERS.items():
+            try:
+                self.contestants[tool] = self._peer(tool, package)
+            except _MissingError as reason:
+                self.missing[tool] = str(reason)
+
+    def __enter__(self) -> "Pair":
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._stack.close()
+
+    def _own_loop(self, measurements: int) -> Contestant:
+        """All outputs are recorded in every macro step; writing them to files does not count."""
+        system = system_from({
+            "name": "pair", "components": {name: {"fmu": str(self._file)} for name in "ab"}, "master": "jacobi",
+            "connections": [f"{one}.y[1..{INPUTS}] -> {other}.u[1..{INPUTS}]" for one, other in ("ab", "ba")],
+            "exchange_step": STEP, "stop_time": measurements * self.steps * STEP})
+        sources = sources_of(system)
+        plan = make_plan(system, sources)
+        slaves = instantiate(plan, sources)
+        self._stack.callback(free, slaves.values())
+        state = State(plan)
+        initialise(plan, slaves, state)
+        state.open_accounts()
+        driver, begun = make_driver(state, slaves), 0
+
+        def work() -> float:
+            nonlocal begun
+            took = 0.0
+            for _ in range(self.steps // _AT_ONCE):
+                begin = time.perf_counter()
+                fault = driver.advance(begun, _AT_ONCE)
+                took += time.perf_counter() - begin
+                assert fault is None, fault
+                begun += _AT_ONCE
+            assert state.outputs[0] == _SETTLED
+            return took
+
+        return work
+
+    def _peer(self, tool: str, package: str) -> Contestant:
+        try:
+            distribution(package)
+        except PackageNotFoundError:
+            raise _MissingError("not installed") from None
+        process = subprocess.Popen([sys.executable, str(Path(__file__).with_name("exchange_peer.py")), tool, str(self._file)],
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self._stack.callback(_end, process)
+
+        def work() -> float:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            try:
+                process.stdin.write(f"{self.steps}\n")
+                process.stdin.flush()
+                seconds, output = map(float, process.stdout.readline().split())
+            except (OSError, ValueError):
+                raise _MissingError(_last_words(process)) from None
+            if abs(output - _SETTLED) > 1e-12:
+                raise _MissingError(f"does not connect them: {output} instead of {_SETTLED}")
+            return seconds
+
+        work()
+        return work
+
+
+class _MissingError(Exception):
+    """A tool that cannot take part, and why."""
+
+
+def _end(process: "subprocess.Popen[str]") -> None:
+    process.kill()
+    process.communicate()
+
+
+def _last_words(process: "subprocess.Popen[str]") -> str:
+    process.kill()
+    said = process.communicate()[1].strip().splitlines()
+    return f"failed: {said[-1] if said else f'exit code {process.returncode}'}"
