@@ -150,7 +150,7 @@ class NextEvent:
     """Where a component tells when it meets its next event, so that a communication step may end there.
 
     time: output (s). A step that ends at this time has the event behind it, and the results are the same, bit for bit, however
-        the time is divided into steps.
+        the time is divided into steps. Until the first step it counts from the start, which kernels do not know.
     while_zero: inputs that must be zero for that to hold.
     """
 

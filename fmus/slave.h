@@ -26,7 +26,7 @@ typedef struct { int64_t status; Text text; } Fault; /* {5} in the text: the val
 #include "model.h"
 enum { TIME = NW + NC }; /* value reference of the time, behind those of the sizes */
 
-typedef struct { uint64_t mark; uint32_t phase; double time, w[NW], x[NX + 1]; int64_t k[NK + 1]; } State;
+typedef struct { uint64_t mark; uint32_t phase; double start, time, w[NW], x[NX + 1]; int64_t k[NK + 1]; } State;
 typedef struct { void (*logger)(void); void *environment; int takes_early_return; } Host; /* what the importer gave to an instance */
 typedef struct { State s; Host host; char *name; double stop; int stale, previewed, told[ERROR + 1];
                  size_t length; char text[16384]; } Slave;
@@ -225,7 +225,7 @@ static Status set_up(Slave *m, double start, int with_stop, double stop) {
             number(start).text, with_stop ? number(stop).text : "none");
     return refused(m);
   }
-  m->s.time = start;
+  m->s.start = m->s.time = start;
   m->stop = with_stop ? stop : INFINITY;
   return OK;
 }
@@ -345,7 +345,7 @@ static Status set(Slave *m, int type, const Reference r[], size_t n, const void 
   return OK;
 }
 
-/* --- complete state; serialized as seal (mark, checksum), clock (phase, time), header of the component, w, x, k */
+/* --- complete state; without the start serialized as seal (mark, checksum), clock (phase, time), header of the component, w, x, k */
 
 enum { SEAL = 12, CLOCK = 12, BUFFERS = 8 * (NW + NX + NK), SERIALIZED = SEAL + CLOCK + sizeof HEADER + BUFFERS };
 
@@ -417,6 +417,7 @@ static Status deserialize(Slave *m, const char bytes[], size_t n, void **state) 
   if (n != SERIALIZED || memcmp(bytes + SEAL + CLOCK, HEADER, sizeof HEADER)) return refuse(m, FOREIGN);
   if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
   ((State *)*state)->mark = MARK;
+  ((State *)*state)->start = 0.0;
   carry_fields(*state, (char *)bytes + SEAL, 0);
   return OK;
 }

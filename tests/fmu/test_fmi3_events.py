@@ -12,11 +12,11 @@ STEP, STEPS = 0.5, 30
 PICOSECOND = 1e-12
 
 
-def walk(host, on_event=lambda _: None, steps=STEPS):
+def walk(host, on_event=lambda _: None, steps=STEPS, start=0.0):
     """Outputs at every communication point, and the times at which steps ended early, each of which goes on to its end."""
     rows, stops = [], []
     for i in range(steps):
-        time, end = i * STEP, (i + 1) * STEP
+        time, end = start + i * STEP, start + (i + 1) * STEP
         while time < end:
             assert host.step(time, end - time) == 0, host.messages
             event_handling, terminate, early, reached = host.told
@@ -78,6 +78,14 @@ def test_the_hand_over_is_met_at_its_time(descent):
     after = seen[stops.index(stop)]
     assert 0.0 <= stop - after["handover.time"] <= 1.01 * PICOSECOND
     assert after["position.x"] == pytest.approx(60.0, abs=1e-9)
+
+
+def test_another_start_time_shifts_the_stops(fmi3_fmus, descent):
+    with Host3(fmi3_fmus["SlopeRockfall"], early_return=True) as host:
+        _, stops = walk(host.start(time=64.0, **BOX), steps=10, start=64.0)
+    expected = [stop for stop in descent[2] if stop < 10 * STEP]
+    assert len(expected) > 3
+    assert stops == pytest.approx([64.0 + stop for stop in expected], abs=0.1 * PICOSECOND)
 
 
 def test_there_is_no_early_return_under_a_force_of_which_the_component_does_not_know_how_long_it_acts(fmi3_fmus):
