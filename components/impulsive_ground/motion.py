@@ -201,7 +201,7 @@ def mean_spring(g, left, load, impedance, spring, slack):
 
 @kernel
 def arrive(g, load, slack, b):
-    """A piece that ended early ended where another begins: gap closed, spring at R_u or without force, to the bit. slack: before."""
+    """Where a piece ends before its time, another begins, to the bit: gap (``slack`` before) closed, spring at R_u or at zero."""
     if slack > 0.0:
         b[BODY.slack] = 0.0
     elif load > g.ultimate:
