@@ -9,6 +9,8 @@ _FOLDERS = {
     "SandCushion": "sand_cushion",
     "RBSMBeam": "rbsm_beam",
     "SlopeRockfall": "slope_rockfall",
+    "Hammer": "hammer",
+    "PileRod": "pile_rod",
 }
 
 NAMES = tuple(_FOLDERS)

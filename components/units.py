@@ -52,6 +52,8 @@ UNITS: dict[str, Unit] = {
     "N": Unit("Force", {"kg": 1, "m": 1, "s": -2}),
     "N/m": Unit("Stiffness", {"kg": 1, "s": -2}),
     "N/m3": Unit("ForcePerVolume", {"kg": 1, "m": -2, "s": -2}),
+    "N.s/m": Unit("Impedance", {"kg": 1, "s": -1}),
+    "s/m": Unit("Slowness", {"s": 1, "m": -1}),
     "N.m": Unit("Torque", {"kg": 1, "m": 2, "s": -2}),
     "J": Unit("Energy", {"kg": 1, "m": 2, "s": -2}),
     "Pa": Unit("Pressure", {"kg": 1, "m": -1, "s": -2}),
