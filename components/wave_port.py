@@ -1,7 +1,7 @@
 """The partner's side of a wave port: what acts on the end of a rod and is told the waves that come out of it.
 
-The end of a rod of impedance Z (N s/m) obeys ``F = Z v - c``: F the force of the partner on the end (N, compression positive), v the
-velocity of the end into the rod (m/s), c the wave that comes out of the rod, known beforehand. At the toe of a pile the same rod is
+The end of a rod of impedance Z (N s/m) obeys ``F = Z v - c``: F the force of the partner on the end (N, compression positive), v
+the velocity of the end into the rod (m/s), c the wave that comes out of the rod, known beforehand. At the toe of a pile the same rod is
 looked at from below: into the rod is upwards there, and with v counted downwards the law reads ``F = c - Z v``.
 """
 
@@ -21,8 +21,8 @@ TOGETHER = 2.0
 def rigid_mass(mass, velocity, drive, impedance, wave, dt):
     """A step dt (s) of a rigid mass (kg) that lies on the end of a rod, under its own force drive (N, into the rod).
 
-    Implicit midpoint rule: stable and free of numerical loss for any dt. The contact takes no tension; where the force falls to zero
-    in the step, the mass gets the impulse until then (force linear in time) and flies on.
+    Implicit midpoint rule: stable and free of numerical loss for any dt. The contact takes no tension; where the force falls to
+    zero in the step, the mass gets the impulse until then (force linear in time) and flies on.
     """
     half = 0.5 * dt / mass
     mean = (velocity + half * (drive + wave)) / (1.0 + half * impedance)

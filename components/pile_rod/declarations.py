@@ -23,10 +23,10 @@ _UTO = "Uto et al. 1974, table 1: standard penetration test"
 _SPEED = 5120.0
 _DENSITY = 7850.0
 
-Clock = namedtuple("Clock", "waiting head_impulse toe_impulse behind started head_wave toe_wave")
-CLOCK = Clock(*range(7))
-"""Numbers of ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in it, time (s) by which a rod that
-learns its forces afterwards is behind, whether there was a step, wave that was handed out at head and toe (N)."""
+Clock = namedtuple("Clock", "waiting head_impulse toe_impulse behind")
+CLOCK = Clock(*range(4))
+"""Numbers of ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in it, and the time (s) by which a
+rod that learns its forces afterwards is behind."""
 
 Ram = namedtuple("Ram", "position velocity touching")
 RAM = Ram(*range(3))
@@ -43,8 +43,8 @@ def _segments(sizes: Sizes) -> int:
 
 
 LAYOUT = Layout((
-    choice("scheme", "characteristics: exact for every travelling wave; smith: masses and springs; modified_smith: the ground as a rod "
-           "of masses and springs; repaired: that with the mean mass at interfaces",
+    choice("scheme", "characteristics: exact for every travelling wave; smith: masses and springs; modified_smith: the ground as a "
+           "rod of masses and springs; repaired: that with the mean mass at interfaces",
            ("characteristics", "smith", "modified_smith", "repaired"), "characteristics",
            source="smith: Uto et al. 1974, eqs (2)-(5), corrected"),
     param("section.length", "length of the section", lambda i, sizes: 10.0 / sizes["sections"], "m", minimum=1e-6, size="sections"),
@@ -52,24 +52,27 @@ LAYOUT = Layout((
     param("section.modulus", "Young's modulus of the section", _DENSITY * _SPEED ** 2, "Pa", minimum=1.0, size="sections",
           source=_UTO + ", density times wave speed squared"),
     param("section.density", "density of the section", _DENSITY, "kg/m3", minimum=1e-3, size="sections", source=_UTO),
-    choice("head.port", "kinematics: takes a force that is constant in the step, gives position and velocity; waves: gives the wave "
-           "that comes out of the rod in the next step, takes the mean force that goes with it", ("kinematics", "waves"), "kinematics"),
+    choice("head.port", "kinematics: takes a force that is constant in the step, gives position and velocity; waves: gives the "
+           "wave that comes out of the rod in the next step, takes the mean force that goes with it", ("kinematics", "waves"),
+           "kinematics"),
     choice("head.direction", "direction in which force, position, velocity and wave of the head's port are positive",
            ("down", "up"), "down"),
-    param("head.preload", "part of head.force that the rod carries at rest at the start; it is left out of everything else", 0.0, "N"),
-    param("head.partner.stiffness", "stiffness of what acts on the head, 0 if unknown: the step of a port with kinematics is limited "
-          "to impedance / stiffness", 0.0, "N/m", minimum=0.0),
-    param("head.partner.mass", "mass of what acts on the head if that is a rigid mass, 0 if not: the step of a port with kinematics is "
-          "limited to mass / impedance", 0.0, "kg", minimum=0.0),
+    param("head.preload", "part of head.force that the rod carries at rest at the start; it is left out of everything else", 0.0,
+          "N"),
+    param("head.partner.stiffness", "stiffness of what acts on the head, 0 if unknown: the step of a port with kinematics is "
+          "limited to impedance / stiffness", 0.0, "N/m", minimum=0.0),
+    param("head.partner.mass", "mass of what acts on the head if that is a rigid mass, 0 if not: the step of a port with kinematics "
+          "is limited to mass / impedance", 0.0, "kg", minimum=0.0),
     param("ram.mass", "rigid mass that strikes the head, the first element of Smith's chain; 0: none", 0.0, "kg", minimum=0.0),
     param("ram.velocity", "velocity of the ram when it touches the head at the start, downwards", 3.8353, "m/s",
           source="fall of 75 cm; " + _UTO),
     choice("toe.condition", "what the toe stands on", ("free", "fixed", "matched", "reflection", "soil", "port"), "soil"),
-    choice("toe.port", "kinematics or waves, as at the head; used when toe.condition is port", ("kinematics", "waves"), "kinematics"),
+    choice("toe.port", "kinematics or waves, as at the head; used when toe.condition is port", ("kinematics", "waves"),
+           "kinematics"),
     param("toe.partner.stiffness", "stiffness of what acts on the toe, 0 if unknown; see head.partner.stiffness", 0.0, "N/m",
           minimum=0.0),
-    param("toe.reflection", "reflected part of the displacement: -1 fixed, 0 matched, 1 free; used when toe.condition is reflection",
-          0.0, minimum=-1.0, maximum=1.0, source="Uto et al. 1974, eq. (7)"),
+    param("toe.reflection", "reflected part of the displacement: -1 fixed, 0 matched, 1 free; used when toe.condition is "
+          "reflection", 0.0, minimum=-1.0, maximum=1.0, source="Uto et al. 1974, eq. (7)"),
     param("toe.quake", "displacement of the toe at which the static resistance is exhausted", 2.5 * mm, "m", minimum=1e-9,
           source="Smith 1960, 0.1 in"),
     param("toe.resistance", "ultimate static resistance under the toe; no tension", 30e3, "N", minimum=0.0),
@@ -80,11 +83,11 @@ LAYOUT = Layout((
           size="segments"),
     param("shaft.damping", "Smith's damping at the segment", 0.16, "s/m", minimum=0.0, size="segments",
           source="Smith 1960, 0.05 s/ft"),
-    param("gravity", "acceleration of gravity on rod and ram, downwards; 0: everything counts from the position under the weight", 0.0,
-          "m/s2", minimum=0.0),
+    param("gravity", "acceleration of gravity on rod and ram, downwards; 0: everything counts from the position under the weight",
+          0.0, "m/s2", minimum=0.0),
     param("gauge.depth", "depth of the gauge below the head", 0.0, "m", minimum=0.0),
-    choice("exchange", "what the mean force given to a port of waves belongs to. parallel: to the step that has ended; sequential: to "
-           "the step that follows, because the partner has made it already", ("parallel", "sequential"), "parallel"),
+    choice("exchange", "what the mean force given to a port of waves belongs to. parallel: to the step that has ended; sequential: "
+           "to the step that follows, because the partner has made it already", ("parallel", "sequential"), "parallel"),
     internal_step(1.0),
     inp("head.force", "force on the head, or on the ram if there is one; positive in head.direction (down: compression)", "N"),
     inp("toe.force", "force of the ground on the toe, upwards: compression positive", "N"),
@@ -162,5 +165,5 @@ LAYOUT = Layout((
     State("free", lambda sizes: 3, integer=True),
 ))
 """Hidden arrays: ``down`` and ``up`` velocities (m/s) of the waves in each segment; ``place`` (m), ``rate`` (m/s), ``mass`` (kg) of
-nodes and ``spring`` (N/m) below each; ``soil``: elastic displacement (m) of the shaft's soil at each node, ``toe.soil`` under the toe;
-``free``: segments without reflection at head and toe, last moving node."""
+nodes and ``spring`` (N/m) below each; ``soil``: elastic displacement (m) of the shaft's soil at each node, ``toe.soil`` of that under the
+toe; ``free``: segments without reflection at head and toe, last moving node."""

@@ -5,8 +5,8 @@ from collections import namedtuple
 from ..compilation import kernel
 
 Soil = namedtuple("Soil", "stretch quake resistance damping tension")
-"""Elastic displacement (m), quake (m), ultimate resistance (N), Smith's damping (s/m), and whether the soil pulls too: a shaft does,
-the ground under a toe does not."""
+"""Elastic displacement (m), quake (m), ultimate resistance (N), Smith's damping (s/m), and whether the soil pulls too: a shaft
+does, the ground under a toe does not."""
 Grip = namedtuple("Grip", "velocity shaft toe drag")
 """Velocity (m/s), static resistances of shaft and toe (N) and damping of both (N s/m), means over a step."""
 
