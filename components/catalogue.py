@@ -10,6 +10,8 @@ _FOLDERS = {
     "RBSMBeam": "rbsm_beam",
     "SlopeRockfall": "slope_rockfall",
     "ImpulsiveGround": "impulsive_ground",
+    "Hammer": "hammer",
+    "PileRod": "pile_rod",
 }
 
 NAMES = tuple(_FOLDERS)
