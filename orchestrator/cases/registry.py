@@ -13,7 +13,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
 from ..core.system import System, Value
 from ..headlines import References
-from . import full_scale, sonoda1993, static_test
+from . import full_scale, sonoda1993, spt, static_test
 from .sand_models import Changes, Layer, Soil, changes, sand_model
 
 Sizes = Mapping[str, Mapping[str, int]]
@@ -52,7 +52,7 @@ def cases() -> dict[str, Case]:
     """All cases by name."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
-    return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values())]}
+    return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values()), _spt()]}
 
 
 def case(name: str) -> Case:
@@ -163,6 +163,19 @@ def _static_test() -> Case:
         couplings={"impulse": "sand first, kinematics extrapolated, mean forces, exchange every 1 ms",
                    "paper": "sand first, inputs held, exchange every 0.01 ms"},
         make=make, references=static_test.references, layer=static_test.LAYER_OF_SAND)
+
+
+def _spt() -> Case:
+    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+        return spt.spt_system(fmus, coupling)
+
+    return Case(
+        spt.NAME, "Uto et al., table 1: standard penetration test, hammer, rod and ground",
+        models={"hammer": "Hammer", "rod": "PileRod", "ground": "ImpulsiveGround"},
+        sizes={"rod": {"segments": spt.SEGMENTS}},
+        couplings={"waves": "rod last, waves at head and toe, exchange every 0.1 ms",
+                   "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms"},
+        make=make, derived=lambda system, sizes: spt.partner_stiffness(system))
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:
