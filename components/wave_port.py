@@ -1,8 +1,8 @@
 """The partner's side of a wave port: what acts on the end of a rod and is told the waves that come out of it.
 
 The end of a rod of impedance Z (N s/m) obeys ``F = Z v - c``: F the force of the partner on the end (N, compression positive), v
-the velocity of the end into the rod (m/s), c the wave that comes out of the rod, known beforehand. At the toe of a pile the same rod is
-looked at from below: into the rod is upwards there, and with v counted downwards the law reads ``F = c - Z v``.
+the velocity of the end into the rod (m/s), c the wave that comes out of the rod, known beforehand. At the toe of a pile the same
+rod is looked at from below: with v counted downwards the law reads ``F = c - Z v`` there.
 """
 
 from collections import namedtuple

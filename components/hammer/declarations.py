@@ -2,7 +2,7 @@
 
 from ..ports import Layout, State, choice, inp, out, param, switch
 from ..stepping import internal_step, stable_step
-from ..units import cm
+from ..units import cm, cm2
 
 KINEMATICS, WAVES = 1, 2
 
@@ -26,7 +26,8 @@ LAYOUT = Layout((
     inp("head.position", "position of the head, downwards; for the port kinematics", "m"),
     inp("head.velocity", "velocity of the head, downwards, constant in the step; for the port kinematics", "m/s"),
     inp("head.wave", "wave that comes out of the rod, mean over the step; for the port waves", "N"),
-    inp("head.impedance", "impedance of the rod; for the port waves", "N.s/m", minimum=0.0),
+    inp("head.impedance", "impedance of the rod; for the port waves", "N.s/m", 5.8 * cm2 * 7850.0 * 5120.0, minimum=0.0,
+        source=_UTO),
     out("force", "force of the hammer on the head, mean over the step, downwards: compression positive", "N",
         initial_dependencies=()),
     out("end_force", "force of the hammer on the head at the end of the step", "N", initial_dependencies=()),

@@ -20,8 +20,8 @@ COMPONENT = Component(
     faults={
         kernel.WAVES_NEED_CHARACTERISTICS: "a port of waves needs the scheme characteristics; masses and springs have ports of "
                                            "kinematics: change scheme or the port",
-        kernel.WAVES_AND_RAM: "ram.mass = {ram.mass} kg takes the place of what acts through a head.port of waves: set ram.mass = 0 "
-                              "or head.port = kinematics",
+        kernel.WAVES_AND_RAM: "ram.mass = {ram.mass} kg takes the place of what acts through a head.port of waves: set ram.mass = "
+                              "0 or head.port = kinematics",
         kernel.GAUGE_BELOW_TOE: "gauge.depth = {gauge.depth} m is below the toe: give a depth within the rod",
         kernel.STEP_TOO_LONG: "the communication step {exchange_step} s exceeds the limit of the ports, step_limit = {step_limit} "
                               "s " + _LIMITS + ": reduce the exchange step, or use waves instead of kinematics",

@@ -1,8 +1,8 @@
 """The exact scheme: waves that move by one segment in a step, and nodes that divide them by impedances.
 
-In a step dt = dx/c each segment hands its waves on to the nodes at its ends. With f the velocity of the wave downwards from above, b
-that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - Z2 (v - 2 b) = R. Waves are constant over a segment, so
-that jumps stay sharp.
+In a step dt = dx/c each segment hands its waves on to the nodes at its ends. With f the velocity of the wave downwards from above,
+b that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - Z2 (v - 2 b) = R. Waves are constant over a segment,
+so that jumps stay sharp.
 """
 
 from ..compilation import kernel

@@ -25,8 +25,8 @@ _DENSITY = 7850.0
 
 Clock = namedtuple("Clock", "waiting head_impulse toe_impulse behind")
 CLOCK = Clock(*range(4))
-"""Numbers of ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in it, and the time (s) by which a
-rod that learns its forces afterwards is behind."""
+"""Numbers of ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in it, and the time (s) by which
+a rod that learns its forces afterwards is behind."""
 
 Ram = namedtuple("Ram", "position velocity touching")
 RAM = Ram(*range(3))
@@ -61,8 +61,8 @@ LAYOUT = Layout((
           "N"),
     param("head.partner.stiffness", "stiffness of what acts on the head, 0 if unknown: the step of a port with kinematics is "
           "limited to impedance / stiffness", 0.0, "N/m", minimum=0.0),
-    param("head.partner.mass", "mass of what acts on the head if that is a rigid mass, 0 if not: the step of a port with kinematics "
-          "is limited to mass / impedance", 0.0, "kg", minimum=0.0),
+    param("head.partner.mass", "mass of what acts on the head if that is a rigid mass, 0 if not: the step of a port with "
+          "kinematics is limited to mass / impedance", 0.0, "kg", minimum=0.0),
     param("ram.mass", "rigid mass that strikes the head, the first element of Smith's chain; 0: none", 0.0, "kg", minimum=0.0),
     param("ram.velocity", "velocity of the ram when it touches the head at the start, downwards", 3.8353, "m/s",
           source="fall of 75 cm; " + _UTO),
@@ -165,5 +165,5 @@ LAYOUT = Layout((
     State("free", lambda sizes: 3, integer=True),
 ))
 """Hidden arrays: ``down`` and ``up`` velocities (m/s) of the waves in each segment; ``place`` (m), ``rate`` (m/s), ``mass`` (kg) of
-nodes and ``spring`` (N/m) below each; ``soil``: elastic displacement (m) of the shaft's soil at each node, ``toe.soil`` of that under the
-toe; ``free``: segments without reflection at head and toe, last moving node."""
+nodes and ``spring`` (N/m) below each; ``soil``: elastic displacement (m) of the shaft's soil at each node, ``toe.soil`` of that
+below the toe; ``free``: segments without reflection at head and toe, last moving node."""

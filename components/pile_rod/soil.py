@@ -21,6 +21,17 @@ def static(soil, stretch):
 
 
 @kernel
+def mean_static(soil, way):
+    """Mean static resistance (N) while the node moves evenly by way (m): the work on the soil divided by the way."""
+    end, low = soil.stretch + way, -soil.quake if soil.tension else 0.0
+    begun, held = min(max(soil.stretch, low), soil.quake), min(max(end, low), soil.quake)
+    elastic = 0.5 * soil.resistance / soil.quake * (begun + held)
+    if way == 0.0 or held - begun == way:
+        return elastic
+    return (elastic * (held - begun) + static(soil, end) * (end - held)) / way
+
+
+@kernel
 def drag(soil, resistance):
     """Damping (N s/m) at a static resistance (N). Its amount counts, so that damping never creates energy."""
     return soil.damping * abs(resistance)
@@ -43,28 +54,32 @@ def stored(soil, stretch, after):
 
 @kernel
 def gripped(impedance, drive, shaft, toe, dt):
-    """Velocity v with impedance * v + soil(v) = drive in a step dt (s), by the midpoint rule: a node that the soil holds.
+    """Velocity v with impedance * v + soil(v) = drive in a step dt (s): a node that the soil holds.
 
-    impedance (N s/m): of all waves that leave the node; drive (N): what would act on the node at rest, without the soil.
+    impedance (N s/m): of all waves that leave the node; drive (N): what would act on the node at rest, without the soil. Implicit:
+    the resistance is its mean over the way of the step, so that elastic soil keeps its energy.
     """
     velocity, resisting, damping = 0.0, 0.0, 0.0
     on_shaft, on_toe = static(shaft, shaft.stretch), static(toe, toe.stretch)
     for _ in range(2):
         damping = drag(shaft, on_shaft) + drag(toe, on_toe)
         for _ in range(_ROUNDS):
-            way = 0.5 * dt * velocity
-            on_shaft, on_toe = static(shaft, shaft.stretch + way), static(toe, toe.stretch + way)
+            way = dt * velocity
+            on_shaft, on_toe = mean_static(shaft, way), mean_static(toe, way)
             resisting = on_shaft + on_toe
-            slope = impedance + damping + 0.5 * dt * (_stiffness(shaft, on_shaft) + _stiffness(toe, on_toe))
+            slope = impedance + damping + dt * (_slope(shaft, way, on_shaft) + _slope(toe, way, on_toe))
             change = (drive - resisting - (impedance + damping) * velocity) / slope
             velocity += change
             if abs(change) <= 1e-14 * abs(velocity):
                 break
-    return Grip((drive - resisting) / (impedance + damping), on_shaft, on_toe, damping)
+    velocity = (drive - resisting) / (impedance + damping)
+    return Grip(velocity, on_shaft, on_toe, damping)
 
 
 @kernel
-def _stiffness(soil, resistance):
-    """Slope of the static resistance (N/m)."""
-    yielding = resistance >= soil.resistance or (resistance <= -soil.resistance if soil.tension else resistance <= 0.0)
-    return 0.0 if yielding else soil.resistance / soil.quake
+def _slope(soil, way, mean):
+    """Change of the mean resistance with the way (N/m)."""
+    end, low = soil.stretch + way, -soil.quake if soil.tension else 0.0
+    if low <= soil.stretch and low <= end <= soil.quake:
+        return 0.5 * soil.resistance / soil.quake
+    return 0.0 if way == 0.0 else (static(soil, end) - mean) / way

@@ -1,0 +1,147 @@
+"""The exact scheme: travelling pulses, interfaces, ends, and a struck rod against St. Venant's closed form."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ..rods import closed_form, march, reflecting, rod
+
+pulses = st.lists(st.floats(-1e5, 1e5), min_size=1, max_size=30)
+
+
+@settings(max_examples=30, deadline=None)
+@given(pulses)
+def test_an_arbitrary_pulse_travels_without_change_and_a_matched_toe_takes_it_all(pulse):
+    made = rod(40, toe__condition="matched")
+    force, velocity = march(made, 40 + len(pulse), "force", "velocity", force=lambda n: pulse[n] if n < len(pulse) else 0.0)
+    size = max(map(abs, pulse)) or 1.0
+    for segment in (0, 17, 39):
+        sent = np.zeros(40 + len(pulse))
+        sent[segment:segment + len(pulse)] = pulse[:len(sent) - segment]
+        np.testing.assert_allclose(force[:, segment], sent, atol=1e-12 * size, rtol=0)
+        np.testing.assert_allclose(velocity[:, segment] * made["head.impedance"], sent, atol=1e-12 * size, rtol=0)
+    assert np.abs(force[-1]).max() <= 1e-10 * size
+    assert made["energy.radiated"] == pytest.approx(made["energy.work.head"], rel=1e-12)
+
+
+@pytest.mark.parametrize(("condition", "returned"), [("free", -1.0), ("fixed", 1.0)])
+def test_a_pulse_comes_back_from_a_free_and_a_fixed_toe(condition, returned):
+    """In force: with the other sign from the free one."""
+    made = rod(20, toe__condition=condition)
+    force, = march(made, 30, "force", force=lambda n: 1e4 * (n == 0))
+    assert force[19, 19] == pytest.approx(1e4, rel=1e-12)
+    assert force[29, 10] == pytest.approx(returned * 1e4, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [0.2, 3.0])
+def test_an_interface_divides_a_pulse_by_its_impedances(ratio):
+    """Force: transmitted 2 Z2/(Z1 + Z2), reflected (Z2 - Z1)/(Z1 + Z2). Half of the rod, with this ratio of areas."""
+    made = rod(20, sections=2, section__area=[1e-3, ratio * 1e-3], section__length=[5.0, 5.0], toe__condition="matched")
+    force, = march(made, 15, "force", force=lambda n: 1e4 * (n == 0))
+    assert force[14, 14] == pytest.approx(1e4 * 2.0 * ratio / (1.0 + ratio), rel=1e-12)
+    assert force[14, 5] == pytest.approx(1e4 * (ratio - 1.0) / (1.0 + ratio), rel=1e-12)
+
+
+def test_sections_of_other_materials_keep_travel_time_and_mass():
+    lengths, moduli, densities, areas = [3.0, 2.0, 5.0], [2e11, 3e10, 1e10], [7850.0, 2400.0, 700.0], [1e-3, 4e-2, 2e-2]
+    made = rod(37, sections=3, section__length=lengths, section__modulus=moduli, section__density=densities, section__area=areas)
+    times = [length * (rho / e) ** 0.5 for length, e, rho in zip(lengths, moduli, densities)]
+    assert made["travel_time"] == pytest.approx(sum(times), rel=1e-14)
+    mass = float(np.sum(made.state("impedance"))) * made["time_step"]
+    assert mass == pytest.approx(sum(rho * a * length for rho, a, length in zip(densities, areas, lengths)), rel=1e-12)
+
+
+@pytest.mark.parametrize("alpha", [-1.0, -0.5, 0.5, 1.0])
+def test_the_struck_rod_follows_the_closed_form_with_second_order(alpha):
+    errors = []
+    for segments in (250, 500, 1000):
+        made = rod(segments, **reflecting(alpha))
+        exact = closed_form(made)
+        steps = int(exact.separation() / made["time_step"] + 1e-9)
+        force, = march(made, steps, "head.contact_force")
+        middle = (np.arange(steps) + 0.5) * made["time_step"]
+        errors.append(np.abs(force - exact.force(middle)).max() / exact.first_force)
+    assert errors[2] < 1e-4
+    assert [errors[0] / errors[1], errors[1] / errors[2]] == pytest.approx([4.0, 4.0], rel=0.02)
+
+
+@pytest.mark.parametrize("alpha", [-1.0, -0.5, 0.5, 1.0])
+def test_separation_and_rebound_of_the_ram(alpha):
+    made = rod(1000, **reflecting(alpha))
+    exact = closed_form(made)
+    march(made, int(exact.separation() / made["time_step"]) + 5, "force")
+    assert made["ram.separation"] == pytest.approx(exact.separation(), rel=1e-4)
+    assert made["ram.speed"] == pytest.approx(exact.rebound(), abs=1e-4 * exact.speed)
+
+
+def test_a_light_ram_comes_back_to_the_head():
+    """On a fixed toe the head returns with twice the speed and strikes the ram again, which then flies faster than before."""
+    made = rod(100, toe__condition="fixed", ram__mass=5.0)
+    touching, speed, position, head = march(made, 800, "ram.touching", "ram.speed", "ram.position", "head.position")
+    parts = np.flatnonzero(np.diff(touching) < 0)
+    assert len(parts) >= 2
+    assert speed[-1] < speed[parts[0] + 1] - 0.1
+    assert np.all(head - position >= -1e-12)
+    assert abs(made["energy.residual"]) < 1e-11 * made["energy.start"]
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(0.0, 2e5), st.floats(1e-4, 1e-2), st.floats(0.0, 1.0), st.floats(0.0, 5e3), st.floats(0.0, 10.0))
+def test_energy_is_kept_and_nothing_creates_it(resistance, quake, damping, shaft, gravity):
+    made = rod(20, ram__mass=63.5, toe__condition="soil", toe__resistance=resistance, toe__quake=quake, toe__damping=damping,
+               shaft__resistance=shaft, gravity=gravity)
+    losses = march(made, 200, "energy.plastic", "energy.damping", "energy.contact", "energy.residual")
+    scale = made["energy.start"] + abs(made["energy.work.gravity"])
+    assert np.abs(losses.pop()).max() < 1e-11 * scale
+    for loss in losses[:2]:
+        assert np.diff(loss).min() >= -1e-12 * scale
+    assert abs(losses[2][-1]) < 2e-3 * scale
+
+
+def test_a_load_within_the_quake_settles_where_the_soil_carries_it():
+    made = rod(10, toe__resistance=30e3, toe__quake=2.5e-3, toe__damping=2.0, shaft__resistance=1e3, shaft__damping=2.0)
+    march(made, 20000, "force", force=lambda n: 12e3)
+    rod_spring, soil_spring = made["head.impedance"] / made["time_step"], np.array([0.0] + [1e3 / 2.5e-3] * 9 + [31e3 / 2.5e-3])
+    matrix = np.diag(soil_spring + rod_spring * np.array([1.0] + [2.0] * 9 + [1.0]))
+    matrix -= rod_spring * (np.eye(11, k=1) + np.eye(11, k=-1))
+    place = np.linalg.solve(matrix, np.array([12e3] + [0.0] * 10))
+    assert [made["head.position"], made["toe.position"]] == pytest.approx([place[0], place[-1]], rel=1e-3)
+    assert made["toe.set"] == pytest.approx(0.0, abs=1e-12)
+    assert made["toe.contact_force"] + made["shaft.force"].sum() == pytest.approx(12e3, rel=1e-3)
+
+
+def test_a_blow_leaves_a_set_and_unloads_elastically():
+    made = rod(50, ram__mass=63.5, toe__resistance=40e3, toe__damping=0.0)
+    place, under, on_toe = march(made, 4000, "toe.position", "toe.set", "toe.contact_force")
+    assert under[-1] > 5e-3
+    assert np.all(np.diff(under) >= -1e-12)
+    assert on_toe.max() == pytest.approx(40e3, rel=1e-12)
+    loaded = (place - under > 0.0) & (place - under < 2.5e-3 * (1 - 1e-9))
+    middle = 0.5 * (place - under)[1:] + 0.5 * (place - under)[:-1]
+    both = loaded[1:] & loaded[:-1]
+    np.testing.assert_allclose(on_toe[1:][both], 40e3 / 2.5e-3 * middle[both], atol=1e-3 * 40e3)
+
+
+def test_the_weight_alone_accelerates_a_free_rod():
+    made = rod(30, toe__condition="free", gravity=9.81)
+    velocity, = march(made, 90, "velocity")
+    np.testing.assert_allclose(velocity[-1], 9.81 * 90 * made["time_step"], rtol=1e-9)
+    assert made["energy.residual"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_envelopes_are_the_largest_stresses_of_the_segments():
+    made = rod(40, **reflecting(0.7))
+    force, = march(made, 300, "force")
+    np.testing.assert_allclose(made["stress.compression"], force.max(axis=0).clip(0) / 5.8e-4, rtol=1e-12)
+    np.testing.assert_allclose(made["stress.tension"], (-force).max(axis=0).clip(0) / 5.8e-4, rtol=1e-12)
+
+
+def test_the_gauge_sees_the_incident_wave_with_force_equal_to_zv():
+    made = rod(100, gauge__depth=2.5, **reflecting(-1.0))
+    force, zv, stress = march(made, 170, "gauge.force", "gauge.zv", "gauge.stress")
+    np.testing.assert_array_equal(force[:25], 0.0)
+    assert force[25] > 0.9 * closed_form(made).first_force
+    np.testing.assert_allclose(zv, force, rtol=1e-12)
+    np.testing.assert_allclose(stress, force / 5.8e-4, rtol=1e-12)
+    assert made["energy.transferred"] == pytest.approx(made["energy.head"])
