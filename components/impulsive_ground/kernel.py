@@ -117,8 +117,8 @@ def evaluate(w, x, k):
 
 @kernel
 def step_limit(g, w):
-    """Longest communication step (s) with a rod of the impedance Z: Z/k of a spring, M/Z of a mass; waves know no limit here. A held
-    damping force J R_u v with J R_u >= Z grows in every step, however short: 0."""
+    """Longest communication step (s) with a rod of the impedance Z: Z/k of a spring, M/Z of a mass; waves know no limit here. A
+    held damping force J R_u v with J R_u >= Z grows in every step, however short: 0."""
     if w[V.toe_impedance] <= 0.0 or w[V.port] == WAVE:
         return UNBOUNDED_STEP
     if w[V.port] == SETTLEMENT:

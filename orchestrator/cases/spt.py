@@ -9,7 +9,7 @@ from typing import Literal
 
 from components.units import cm, cm2, mm
 
-from ..core.system import ComponentSpec, EnergyAlarm, PowerBond, System, Value
+from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, System, Value
 
 NAME = "spt"
 Coupling = Literal["waves", "plain"]
@@ -22,7 +22,7 @@ LENGTH = 2e-3 * SPEED
 SEGMENTS = 200
 """Of 0.01 ms travel time, a tenth of the exchange step."""
 RESISTANCE, QUAKE, DAMPING = 20e3, 2.5 * mm, 0.5
-STOP = 0.06
+STOP = 0.03
 
 
 def spt_system(fmus: Mapping[str, str], coupling: str = "waves", segments: int = SEGMENTS) -> System:
@@ -47,7 +47,7 @@ def spt_system(fmus: Mapping[str, str], coupling: str = "waves", segments: int =
             "ground": ComponentSpec(fmu=fmus["ground"], parameters={
                 "port": "wave" if port == "waves" else port, "law": "smith", "ultimate_resistance": RESISTANCE, "quake": QUAKE,
                 "damping": DAMPING, "internal_step": 1e-5})},
-        connections=hammer_connections("hammer", "rod") + toe_connections("rod", "ground"),
+        connections=[*hammer_connections("hammer", "rod"), *toe_connections("rod", "ground")],
         bonds={"hammer_rod": hammer_bond("hammer", "rod"), "ground_rod": toe_bond("rod", "ground")},
         energy_alarm=EnergyAlarm(share=0.01, reference="hammer.energy.kinetic"),
         stop_time=STOP, exchange_step=exchange, output_interval=1e-4,
@@ -55,16 +55,17 @@ def spt_system(fmus: Mapping[str, str], coupling: str = "waves", segments: int =
         watch=["rod.head.contact_force", "rod.toe.contact_force", "ground.settlement"])
 
 
-def hammer_connections(hammer: str, rod: str) -> list[str]:
+def hammer_connections(hammer: str, rod: str) -> list[Connection]:
     """A hammer on the head of a rod, by waves."""
-    return [f"{rod}.head.wave -> {hammer}.head.wave", f"{rod}.head.impedance -> {hammer}.head.impedance",
-            f"{hammer}.force -> {rod}.head.force"]
+    return [*(Connection(source=f"{rod}.head.{name}", target=f"{hammer}.head.{name}") for name in ("wave", "impedance")),
+            Connection(source=f"{hammer}.force", target=f"{rod}.head.force")]
 
 
-def toe_connections(rod: str, ground: str) -> list[str]:
+def toe_connections(rod: str, ground: str) -> list[Connection]:
     """The ground under the toe of a rod. Motion and waves are both connected: the ports take what they need."""
-    return [f"{rod}.toe.{name} -> {ground}.toe.{name}" for name in ("wave", "impedance", "position", "velocity")] + [
-        f"{ground}.toe.mean_force -> {rod}.toe.force"]
+    return [*(Connection(source=f"{rod}.toe.{name}", target=f"{ground}.toe.{name}")
+              for name in ("wave", "impedance", "position", "velocity")),
+            Connection(source=f"{ground}.toe.mean_force", target=f"{rod}.toe.force")]
 
 
 def hammer_bond(hammer: str, rod: str) -> PowerBond:
