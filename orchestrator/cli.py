@@ -404,6 +404,19 @@ def rockfall(site: Annotated[Path, typer.Argument(metavar="PROFILE.toml", help="
         rockfall(screen, RESULTS, site, trials, preset, seed, replay or [], animation, output_dir, workers, not no_figures)
 
 
+@app.command()
+def pile(site: Annotated[Path, typer.Argument(metavar="PILE.toml", help="Hammer, cushion, rod, soil, blows, bearing graph.")],
+         blows: Annotated[int | None, typer.Option(min=1, help="Number of blows; default: the file's, or 1.")] = None,
+         output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")] = None,
+         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+         as_json: Json = False, quiet: Quiet = False) -> None:
+    """Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph, residual stress."""
+    with _screen(quiet, as_json) as screen:
+        from .pile.command import pile
+
+        pile(screen, RESULTS, site, blows, output_dir, not no_figures)
+
+
 def main() -> None:
     """The entry point of the command ``rockshed``."""
     for stream in (sys.stdout, sys.stderr):
