@@ -14,6 +14,8 @@ from .style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH, captioned, l
 MPa = 1e6
 _TRAVELS = 8.0
 """Travel times of a wave that the traces show at least."""
+_PRESSING = 0.05
+"""Part of the largest head force below which a blow is over."""
 
 
 def caption(made: Prepared) -> list[str]:
@@ -46,9 +48,9 @@ def draw_all(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow], folde
 def _traces(made: Prepared, blow: Blow, file: Path) -> None:
     """Force and Z v at head and gauge, force at the toe, displacements, of the first blow."""
     time = blow.traces["time"] / ms
-    last = np.flatnonzero((np.abs(blow.traces["head.contact_force"]) > 0.01 * blow.head_force)
-                          | (np.abs(blow.traces["toe.contact_force"]) > 0.05 * blow.head_force))
-    end = max(1.15 * time[last[-1]], _TRAVELS * made.travel_time / ms) if last.size else time[-1]
+    changing = np.abs(np.diff(blow.traces["toe.set"], prepend=0.0)) > 1e-6 * abs(blow.set)
+    last = np.flatnonzero((np.abs(blow.traces["head.contact_force"]) > _PRESSING * blow.head_force) | changing)
+    end = max(1.3 * time[last[-1]], _TRAVELS * made.travel_time / ms) if last.size else time[-1]
     words = "First blow. Forces are compression positive, displacements downwards."
     with captioned([*caption(made), words], file, WIDTH, 6.6) as drawn:
         head, toe, way = drawn.subplots(3, 1, sharex=True)
@@ -99,12 +101,12 @@ def _blows(made: Prepared, blows: Sequence[Blow], file: Path) -> None:
         numbers = np.arange(1, len(blows) + 1)
         axes.plot(numbers, [blow.set / mm for blow in blows], "o-", color=TRANSMITTED, label="set per blow")
         axes.set(xlabel="blow", ylabel="set (mm)", xticks=numbers[::max(1, len(blows) // 12)])
-        axes.set_ylim(bottom=0.0)
+        axes.set_ylim(0.0, 1.2 * max(blow.set / mm for blow in blows) or 1.0)
         energy = axes.twinx()
         energy.plot(numbers, [blow.transferred / kJ for blow in blows], "s--", color=BEAM, linewidth=1.0,
                     label="transferred energy")
         energy.set(ylabel="transferred energy (kJ)")
-        energy.set_ylim(bottom=0.0)
+        energy.set_ylim(0.0, 1.2 * max(blow.transferred / kJ for blow in blows))
         energy.grid(False)
         lines = [*axes.get_lines(), *energy.get_lines()]
         axes.legend(lines, [str(line.get_label()) for line in lines], loc="lower right")
@@ -124,6 +126,6 @@ def _bearing(made: Prepared, graph: Sequence[Blow], file: Path) -> None:
         for name, colour in (("compression", TRANSMITTED), ("tension", ROCK)):
             stress.plot(count, [getattr(blow, name).max() / MPa for blow in shown], "o-", color=colour, markersize=3.5, label=name)
         stress.set(ylabel="largest stress (MPa)", xlabel="blows per 0.3 m")
-        stress.set_ylim(bottom=0.0)
+        stress.set_ylim(0.0, 1.15 * max(blow.compression.max() / MPa for blow in graph))
         stress.set_xlim(left=0.0)
         legend(stress, loc="center right")
