@@ -315,7 +315,7 @@ def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupli
 
 
 @app.command()
-def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993 or ushiro.")],
+def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993, mogami1973 or ushiro.")],
               only: Annotated[list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")] = None,
               quick: Annotated[bool, typer.Option("--quick", help="One run where the full reproduction has ten seeds.")] = False,
               output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")] = None,
