@@ -142,7 +142,8 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
 
     A component's residual is the change of its energies less the work done on it. The works of both sides of an interface
     cancel but for what the coupling makes; with them the sum over all components is the balance of the system. The work of a
-    machine and of a weight comes from outside and stays in the balance. None if a component gives no balance.
+    machine and of a weight comes from outside and stays in the balance. The load that a rod carries at rest does work on its way
+    down to the ground, which counts it as a potential; the rod leaves it out. None if a component gives no balance.
     """
     total = None
     for name in run.provenance["components"]:
@@ -152,7 +153,16 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
         for column in [f"{name}.energy.residual", *works]:
             part = run.series[column] - run.series[column][0]
             total = part if total is None else total + part
+    for rod in named(run, "PileRod"):
+        if total is not None and f"{rod}.head.position" in run.series:
+            total = total + _preload(run, rod) * run.series[f"{rod}.head.position"]
     return total
+
+
+def _preload(run: "Run", rod: str) -> float:
+    """Static load (N) at the head of a rod, positive in the direction of its head."""
+    parameters = run.provenance["components"][rod]["parameters"]
+    return float(parameters["head.preload"]["value"]) * (-1.0 if parameters["head.direction"]["value"] == "up" else 1.0)
 
 
 def impact_energy(run: "Run") -> float | None:

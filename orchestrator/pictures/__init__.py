@@ -83,8 +83,9 @@ def _pictures(run: Run) -> list[_Picture]:
     ]
     of_beam = [] if who.beam is None else [
         _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"])]
-    of_rock = [] if who.rock is None else [
-        _Picture("energy", partial(curves.energy, run), [f"{who.rock}.energy.kinetic"])]
+    striking = [who.rock] if who.rock else named(run, "Hammer")
+    of_rock = [] if not striking else [
+        _Picture("energy", partial(curves.energy, run), [f"{name}.energy.kinetic" for name in striking])]
     rods, grounds = named(run, "PileRod"), named(run, "ImpulsiveGround")
     of_piles = [] if not rods else [
         _Picture("piles", partial(piles.blow, run), [

@@ -76,8 +76,8 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     trial = Trial(200.0, *MIDDLE)
     r0, r1 = fitted_ends(trial.impulse, trial.area * cm2)
     end = stopping_time(trial.impulse, r0, r1)
-    words = (f"Plate of {trial.area:g} cm², {trial.weight:g} kg from {trial.drop:g} cm, I = {trial.impulse / kgf:.2f} kgf s. Solid: "
-             "the component, R of (2) with the ends read from (12). Dashed: R constant, (R0 + R1)/2. Dotted: (3) and (7).")
+    words = (f"Plate of {trial.area:g} cm², {trial.weight:g} kg from {trial.drop:g} cm, I = {trial.impulse / kgf:.2f} kgf s. "
+             "Solid: the component, R of (2) with the ends read from (12). Dashed: R constant, (R0 + R1)/2. Dotted: (3) and (7).")
     with captioned([words], file, WIDTH, 5.4) as made:
         resistance, velocity, settlement = made.subplots(3, 1, sharex=True)
         for ends, dashes, colour in (((r0, r1), "-", INK), ((0.5 * (r0 + r1),) * 2, "--", TRANSMITTED)):
