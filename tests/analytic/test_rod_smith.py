@@ -84,8 +84,8 @@ def test_the_total_energy_as_printed_exceeds_the_start_by_an_artefact(segments, 
 @pytest.mark.parametrize("scheme", ["smith", "modified_smith", "repaired"])
 @pytest.mark.parametrize("fraction", [1, 5])
 def test_the_half_step_energy_is_conserved_through_everything(scheme, fraction):
-    made = rod(20, sections=2, section__area=[2e-3, 1e-3], section__length=[5.0, 5.0], fraction=fraction, scheme=scheme, ram__mass=63.5,
-               toe__condition="soil", toe__resistance=60e3, shaft__resistance=1e3, gravity=9.81)
+    made = rod(20, sections=2, section__area=[2e-3, 1e-3], section__length=[5.0, 5.0], fraction=fraction, scheme=scheme,
+               ram__mass=63.5, toe__condition="soil", toe__resistance=60e3, shaft__resistance=1e3, gravity=9.81)
     residual, loss, plastic = march(made, 600, "energy.residual", "energy.contact", "energy.plastic")
     assert np.abs(residual).max() < 1e-10 * made["energy.start"]
     assert plastic[-1] > 0.1 * made["energy.start"]
