@@ -43,15 +43,17 @@ def rows(found: Outcomes) -> list[Row]:
     still = np.abs(at_critical["toe.velocity"][at_critical.time < arrival * (1 - 1e-9)]).max()
     parted, exact = run.first_without("head.contact_force"), closed_form(run, -1.0).separation()
     fine_parted = fine().first_without("head.contact_force")
-    assert parted and exact and fine_parted
+    assert parted is not None
+    assert exact is not None
+    assert fine_parted is not None
     return [
-        Row("ten segments and dt/5: the toe moves before the wave arrives, part of the striking velocity", "1", computed=float(early),
-            verdict=verdict(early > SOON),
+        Row("ten segments and dt/5: the toe moves before the wave arrives, part of the striking velocity", "1",
+            computed=float(early), verdict=verdict(early > SOON),
             note=f"reproduced: a coarse-grid artefact; at the critical step the toe rests until L/c (largest {still:.1g} m/s)"),
         Row("ten segments and dt/5: hammer and rod separate too early, time over L/c", "1", computed=parted / arrival,
             verdict=verdict(parted < 0.9 * exact),
-            note=f"reproduced: a coarse-grid artefact; exact for this spring, a fixed end to this order: {exact / arrival:.3f}; with "
-                 f"1,000 segments and dt/5 the waves behind the front part them at {fine_parted / arrival:.2f}"),
+            note=f"reproduced: a coarse-grid artefact; exact for this spring, a fixed end to this order: {exact / arrival:.3f}; "
+                 f"with 1,000 segments and dt/5 the waves behind the front part them at {fine_parted / arrival:.2f}"),
     ]
 
 
@@ -60,8 +62,8 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     from ...pictures.style import GREY, ROCK, TRANSMITTED, WIDTH, captioned
 
     file, run, exact = folder / "figure6.png", coarse(), closed_form(coarse(), -1.0)
-    words = (f"Figure 6 of Uto et al.: rod {LENGTH:g} m, {SEGMENTS} segments, dt = dx/c / {PARTS}, Smith's scheme. Spring under the toe: "
-             "k2 = k1 (assumed). Dashed: the wave arrives at the toe, and comes back. " + SOURCE)
+    words = (f"Figure 6 of Uto et al.: rod {LENGTH:g} m, {SEGMENTS} segments, dt = dx/c / {PARTS}, Smith's scheme. Spring under "
+             "the toe: k2 = k1 (assumed). Dashed: the wave arrives at the toe, and comes back. " + SOURCE)
     with captioned([words], file, WIDTH, 4.6) as made:
         upper, lower = made.subplots(2, sharex=True)
         upper.plot(run.time / ms, run.relative("head.contact_force"), color=ROCK, label="Smith, dt/5")
@@ -73,8 +75,8 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
             for n in (1, 2):
                 axes.axvline(n * run.travel_time / ms, color=GREY, linewidth=0.8, linestyle="--")
             axes.legend()
-        upper.set(ylabel="force under the hammer / Z V0")
-        lower.set(xlabel="time (ms)", ylabel="velocity of the toe (m/s)", xlim=(0.0, run.time[-1] / ms))
+        upper.set(ylabel="force under the\nhammer / Z V0")
+        lower.set(xlabel="time (ms)", ylabel="velocity of\nthe toe (m/s)", xlim=(0.0, run.time[-1] / ms))
     return [file]
 
 

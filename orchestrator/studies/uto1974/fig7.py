@@ -9,7 +9,7 @@ import numpy as np
 from components.units import kN, mm, ms
 
 from ..study import Outcomes, Row, Study
-from .struck_rod import QUAKE, SOURCE, SPEED, Traces, closed_form, strike
+from .struck_rod import QUAKE, SOURCE, Traces, closed_form, strike
 
 LENGTH, GAUGE, BLOWS = 33.94, 2.58, 50
 SEGMENTS = 3394
@@ -50,10 +50,10 @@ def resistance() -> float:
 
 
 def arrivals(run: Traces) -> tuple[float, float]:
-    """Times (s) when the front first passes the gauge and when it comes back from the toe: the largest jumps of the stress."""
-    jumps, back = np.abs(np.diff(run["gauge.stress"], prepend=0.0)), 2.0 * (LENGTH - GAUGE) / SPEED
-    later = run.time > GAUGE / SPEED + 0.5 * back
-    return float(run.time[np.argmax(jumps)]), float(run.time[later][np.argmax(jumps[later])])
+    """Times (s) when the front first passes the gauge and when it comes back from the toe: the first two jumps of the stress."""
+    jumps = np.abs(np.diff(run["gauge.stress"], prepend=0.0))
+    first, second = np.flatnonzero(jumps > 0.5 * jumps[:SEGMENTS].max())[:2]
+    return float(run.time[first]), float(run.time[second])
 
 
 def rows(found: Outcomes) -> list[Row]:
@@ -68,7 +68,8 @@ def rows(found: Outcomes) -> list[Row]:
         Row("fig. 7: largest stress at the gauge", "N/mm²", computed=float(stress.max() / _BAR),
             note=f"{not_printed}; rho c V0 at the front, if hammer and rod meet flat and nothing lies between them"),
         Row("fig. 7: ultimate resistance with which a blow drives the toe by 0.3 m / 50", "kN", computed=resistance() / kN,
-            note=f"assumed: Smith's soil with quake {QUAKE / mm:g} mm and damping {DAMPING:g} s/m; N > 50 means at least this much"),
+            note=f"assumed: Smith's soil with quake {QUAKE / mm:g} mm and damping {DAMPING:g} s/m; N > 50 means at least "
+                 "this much"),
         Row("fig. 7: largest tension at the gauge, before 4 L/c", "N/mm²", computed=float(-stress[:4 * SEGMENTS].min() / _BAR),
             note=f"{not_printed}; on a fixed toe {float(-fixed['gauge.stress'][:4 * SEGMENTS].min() / _BAR):.1f}"),
         Row("fig. 7: hammer and rod separate, on a fixed toe", "ms", computed=None if parted is None else parted / ms,
@@ -81,9 +82,10 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     from ...pictures.style import GREY, ROCK, TRANSMITTED, WIDTH, captioned
 
     file = folder / "figure7.png"
-    words = (f"Figure 7 of Uto et al. is a measurement; here it is computed: rod {LENGTH:g} m, gauge {GAUGE:g} m below the head. Assumed for "
-             f"sand with N > 50: Smith's soil with {resistance() / kN:.0f} kN (a set of 0.3 m / 50), quake {QUAKE / mm:g} mm, damping "
-             f"{DAMPING:g} s/m; and a fixed toe. No anvil, joint or cushion. Dashed: the front at the gauge, downwards and back. {SOURCE}")
+    words = (f"Figure 7 of Uto et al. is a measurement; here it is computed: rod {LENGTH:g} m, gauge {GAUGE:g} m below the head. "
+             f"Assumed for sand with N > 50: Smith's soil with {resistance() / kN:.0f} kN (a set of 0.3 m / 50), quake "
+             f"{QUAKE / mm:g} mm, damping {DAMPING:g} s/m; and a fixed toe. No anvil, joint or cushion. Dashed: the front "
+             f"at the gauge, down and back. {SOURCE}")
     with captioned([words], file, WIDTH, 3.8) as made:
         axes = made.subplots()
         for run, label, colour in ((strike_fixed(), "fixed toe", TRANSMITTED), (strike_soil(resistance()), "Smith's soil", ROCK)):
