@@ -49,8 +49,8 @@ LAYOUT = Layout((
     out("energy.supplied", "energy supplied by the blows after the first", "J"),
     out("energy.cushion_loss", "energy dissipated in the cushion", "J"),
     out("energy.contact", "energy lost between rigid ram and head: the error of the scheme when they separate", "J"),
-    out("energy.work.head", "work of the hammer on the head", "J"),
-    out("energy.residual", "energies + losses + work on the head - supplied, minus their sum at the start", "J"),
+    out("energy.work.head", "work that the head has done on the hammer: negative where it is driven", "J"),
+    out("energy.residual", "energies + losses - work - supplied, minus their sum at the start", "J"),
     out("energy.start", "kinetic + gravity at the start", "J"),
 ), (
     State("largest", lambda sizes: 1),

@@ -95,7 +95,7 @@ def _place_head(w, x, k):
     after = cushion_force(_compression(w), largest[0], stiffness, restitution)
     largest[0] = max(largest[0], _compression(w))
     work = 0.5 * (before + after) * way
-    w[V.energy_work_head] += work
+    w[V.energy_work_head] -= work
     w[V.energy_cushion_loss] += kept - work - _cushion_energy(w, x, k)
 
 
@@ -133,7 +133,7 @@ def _rigid(now, dt, w):
         w[V.touching] = 1.0
     if w[V.touching] > 0.0:
         w[V.position] = w[V.head_reached]
-    w[V.energy_work_head] += force * head * dt
+    w[V.energy_work_head] -= force * head * dt
     w[V.energy_contact] += force * (mean - head) * dt
     return force
 
@@ -159,7 +159,7 @@ def _cushioned(now, dt, w, x, k):
     if w[V.touching] > 0.0 and at_end == 0.0:
         w[V.separation] = now + dt
     w[V.touching] = 1.0 if at_end > 0.0 else 0.0
-    w[V.energy_work_head] += force * head * dt
+    w[V.energy_work_head] -= force * head * dt
     w[V.energy_cushion_loss] += force * (_compression(w) - start) - (_cushion_energy(w, x, k) - kept)
     return force
 
@@ -172,4 +172,4 @@ def publish(w, x, k):
     w[V.energy_gravity] = -w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
     w[V.energy_cushion] = _cushion_energy(w, x, k)
     w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_gravity] + w[V.energy_cushion] + w[V.energy_cushion_loss]
-                            + w[V.energy_contact] + w[V.energy_work_head] - w[V.energy_supplied] - w[V.energy_start])
+                            + w[V.energy_contact] - w[V.energy_work_head] - w[V.energy_supplied] - w[V.energy_start])

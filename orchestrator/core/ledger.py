@@ -47,8 +47,8 @@ class Accounts:
     def values(self, at: float) -> NDArray[np.float64]:
         """Works and coupling energy of all bonds at a time (s), which is needed for messages only."""
         for i, (bond, channels) in enumerate(zip(self._plan.bonds, self._channels)):
-            taken = float(self._book["taken"][channels].sum())
-            given_back = (float(self._book["given_back"][channels].sum()) if bond.work is None
+            taken = bond.sign * float(self._book["taken"][channels].sum())
+            given_back = (bond.sign * float(self._book["given_back"][channels].sum()) if bond.work is None
                           else self._own_work(bond.work, at) - self._at_start[i])
             self._newest[3 * i:3 * i + 3] = taken, given_back, taken + given_back
             self._watch(bond.name, taken + given_back, at)

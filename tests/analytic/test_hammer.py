@@ -56,8 +56,8 @@ def test_through_the_wave_port_it_is_st_venants_mass(exchange, steps, tolerance)
 def test_hammer_and_rod_agree_on_the_head_and_the_coupling_makes_no_energy():
     hammer, struck, (_, known, shown) = blow(10, 6e-3)
     np.testing.assert_allclose(known, shown, atol=1e-12)
-    assert struck["energy.work.head"] < hammer["energy.work.head"]
-    assert struck["energy.work.head"] > 0.99 * hammer["energy.work.head"]
+    spent = -hammer["energy.work.head"]
+    assert 0.99 * spent < struck["energy.work.head"] < spent
     assert abs(hammer["energy.residual"]) < 1e-9
     assert abs(struck["energy.residual"]) < 1e-9
 
@@ -95,7 +95,7 @@ def test_the_plain_port_refuses_a_step_that_the_wave_port_bears():
     hammer, struck, _ = blow(10, 8e-3, **stiff)
     fine, _, _ = blow(1, 8e-3, segments=500, **stiff)
     assert hammer["velocity"] == pytest.approx(fine["velocity"], abs=0.02 * fine["impact_velocity"])
-    assert struck["energy.work.head"] <= hammer["energy.work.head"]
+    assert struck["energy.work.head"] <= -hammer["energy.work.head"]
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.8, 0.3])

@@ -13,7 +13,7 @@ SEGMENTS, LENGTH = 256, 10.24
 """Travel time 2 ms, of a segment 7.8125 us: a whole number of ticks."""
 STEP = LENGTH / 5120.0 / SEGMENTS
 IMPEDANCE = 5.8e-4 * 7850 * 5120
-BOND = {"giver": "hammer", "force": ["force"], "taker": "rod", "position": ["head.position"]}
+BOND = {"giver": "hammer", "force": ["force"], "taker": "rod", "position": ["head.position"], "work": "energy.work.head"}
 WAVES = ["rod.head.wave -> hammer.head.wave", "rod.head.impedance -> hammer.head.impedance", "hammer.force -> rod.head.force"]
 PLAIN = ["rod.head.position -> hammer.head.position", "rod.head.velocity -> hammer.head.velocity", "hammer.force -> rod.head.force"]
 
@@ -41,22 +41,25 @@ def test_by_waves_it_is_st_venants_mass(tmp_path, master, steps, tolerance):
     run = blow(tmp_path, steps, master)
     exact = closed_form(run)
     end = exact.separation()
-    ended = round((run.series["time"][1:] / (steps * STEP)).max())
     times = run.series["time"]
     together = times < end
     np.testing.assert_allclose(run.series["hammer.velocity"][together], exact.velocity(times[together]), rtol=0,
                                atol=tolerance * exact.speed)
     assert run.series["hammer.separation"][-1] == pytest.approx(end, rel=tolerance)
     assert run.series["hammer.velocity"][-1] == pytest.approx(exact.rebound(), abs=tolerance * exact.speed)
-    assert ended > 10
-    assert run.series["rod.energy.work.head"][-1] <= run.series["hammer.energy.work.head"][-1] * (1 + 1e-12)
+    assert run.series["rod.energy.work.head"][-1] <= -run.series["hammer.energy.work.head"][-1] * (1 + 1e-12)
     assert np.abs(run.series["rod.energy.residual"]).max() < 1e-9
 
 
-def test_the_ledger_of_a_wave_port_closes_where_the_rod_follows_at_once(tmp_path):
-    """Sequential: displacement of the head times mean force is what the rod got."""
-    run = blow(tmp_path, 16)
-    np.testing.assert_allclose(run.series["coupling.head.work.taker"], run.series["rod.energy.work.head"], atol=1e-8)
+def test_the_ledger_of_a_wave_port_never_shows_energy_that_was_made(tmp_path):
+    """The rod's work is displacement times mean force; the coupling loses the variance of the force, and less in shorter steps."""
+    coarse, fine = blow(tmp_path / "coarse", 16), blow(tmp_path / "fine", 4)
+    lost = []
+    for run in (coarse, fine):
+        np.testing.assert_allclose(run.series["coupling.head.work.taker"], run.series["rod.energy.work.head"], atol=1e-8)
+        assert np.diff(run.series["coupling.head.energy"]).max() < 1e-9
+        lost.append(-run.series["coupling.head.energy"][-1] / run.series["hammer.energy.start"][0])
+    assert 0.0 < lost[1] < 0.1 * lost[0] < 1e-3
 
 
 def test_by_the_plain_port_it_comes_to_the_same_with_a_cushion(tmp_path):
@@ -70,13 +73,13 @@ def test_by_the_plain_port_it_comes_to_the_same_with_a_cushion(tmp_path):
 
 
 def test_the_plain_port_refuses_a_step_before_anything_runs(tmp_path):
-    with pytest.raises(InputRefused, match=r"rod\.step_limit: the communication step of 0\.00025 s exceeds step_limit = 0\.000233114 s"):
+    with pytest.raises(InputRefused, match=r"communication step of 0\.00025 s exceeds step_limit = 0\.000233114 s"):
         blow(tmp_path, 32, port="kinematics", **{"cushion.stiffness": 1e8})
     assert not (tmp_path / "run" / "timeseries.parquet").exists()
 
 
 def test_waves_refuse_a_step_beyond_the_travel_time(tmp_path):
     with pytest.raises(InputRefused, match=r"exceeds step_limit = 0\.002 s"):
-        blow(tmp_path, 257)
+        blow(tmp_path, 288)
     with pytest.raises(InputRefused, match=r"exceeds step_limit = 0\.001 s"):
-        blow(tmp_path, 129, "jacobi")
+        blow(tmp_path, 144, "jacobi")
