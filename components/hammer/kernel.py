@@ -147,8 +147,8 @@ def _cushioned(now, dt, w, x, k):
     if w[V.port] == WAVES:
         given, compliance = w[V.head_wave] / w[V.head_impedance], 1.0 / w[V.head_impedance]
     half = 0.5 * dt / w[V.mass]
-    free = start + 0.5 * dt * (before + half * drive - given)
-    force = met(free, 0.5 * dt * (half + compliance), largest[0], stiffness, restitution)
+    free = dt * (before + half * drive - given)
+    force = met(start, free, dt * (half + compliance), largest[0], stiffness, restitution)
     w[V.velocity] += 2.0 * half * (drive - force)
     mean, head = 0.5 * (before + w[V.velocity]), given + compliance * force
     w[V.position] += mean * dt

@@ -1,5 +1,6 @@
 """Soil after Smith: an elastic-plastic static resistance, and damping in proportion to it and to the velocity."""
 
+import math
 from collections import namedtuple
 
 from ..compilation import kernel
@@ -10,7 +11,7 @@ does, the ground under a toe does not."""
 Grip = namedtuple("Grip", "velocity shaft toe drag")
 """Velocity (m/s), static resistances of shaft and toe (N) and damping of both (N s/m), means over a step."""
 
-_ROUNDS = 8
+_ROUNDS = 60
 
 
 @kernel
@@ -57,23 +58,28 @@ def gripped(impedance, drive, shaft, toe, dt):
     """Velocity v with impedance * v + soil(v) = drive in a step dt (s): a node that the soil holds.
 
     impedance (N s/m): of all waves that leave the node; drive (N): what would act on the node at rest, without the soil. Implicit:
-    the resistance is its mean over the way of the step, so that elastic soil keeps its energy.
+    the resistance is its mean over the way of the step, so that elastic soil keeps its energy. Newton's method between bounds: the
+    resistance never falls with the way.
     """
-    velocity, resisting, damping = 0.0, 0.0, 0.0
     on_shaft, on_toe = static(shaft, shaft.stretch), static(toe, toe.stretch)
+    velocity, damping = 0.0, 0.0
     for _ in range(2):
         damping = drag(shaft, on_shaft) + drag(toe, on_toe)
+        total = impedance + damping
+        low, high, change = (drive - shaft.resistance - toe.resistance) / total, (drive + shaft.resistance) / total, math.inf
         for _ in range(_ROUNDS):
             way = dt * velocity
             on_shaft, on_toe = mean_static(shaft, way), mean_static(toe, way)
-            resisting = on_shaft + on_toe
-            slope = impedance + damping + dt * (_slope(shaft, way, on_shaft) + _slope(toe, way, on_toe))
-            change = (drive - resisting - (impedance + damping) * velocity) / slope
-            velocity += change
+            excess = total * velocity + on_shaft + on_toe - drive
+            low, high = (low, min(high, velocity)) if excess > 0.0 else (max(low, velocity), high)
+            after = velocity - excess / (total + dt * (_slope(shaft, way, on_shaft) + _slope(toe, way, on_toe)))
+            if not low <= after <= high or abs(after - velocity) > 0.5 * abs(change):
+                after = 0.5 * (low + high)
+            change = after - velocity
+            velocity = after
             if abs(change) <= 1e-14 * abs(velocity):
                 break
-    velocity = (drive - resisting) / (impedance + damping)
-    return Grip(velocity, on_shaft, on_toe, damping)
+    return Grip((drive - on_shaft - on_toe) / (impedance + damping), on_shaft, on_toe, damping)
 
 
 @kernel

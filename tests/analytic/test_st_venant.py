@@ -1,6 +1,7 @@
 """The closed form against an integration of the delay equation, and its special cases."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from components.pile_rod.st_venant import StVenant
 
 
 def by_steps(problem, reflections):
-    """Velocity of the mass over time, from reflection to reflection by Runge and Kutta: M V' = -Z (V - 2 b), b = alpha (V - b)(t - tau)."""
+    """Velocity of the mass over time: M V' = -Z (V - 2 b), b = alpha (V - b)(t - tau), by Runge and Kutta between reflections."""
     period = 2.0 * problem.travel_time
     pieces, start = [], problem.speed
 
@@ -45,7 +46,7 @@ def test_force_is_what_stops_the_mass_and_ends_at_the_separation(alpha, mass):
     end = problem.separation()
     pieces = np.unique(np.append(np.arange(0.0, end, 4e-3), end))
     impulse = 0.0
-    for left, right in zip(pieces[:-1], pieces[1:]):
+    for left, right in pairwise(pieces):
         nodes, weights = np.polynomial.legendre.leggauss(40)
         times = left + (right - left) * 0.5 * (nodes + 1.0)
         forces = problem.force(times)
