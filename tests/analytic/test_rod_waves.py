@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from components.component import ComponentError
+
 from ..rods import closed_form, march, reflecting, rod
 
 pulses = st.lists(st.floats(-1e5, 1e5), min_size=1, max_size=30)
@@ -147,3 +149,75 @@ def test_the_gauge_sees_the_incident_wave_with_force_equal_to_zv():
     np.testing.assert_allclose(zv, force, rtol=1e-12)
     np.testing.assert_allclose(stress, force / 5.8e-4, rtol=1e-12)
     assert made["energy.transferred"] == pytest.approx(made["energy.head"])
+
+
+def on_a_spring(steps, port, stiffness=3e7, exchange="sequential"):
+    """Displacement of the toe over four travel times, on a spring outside. steps: of the rod from exchange to exchange."""
+    made = rod(256, ram__mass=63.5, toe__condition="port", toe__port=port, toe__partner__stiffness=stiffness, exchange=exchange)
+    step, known, places = steps * made["time_step"], 0.0, []
+    for n in range(1024 // steps):
+        if port == "waves":
+            # F = c - Z v and F = k (u + v H/2), both means over the step
+            wave, impedance = made["toe.wave"], made["toe.impedance"]
+            force = (known + 0.5 * step * wave / impedance) / (1.0 / stiffness + 0.5 * step / impedance)
+            known += step * (wave - force) / impedance
+            if exchange == "sequential":
+                made["toe.force"] = force
+            made.step(n * step, step)
+            made["toe.force"] = force
+        else:
+            made["toe.force"] = stiffness * made["toe.position"]
+            made.step(n * step, step)
+        places.append(made["toe.position"])
+    return made, np.array(places)
+
+
+def test_a_spring_below_a_wave_port_is_the_soil_inside_at_every_step():
+    made, outside = on_a_spring(1, "waves")
+    inside = rod(256, ram__mass=63.5, toe__quake=1.0, toe__resistance=3e7, toe__damping=0.0)
+    place, = march(inside, len(outside), "toe.position")
+    pressed = place > 0.0
+    until = np.flatnonzero(~pressed & (np.arange(len(place)) > 260))
+    until = until[0] if until.size else len(place)
+    np.testing.assert_allclose(outside[:until], place[:until], rtol=1e-9, atol=1e-15)
+    assert made["energy.residual"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("exchange", ["sequential", "parallel"])
+def test_a_wave_port_below_the_toe_converges_with_second_order(exchange):
+    _, exact = on_a_spring(1, "waves")
+    errors = []
+    for steps in (4, 8, 16):
+        made, places = on_a_spring(steps, "waves", exchange=exchange)
+        late = round(made["lag"] / made["time_step"])
+        at = np.arange(1, len(places) + 1) * steps - 1 - late
+        errors.append(np.abs(places[at >= 0] - exact[at[at >= 0]]).max() / exact.max())
+    assert errors[2] < 0.02
+    assert errors[1] / errors[0] > 3.0
+    assert errors[2] / errors[1] > 3.0
+
+
+def test_a_plain_port_below_the_toe_is_of_first_order_and_has_its_limit():
+    """Z/k = 0.78 ms is 101 steps of the rod. At a third of it the plain port makes energy; the port of waves never does."""
+    _, exact = on_a_spring(1, "waves")
+    errors = []
+    for steps in (4, 8, 16):
+        _, places = on_a_spring(steps, "kinematics")
+        errors.append(np.abs(places - exact[np.arange(1, len(places) + 1) * steps - 1]).max() / exact.max())
+    assert 1.5 < errors[1] / errors[0] < 2.5
+    assert 1.5 < errors[2] / errors[1] < 2.5
+    assert on_a_spring(32, "kinematics")[0]["energy.work.toe"] > 10.0
+    assert on_a_spring(32, "waves")[0]["energy.work.toe"] < 0.0
+    with pytest.raises(ComponentError, match="exceeds the limit of the ports"):
+        on_a_spring(128, "kinematics")
+
+
+def test_waves_bear_a_toe_a_thousand_times_stiffer_than_the_plain_port_can():
+    """At an exchange of 16 steps (0.12 ms): no energy is made."""
+    limit = rod(256)["toe.impedance"] / (16 * 10.0 / 5120.0 / 256)
+    made, places = on_a_spring(16, "waves", stiffness=1000.0 * limit)
+    fixed = rod(256, ram__mass=63.5, toe__condition="fixed")
+    force, = march(fixed, 256 * 3, "force")
+    assert made["energy.work.toe"] <= 1e-9
+    assert np.abs(places).max() < 4.0 * force.max() / (1000.0 * limit)
+    assert made["energy.kinetic"] + made["energy.elastic"] + made["energy.ram"] <= made["energy.start"] * (1.0 + 1e-12)

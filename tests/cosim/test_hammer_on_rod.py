@@ -35,6 +35,11 @@ def closed_form(run):
     return StVenant(63.5, float(run.series["hammer.impact_velocity"][0]), IMPEDANCE, LENGTH / 5120.0, -0.5)
 
 
+def first_apart(run):
+    """Row in which hammer and rod have separated for the first time; later the head comes back."""
+    return int(np.flatnonzero(run.series["hammer.separation"] > 0.0)[0])
+
+
 @pytest.mark.parametrize(("master", "steps", "tolerance"), [("sequential", 1, 1e-4), ("jacobi", 1, 1e-4), ("sequential", 16, 5e-3),
                                                             ("jacobi", 16, 5e-3)])
 def test_by_waves_it_is_st_venants_mass(tmp_path, master, steps, tolerance):
@@ -45,8 +50,9 @@ def test_by_waves_it_is_st_venants_mass(tmp_path, master, steps, tolerance):
     together = times < end
     np.testing.assert_allclose(run.series["hammer.velocity"][together], exact.velocity(times[together]), rtol=0,
                                atol=tolerance * exact.speed)
-    assert run.series["hammer.separation"][-1] == pytest.approx(end, rel=tolerance)
-    assert run.series["hammer.velocity"][-1] == pytest.approx(exact.rebound(), abs=tolerance * exact.speed)
+    apart = first_apart(run)
+    assert run.series["hammer.separation"][apart] == pytest.approx(end, rel=tolerance)
+    assert run.series["hammer.velocity"][apart] == pytest.approx(exact.rebound(), abs=tolerance * exact.speed)
     assert run.series["rod.energy.work.head"][-1] <= -run.series["hammer.energy.work.head"][-1] * (1 + 1e-12)
     assert np.abs(run.series["rod.energy.residual"]).max() < 1e-9
 
@@ -58,7 +64,7 @@ def test_the_ledger_of_a_wave_port_never_shows_energy_that_was_made(tmp_path):
     for run in (coarse, fine):
         np.testing.assert_allclose(run.series["coupling.head.work.taker"], run.series["rod.energy.work.head"], atol=1e-8)
         assert np.diff(run.series["coupling.head.energy"]).max() < 1e-9
-        lost.append(-run.series["coupling.head.energy"][-1] / run.series["hammer.energy.start"][0])
+        lost.append(-run.series["coupling.head.energy"][first_apart(run)] / run.series["hammer.energy.start"][0])
     assert 0.0 < lost[1] < 0.1 * lost[0] < 1e-3
 
 
