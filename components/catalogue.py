@@ -9,6 +9,9 @@ _FOLDERS = {
     "SandCushion": "sand_cushion",
     "RBSMBeam": "rbsm_beam",
     "SlopeRockfall": "slope_rockfall",
+    "ImpulsiveGround": "impulsive_ground",
+    "Hammer": "hammer",
+    "PileRod": "pile_rod",
 }
 
 NAMES = tuple(_FOLDERS)

@@ -322,7 +322,7 @@ def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupli
 
 
 @app.command()
-def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993 or ushiro.")],
+def reproduce(paper: Annotated[str, typer.Argument(metavar="PAPER", help="sonoda1993, mogami1973 or ushiro.")],
               only: Annotated[list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")] = None,
               quick: Annotated[bool, typer.Option("--quick", help="One run where the full reproduction has ten seeds.")] = False,
               output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")] = None,
@@ -409,6 +409,19 @@ def rockfall(site: Annotated[Path, typer.Argument(metavar="PROFILE.toml", help="
         from .rockfall.command import rockfall
 
         rockfall(screen, RESULTS, site, trials, preset, seed, replay or [], animation, output_dir, workers, not no_figures)
+
+
+@app.command()
+def pile(site: Annotated[Path, typer.Argument(metavar="PILE.toml", help="Hammer, cushion, rod, soil, blows, bearing graph.")],
+         blows: Annotated[int | None, typer.Option(min=1, help="Number of blows; default: the file's, or 1.")] = None,
+         output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")] = None,
+         no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+         as_json: Json = False, quiet: Quiet = False) -> None:
+    """Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph, residual stress."""
+    with _screen(quiet, as_json) as screen:
+        from .pile.command import pile
+
+        pile(screen, RESULTS, site, blows, output_dir, not no_figures)
 
 
 def main() -> None:

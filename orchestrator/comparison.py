@@ -103,7 +103,21 @@ def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
     if not found:
         return [Row(figure.name, "" if figure.unit == "1" else figure.unit, figure.value if isinstance(figure.value, str)
                     else f"{figure.value:.6g}") for figure in run.summary]
-    return found + list(_couplings(run))
+    return found + list(_piles(run)) + list(_couplings(run))
+
+
+_OF_PILES: Mapping[str, tuple[Scale, ...]] = {
+    h.HEAD_FORCE: (Scale("kN", kN, 2),), h.TOE_FORCE: (Scale("kN", kN, 2),), h.COMPRESSION: (Scale("MPa", 1e6, 2),),
+    h.TENSION: (Scale("MPa", 1e6, 2),), h.TRANSFERRED: (Scale("J", 1.0, 2),), h.SETTLEMENT: (Scale("mm", mm, 3),),
+    h.SET: (Scale("mm", mm, 3),)}
+
+
+def _piles(run: Run) -> Iterator[Row]:
+    """Rods and grounds, each under its name."""
+    for figure in h.headlines(run):
+        what = figure.name.partition(": ")[2]
+        if what in _OF_PILES:
+            yield from _rows(figure.name, _OF_PILES[what], figure)
 
 
 def _rows(label: str, scales: tuple[Scale, ...], figure: Figure) -> Iterator[Row]:

@@ -99,10 +99,15 @@ class Roles:
     beam: str | None
 
 
+def named(run: "Run", model: str) -> list[str]:
+    """Names of the components of a model."""
+    return [name for name, facts in run.provenance["components"].items() if facts["model"] == model]
+
+
 def roles(run: "Run") -> Roles:
     """Who is who in a run, by the names of the models."""
     def only(model: str) -> str | None:
-        names = [name for name, facts in run.provenance["components"].items() if facts["model"] == model]
+        names = named(run, model)
         return names[0] if len(names) == 1 else None
 
     return Roles(only("FallingRock"), only("SandCushion"), only("RBSMBeam"))
@@ -123,12 +128,13 @@ def extreme(run: "Run", column: str) -> tuple[float, float]:
     return float(run.series[column][at]), float(run.series["time"][at])
 
 
-_OUTSIDE = ".energy.work.drive"
+_OUTSIDE = (".energy.work.drive", ".energy.work.gravity")
+"""Works that come from outside of the system: of the machine, of the weight."""
 
 
 def machine_work(run: "Run") -> "NDArray[np.float64] | None":
     """Work (J) of the machine on a driven rock since the start, at each row; None without one."""
-    return run.series.get(f"{roles(run).rock}{_OUTSIDE}") if driven(run) else None
+    return run.series.get(f"{roles(run).rock}{_OUTSIDE[0]}") if driven(run) else None
 
 
 def system_residual(run: "Run") -> "NDArray[np.float64] | None":
@@ -136,7 +142,8 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
 
     A component's residual is the change of its energies less the work done on it. The works of both sides of an interface
     cancel but for what the coupling makes; with them the sum over all components is the balance of the system. The work of a
-    machine comes from outside and stays in the balance. None if a component gives no balance.
+    machine and of a weight comes from outside and stays in the balance. The load that a rod carries at rest does work on its way
+    down to the ground, which counts it as a potential; the rod leaves it out. None if a component gives no balance.
     """
     total = None
     for name in run.provenance["components"]:
@@ -146,13 +153,24 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
         for column in [f"{name}.energy.residual", *works]:
             part = run.series[column] - run.series[column][0]
             total = part if total is None else total + part
+    for rod in named(run, "PileRod"):
+        if total is not None and f"{rod}.head.position" in run.series:
+            total = total + _preload(run, rod) * run.series[f"{rod}.head.position"]
     return total
 
 
+def _preload(run: "Run", rod: str) -> float:
+    """Static load (N) at the head of a rod, positive in the direction of its head."""
+    parameters = run.provenance["components"][rod]["parameters"]
+    return float(parameters["head.preload"]["value"]) * (-1.0 if parameters["head.direction"]["value"] == "up" else 1.0)
+
+
 def impact_energy(run: "Run") -> float | None:
-    """Kinetic energy (J) of the rock at the start; None where a machine drives it."""
-    column = f"{roles(run).rock}.energy.kinetic"
-    return float(run.series[column][0]) if column in run.series and not driven(run) else None
+    """Kinetic energy (J) of the rock, or else of the hammers, at the start; None where a machine drives it."""
+    rock = roles(run).rock
+    columns = [f"{name}.energy.kinetic" for name in ([rock] if rock else named(run, "Hammer"))]
+    found = [float(run.series[column][0]) for column in columns if column in run.series]
+    return sum(found) if found and not driven(run) else None
 
 
 def beam_energies(run: "Run") -> tuple[float | None, float | None]:
@@ -166,7 +184,7 @@ def beam_energies(run: "Run") -> tuple[float | None, float | None]:
 def headlines(run: "Run") -> list[Figure]:
     """Every headline figure that the results give."""
     forces = _static(run) if driven(run) else [*_forces(run), *_load_cell(run), *_settled(run)]
-    return [*forces, *_cushion(run), *_beam(run), *_energy(run)]
+    return [*forces, *_cushion(run), *_beam(run), *_piles(run), *_energy(run)]
 
 
 def _static(run: "Run") -> Iterator[Figure]:
@@ -329,6 +347,36 @@ def _beam(run: "Run") -> Iterator[Figure]:
     for name, energy in zip((BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN), beam_energies(run)):
         if energy is not None:
             yield Figure(name, energy, "J")
+
+
+HEAD_FORCE, TOE_FORCE = "largest force at the head", "largest force at the toe"
+COMPRESSION, TENSION = "largest compressive stress", "largest tensile stress"
+TRANSFERRED, SETTLEMENT, SET = "transferred energy", "largest settlement", "permanent set"
+
+
+def pile_figure(component: str, what: str) -> str:
+    """Name of a figure of a rod or of the ground."""
+    return f"{component}: {what}"
+
+
+def _piles(run: "Run") -> Iterator[Figure]:
+    """Rods and grounds, each under its own name."""
+    series = run.series
+    for rod in named(run, "PileRod"):
+        for what, column in ((HEAD_FORCE, "head.contact_force"), (TOE_FORCE, "toe.contact_force")):
+            if f"{rod}.{column}" in series:
+                yield Figure(pile_figure(rod, what), extreme(run, f"{rod}.{column}")[0], "N")
+        for what, column in ((COMPRESSION, "stress.compression"), (TENSION, "stress.tension")):
+            values = [float(series[name][-1]) for name in series if name.startswith(f"{rod}.{column}[")]
+            if values:
+                yield Figure(pile_figure(rod, what), max(values), "Pa")
+        if f"{rod}.energy.transferred" in series:
+            yield Figure(pile_figure(rod, TRANSFERRED), float(series[f"{rod}.energy.transferred"][-1]), "J")
+    for ground in named(run, "ImpulsiveGround"):
+        if f"{ground}.settlement" in series:
+            yield Figure(pile_figure(ground, SETTLEMENT), extreme(run, f"{ground}.settlement")[0], "m")
+        if f"{ground}.permanent_set" in series:
+            yield Figure(pile_figure(ground, SET), float(series[f"{ground}.permanent_set"][-1]), "m")
 
 
 def _energy(run: "Run") -> Iterator[Figure]:

@@ -66,6 +66,7 @@ LAYOUT = Layout((
         size="support_count"),
     out("support.mean_force.y", "mean of support.force.y over the step: its impulse divided by the step", "N",
         size="support_count"),
+    out("support.work", "work that the moving support has done on the beam", "J", size="support_count", initial_dependencies=()),
     out("radius", "radius of the discs, half their distance", "m", initial_dependencies=("span",)),
     stable_step(),
     out("transmitted_force", "sum of the vertical forces on the discs, positive downwards", "N", initial_dependencies=("force.y",),

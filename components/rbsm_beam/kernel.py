@@ -51,6 +51,7 @@ def evaluate(w, x, k):
     w[V.midspan_start_strain], w[V.energy_strain_estimate] = w[V.midspan_strain], 0.0
     _place(view(w, k, A.support_mean_force_y), view(w, k, A.support_force_y))
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
+    view(w, k, A.support_work)[0], view(w, k, A.support_work)[1] = 0.0, 0.0
     return status
 
 
@@ -83,6 +84,9 @@ def advance(n, dt, w, x, k):
     mean[0], mean[1] = left / n, right / n
     w[V.energy_work_contact] += potential(c, w, x, k) - before
     w[V.energy_work_support] -= dt * (left * speed[0] + right * speed[1])
+    work = view(w, k, A.support_work)
+    work[0] -= dt * left * speed[0]
+    work[1] -= dt * right * speed[1]
 
 
 @kernel
@@ -108,10 +112,13 @@ def settle(c, w, x, k):
     left, right = given[0] - height[0], given[1] - height[1]
     if left == 0.0 and right == 0.0:
         return
+    work = view(w, k, A.support_work)
     for _ in range(2):
         deform(c, 1.0, 0.0, w, x, k)
         at_left, at_right = reactions(c, w, x, k)
         w[V.energy_work_support] -= 0.5 * (left * at_left + right * at_right)
+        work[0] -= 0.5 * left * at_left
+        work[1] -= 0.5 * right * at_right
         _place(height, given)
 
 

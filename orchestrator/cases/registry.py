@@ -13,7 +13,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
 from ..core.system import System, Value
 from ..headlines import References
-from . import full_scale, sonoda1993, static_test
+from . import full_scale, shed_on_piles, sonoda1993, spt, static_test
 from .sand_models import Changes, Layer, Soil, changes, sand_model
 
 Sizes = Mapping[str, Mapping[str, int]]
@@ -52,7 +52,8 @@ def cases() -> dict[str, Case]:
     """All cases by name."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
-    return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values())]}
+    return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values()),
+                                       _shed_on_piles(), _spt()]}
 
 
 def case(name: str) -> Case:
@@ -163,6 +164,42 @@ def _static_test() -> Case:
         couplings={"impulse": "sand first, kinematics extrapolated, mean forces, exchange every 1 ms",
                    "paper": "sand first, inputs held, exchange every 0.01 ms"},
         make=make, references=static_test.references, layer=static_test.LAYER_OF_SAND)
+
+
+def _shed_on_piles() -> Case:
+    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+        return shed_on_piles.shed_system(fmus, sizes["sand"]["discs"], sizes["sand"]["elements"], sizes["rod_left"]["segments"])
+
+    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+        with suppress(ValueError):  # a value that is no number: its FMU says so
+            return shed_on_piles.derived(system, sizes["sand"]["discs"], sizes["beam"]["elements"])
+        return {}
+
+    impact = full_scale.impacts()[shed_on_piles.GIRDERS]
+    segments = {"segments": shed_on_piles.PILE.segments}
+    return Case(
+        shed_on_piles.NAME, "the girders of 8 m on two piles in the ground, assumed",
+        models={"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam",
+                **{f"rod_{side}": "PileRod" for side in shed_on_piles.SIDES},
+                **{f"ground_{side}": "ImpulsiveGround" for side in shed_on_piles.SIDES}},
+        sizes={"sand": {"discs": impact.discs, "elements": impact.elements}, "beam": {"elements": impact.elements},
+               **{f"rod_{side}": segments for side in shed_on_piles.SIDES}},
+        couplings={"impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the toes, exchange every "
+                   "0.005 ms"},
+        make=make, one_size=("sand.elements", "beam.elements"), derived=derived, layer=full_scale.layer(impact))
+
+
+def _spt() -> Case:
+    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+        return spt.spt_system(fmus, coupling)
+
+    return Case(
+        spt.NAME, "Uto et al., table 1: standard penetration test, hammer, rod and ground",
+        models={"hammer": "Hammer", "rod": "PileRod", "ground": "ImpulsiveGround"},
+        sizes={"rod": {"segments": spt.SEGMENTS}},
+        couplings={"waves": "rod last, waves at head and toe, exchange every 0.1 ms",
+                   "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms"},
+        make=make, derived=lambda system, sizes: spt.partner_stiffness(system))
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:

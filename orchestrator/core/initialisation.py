@@ -124,18 +124,24 @@ def _forget_warnings(slave: Slave, since: int) -> None:
 
 
 def _stability(plan: Plan, slave: Slave) -> list[Problem]:
-    """Whether the component's internal step exceeds the largest stable one that it publishes."""
-    ports = plan.descriptions[slave.name].ports
+    """Whether the component's steps exceed the largest ones that it publishes."""
+    ports, communication = plan.descriptions[slave.name].ports, plan.system.step(slave.name)
+    found = []
+    if "step_limit" in ports and communication > (limit := _value(slave, ports["step_limit"])) * (1.0 + 1e-9):
+        found.append(Problem(slave.name, f"the communication step of {communication:.6g} s exceeds step_limit = {limit:.6g} s, the "
+                             "longest that its ports bear", "reduce the exchange step, or use a port of waves"))
     if "stable_step" not in ports or "internal_step" not in ports:
-        return []
-    values = np.zeros(1)
-    slave.get(np.array([ports["stable_step"].reference], np.uint32), values)
-    stable = float(values[0])
-    slave.get(np.array([ports["internal_step"].reference], np.uint32), values)
-    internal, communication = float(values[0]), plan.system.step(slave.name)
+        return found
+    stable, internal = _value(slave, ports["stable_step"]), _value(slave, ports["internal_step"])
     longest = min(internal, communication)
     if longest <= stable:
-        return []
-    return [Problem(f"{slave.name}.internal_step", f"steps of {longest:.6g} s (internal_step {internal:.6g} s, communication step "
-                    f"{communication:.6g} s) exceed stable_step = {stable:.6g} s",
+        return found
+    return [*found, Problem(f"{slave.name}.internal_step", f"steps of {longest:.6g} s (internal_step {internal:.6g} s, "
+                    f"communication step {communication:.6g} s) exceed stable_step = {stable:.6g} s",
                     f"set {slave.name}.internal_step to less than {stable:.3g} s, or allow instability")]
+
+
+def _value(slave: Slave, port: Port) -> float:
+    values = np.zeros(1)
+    slave.get(np.array([port.reference], np.uint32), values)
+    return float(values[0])

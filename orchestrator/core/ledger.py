@@ -48,8 +48,8 @@ class Accounts:
         """Works and coupling energy of all bonds in rows of snapshots; the times (s) are needed for messages only."""
         found = np.zeros((len(rows), self.columns))
         for i, (bond, channels) in enumerate(zip(self._plan.bonds, self._channels)):
-            taken = _sums(rows[:, self._snapshots.taken][:, channels])
-            given_back = (_sums(rows[:, self._snapshots.given_back][:, channels]) if bond.work is None
+            taken = bond.sign * _sums(rows[:, self._snapshots.taken][:, channels])
+            given_back = (bond.sign * _sums(rows[:, self._snapshots.given_back][:, channels]) if bond.work is None
                           else rows[:, self._snapshots.place[bond.work.name]] - self._at_start[i])
             found[:, 3 * i:3 * i + 3] = np.stack((taken, given_back, taken + given_back), axis=1)
             self._watch(bond.name, taken + given_back, times)

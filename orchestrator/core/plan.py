@@ -53,6 +53,7 @@ class Bond:
         connection that shows it, ``seen`` is -1, and ``work`` is there.
     force, position: places among the outputs: the force that the giver computed, the position of the taker.
     work: output of the giver that counts the energy brought into it.
+    sign: -1 where force and position count in opposite directions, else 1.
     """
 
     name: str
@@ -61,6 +62,7 @@ class Bond:
     force: NDArray[np.int64]
     position: NDArray[np.int64]
     work: End | None
+    sign: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -343,7 +345,7 @@ class _Planner:
         seen = [] if work else self._connected(where, links, position, bond.giver, "the ledger takes the displacement that the "
                                                "giver was shown; or name the giver's work output")
         self._check_energy_units(where, force, position, work)
-        return _BondEnds(force, position, given, seen, work[0] if work else None)
+        return _BondEnds(force, position, given, seen, work[0] if work else None, -1.0 if bond.opposed else 1.0)
 
     def _connected(self, where: str, links: list[tuple[End, End]], sources: list[End], component: str, why: str) -> list[End]:
         """The inputs of ``component`` that the sources feed."""
@@ -377,6 +379,7 @@ class _BondEnds(NamedTuple):
     given: list[End]
     seen: list[End]
     work: End | None
+    sign: float
 
 
 def _longer(timing: Timing, most: int) -> str:
@@ -392,7 +395,8 @@ def _bond(name: str, ends: _BondEnds, output: Mapping[str, int], given: Mapping[
         return np.array([table[end.name] for end in named], np.int64)
 
     seen = places(given, ends.seen) if ends.seen else np.full(len(ends.force), -1, np.int64)
-    return Bond(name, places(given, ends.given), seen, places(output, ends.force), places(output, ends.position), ends.work)
+    return Bond(name, places(given, ends.given), seen, places(output, ends.force), places(output, ends.position), ends.work,
+                ends.sign)
 
 
 def _split(text: str) -> tuple[str, str]:

@@ -88,6 +88,7 @@ class PowerBond(_Data):
         and direction (or angle) in which it acts.
     work: output of ``giver`` that counts the energy which this interface brings into it. Without it, the ledger takes the
         force that the giver computed times the displacement that it was shown.
+    opposed: force and position count in opposite directions, as the compression at a toe and its way downwards do.
     """
 
     giver: str
@@ -95,6 +96,7 @@ class PowerBond(_Data):
     taker: str
     position: list[str] = Field(min_length=1)
     work: str | None = None
+    opposed: bool = False
 
 
 class EnergyAlarm(_Data):

@@ -11,7 +11,7 @@ from components.component import ComponentError
 from ..comparison import known_of
 from ..core.errors import InputRefused, Problem
 from ..core.reading import Run
-from ..headlines import driven, roles
+from ..headlines import driven, named, roles
 
 Tell = Callable[[str], None]
 """Shows a line to the user."""
@@ -68,7 +68,7 @@ def draw_all(run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell 
 
 def _pictures(run: Run) -> list[_Picture]:
     """The pictures of the components that take part."""
-    from . import curves, sand
+    from . import curves, piles, sand
 
     known, who = known_of(run), roles(run)
     force, depth = [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], [f"{who.sand}.penetration"]
@@ -83,9 +83,15 @@ def _pictures(run: Run) -> list[_Picture]:
     ]
     of_beam = [] if who.beam is None else [
         _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"])]
-    of_rock = [] if who.rock is None else [
-        _Picture("energy", partial(curves.energy, run), [f"{who.rock}.energy.kinetic"])]
-    return of_sand + of_beam + of_rock
+    striking = [who.rock] if who.rock else named(run, "Hammer")
+    of_rock = [] if not striking else [
+        _Picture("energy", partial(curves.energy, run), [f"{name}.energy.kinetic" for name in striking])]
+    rods, grounds = named(run, "PileRod"), named(run, "ImpulsiveGround")
+    of_piles = [] if not rods else [
+        _Picture("piles", partial(piles.blow, run), [
+            *(f"{rod}.{end}" for rod in rods for end in ("head.contact_force", "head.zv", "toe.contact_force")),
+            *(f"{ground}.settlement" for ground in grounds)])]
+    return of_sand + of_beam + of_piles + of_rock
 
 
 def _make(folder: Path) -> None:

@@ -159,6 +159,17 @@ _PARTS = (
     ("lost in the beam", "#5c3a2e", (("beam", "energy.damping"),)),
 )
 """Name, colour and energies of each layer; the components by their role."""
+_OF_PILES: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
+    ("hammer", "#55708c", (("Hammer", "energy.kinetic"), ("Hammer", "energy.gravity"), ("Hammer", "energy.cushion"))),
+    ("rods, kinetic and elastic", "#b7a6c9", (("PileRod", "energy.kinetic"), ("PileRod", "energy.elastic"))),
+    ("ground, kinetic and elastic", "#a9b59a", (("PileRod", "energy.soil"), ("ImpulsiveGround", "energy.kinetic"),
+                                                ("ImpulsiveGround", "energy.elastic"), ("ImpulsiveGround", "energy.preload"))),
+    ("lost at shaft and toe", "#8a6d4b", (("PileRod", "energy.plastic"), ("PileRod", "energy.damping"),
+                                          ("PileRod", "energy.contact"), ("ImpulsiveGround", "energy.plastic"),
+                                          ("ImpulsiveGround", "energy.damping"))),
+    ("lost in the hammer", "#5c3a2e", (("Hammer", "energy.cushion_loss"), ("Hammer", "energy.contact"))),
+)
+"""The same for what may be there several times; the components by their model."""
 _SHOWN = 1e-4
 """A layer is left out if it never reaches this part of the sum."""
 
@@ -199,5 +210,11 @@ def _layers(run: Run) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
             parts = [values - min(float(values.min()), 0.0) if "gravity" not in name else values - values.min()
                      for values in columns]
             found.append((name, colour, np.sum(parts, axis=0)))
+    for name, colour, several in _OF_PILES:
+        columns = [run.series[f"{owner}.{output}"] for model, output in several for owner in h.named(run, model)
+                   if f"{owner}.{output}" in run.series]
+        if columns:
+            summed = np.sum(columns, axis=0)
+            found.append((name, colour, summed - min(float(summed.min()), 0.0)))
     total = max((float(values.max()) for _, _, values in found), default=0.0)
     yield from (layer for layer in found if layer[2].max() > _SHOWN * total)

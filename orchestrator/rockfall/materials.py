@@ -8,7 +8,7 @@ from typing import Any
 
 from ..core.errors import Problem
 from ..core.names import nearest
-from .places import Places
+from ..input_files.places import Places
 from .site import Material, Scatter
 
 QUANTITIES = ("strength", "stiffness", "hardening", "friction", "resistance", "tilt", "roughness")

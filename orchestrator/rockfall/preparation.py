@@ -1,6 +1,6 @@
 """From a site to a campaign. Everything that is wrong with the site is collected before it is refused."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,24 +8,25 @@ from typing import Any
 import numpy as np
 
 from components.catalogue import component
-from components.component import ComponentError, Instance, value_problems
+from components.component import ComponentError, Instance
 from components.slope_rockfall.refusals import FOLDED, cell_problems, common_fault
 
 from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
+from ..input_files.form import first, formed, read_toml
+from ..input_files.places import Path as Key
+from ..input_files.places import Places
+from ..input_files.setting import Setting, setter
 from . import materials as ground
 from .campaign import Campaign, campaign
-from .places import Path as Key
-from .places import Places
 from .profile import Node, read_nodes, surface, with_ground
-from .site import Barrier, Line, Profile, Site, read_toml, site_from
+from .site import Barrier, Line, Profile, Site
 
 COMPONENT = "SlopeRockfall"
 MOST_MEMORY = 4 << 30
 """Bytes for the records of all trials."""
 SKY = 1000.0
 """Height (m) of a search line that is given by its x alone, and of a barrier's line, above the surface."""
-_SHOWN = 20
 _SPHERE = 4.0 / 3.0 * np.pi
 """Volume of a sphere / r3."""
 MODEL = {"gravity": "gravity", "truncation": "truncation", "area_factor": "area_factor", "tilt_cap": "tilt_cap",
@@ -62,7 +63,7 @@ def prepare(file: Path, trials: int | None = None, seed: int | None = None) -> P
     data, where = read_toml(file)
     data = {**data, **{key: value for key, value in (("trials", trials), ("seed", seed)) if value is not None}}
     problems: list[Problem] = []
-    site = site_from(data, where, problems)
+    site = formed(Site, data, where, problems)
     if site is None:
         _profile_too(data, file, where, problems)
         raise InputRefused(problems)
@@ -71,18 +72,11 @@ def prepare(file: Path, trials: int | None = None, seed: int | None = None) -> P
     problems += [*_rock_problems(site, where), *_line_problems(site, nodes, where)]
     instance = _instance(site, nodes, known, where, problems) if len(nodes) > 1 else None
     if problems or instance is None:
-        raise InputRefused(_first(problems))
+        raise InputRefused(first(problems))
     used = {str(node.material): known[str(node.material)] for node in nodes[:-1]}
     made = Prepared(file, site, nodes, used, instance, _campaign(site, nodes, instance))
     _check_memory(made.campaign)
     return made
-
-
-def _first(problems: list[Problem]) -> list[Problem]:
-    """As many problems as a person reads, each once."""
-    each = list(dict.fromkeys(problems))
-    more = len(each) - _SHOWN
-    return each if more <= 0 else [*each[:_SHOWN], Problem(f"{more} more", "are not listed", "correct these first")]
 
 
 def _profile_too(data: Mapping[str, Any], file: Path, where: Places, problems: list[Problem]) -> None:
@@ -158,7 +152,7 @@ def _instance(site: Site, nodes: Sequence[Node], known: Mapping[str, ground.Mate
     except ComponentError as error:
         problems += [Problem(where.of(("profile",)), text) for text in error.problems]
         return None
-    setting = _setter(made, where, problems)
+    setting = setter(made, where, problems)
     for name, value, key in _settings(site):
         setting(name, value, key)
     for name in sorted({str(node.material) for node in nodes[:-1]} & known.keys()):
@@ -176,23 +170,6 @@ def _instance(site: Site, nodes: Sequence[Node], known: Mapping[str, ground.Mate
         problems += [Problem(where.of(("start",)), text, "in the file: start.y, or none to start on the slope")
                      for text in error.problems]
     return made
-
-
-def _setter(made: Instance, where: Places, problems: list[Problem]) -> Callable[[str, Any, Key], bool]:
-    """Sets a parameter of the component, or says what is wrong with the value at its place in the file."""
-    variables = {variable.name: variable for variable in made.component.layout.variables}
-
-    def set_(name: str, value: Any, key: Key) -> bool:
-        if isinstance(value, str) and value not in variables[name].choices:
-            problems.append(Problem(where.of(key), f"{name} = {value!r} is no choice", nearest(value, variables[name].choices)))
-            return False
-        number = float(variables[name].choices.index(value) + 1) if isinstance(value, str) else float(value)
-        found = value_problems(variables[name], name, number)
-        problems.extend(Problem(where.of(key), text) for text in found)
-        if not found and variables[name].size is None:
-            made[name] = number
-        return not found
-    return set_
 
 
 def _settings(site: Site) -> Iterable[tuple[str, Any, Key]]:
@@ -224,7 +201,7 @@ def _settings(site: Site) -> Iterable[tuple[str, Any, Key]]:
 
 
 def _set_material(made: Instance, name: str, material: ground.Material, nodes: Sequence[Node],
-                  setting: Callable[[str, Any, Key], bool]) -> None:
+                  setting: Setting) -> None:
     """The parameters of all cells of a material; values out of range are told once."""
     cells = np.array([node.material == name for node in nodes[:-1]])
     for parameter, value in ground.parameters(material).items():

@@ -10,7 +10,7 @@ from typing import Any
 from ..core.errors import Problem
 from ..core.names import nearest
 from ..core.values import finite_number
-from .places import Places
+from ..input_files.places import Places
 from .site import Ground, Profile
 
 FLAT = 0.01

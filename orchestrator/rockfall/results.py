@@ -10,7 +10,7 @@ figures/              pictures
 """
 
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -32,6 +32,7 @@ from components.slope_rockfall.trajectory import (
     UNFINISHED,
 )
 
+from ..columns import result_column, result_table
 from ..core.results import RUN, SUMMARY, Figure, write_json
 from .campaign import Campaign, Records
 from .materials import described
@@ -176,59 +177,46 @@ def _facts(made: Prepared, wall_time: float, workers: int) -> dict[str, Any]:
             "versions": {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}}
 
 
-def _column(name: str, values: Any, unit: str, description: str) -> tuple[Any, Any]:
-    import pyarrow as pa
-
-    array = pa.array(values, from_pandas=True)
-    return array, pa.field(name, array.type, metadata={"unit": unit, "description": description})
-
-
-def _table(columns: Sequence[tuple[Any, Any]]) -> Any:
-    import pyarrow as pa
-
-    return pa.table([array for array, _ in columns], schema=pa.schema([field for _, field in columns]))
-
-
 def _trials(given: Campaign, records: Records) -> Any:
     """A row for each trial; what has no value (a line that is not passed) is null."""
     import pyarrow as pa
 
     ends, outcomes = records.outcomes[:, OUTCOME.end].astype(int), records.outcomes
     by = outcomes[:, OUTCOME.barrier].astype(int)
-    columns = [_column("trial", np.arange(given.trials), "1", "number of the trial: it replays by itself"),
-               _column("end", pa.array([ENDS[code] for code in ends]).dictionary_encode(), "1", "how the trial ended"),
-               _column("barrier", [given.names[i] if i >= 0 else None for i in by], "1", "the barrier that stopped it")]
+    columns = [result_column("trial", np.arange(given.trials), "1", "number of the trial: it replays by itself"),
+               result_column("end", pa.array([ENDS[code] for code in ends]).dictionary_encode(), "1", "how the trial ended"),
+               result_column("barrier", [given.names[i] if i >= 0 else None for i in by], "1", "the barrier that stopped it")]
     for name, column, unit, words in (
             ("x", OUTCOME.x, "m", "place of the centre at the end, to the right"), ("y", OUTCOME.y, "m", "the same, upwards"),
             ("time", OUTCOME.time, "s", "time at the end"),
             ("largest.height", OUTCOME.height, "m", "height above the slope, normal to it"),
             ("largest.speed", OUTCOME.speed, "m/s", "speed"), ("largest.energy", OUTCOME.kinetic, "J", "kinetic energy"),
             ("limit_speed", OUTCOME.limit_speed, "m/s", "V_lim of the trial")):
-        columns.append(_column(name, outcomes[:, column], unit, words))
-    columns += [_column(name, outcomes[:, column].astype(np.int64), "1", words) for name, column, words in (
+        columns.append(result_column(name, outcomes[:, column], unit, words))
+    columns += [result_column(name, outcomes[:, column].astype(np.int64), "1", words) for name, column, words in (
         ("impacts", OUTCOME.impacts, "number of impacts"), ("events", OUTCOME.events, "number of impacts and changes of motion"))]
     for i, name in enumerate(given.names):
         columns += _passage_columns(name, records.passages[:, i])
-    return _table(columns)
+    return result_table(columns)
 
 
 def _passage_columns(name: str, rows: NDArray[np.float64]) -> Iterator[tuple[Any, Any]]:
     count = rows[:, PASSAGE.count].astype(np.int64)
-    yield _column(f"{name}.passages", count, "1", f"passages of {name}")
+    yield result_column(f"{name}.passages", count, "1", f"passages of {name}")
     for column, what, unit in ((PASSAGE.time, "time", "s"), (PASSAGE.x, "x", "m"), (PASSAGE.y, "y", "m"),
                                (PASSAGE.height, "height", "m"), (PASSAGE.speed, "speed", "m/s"),
                                (PASSAGE.omega, "angular_velocity", "rad/s"), (PASSAGE.kinetic, "energy", "J")):
         values = np.where(count > 0, rows[:, column], np.nan)
-        yield _column(f"{name}.{what}", values, unit, f"{what} at the first passage of {name}")
+        yield result_column(f"{name}.{what}", values, unit, f"{what} at the first passage of {name}")
 
 
 def _envelopes(made: Prepared, records: Records, along: dict[str, dict[str, NDArray[np.float64]]]) -> Any:
     stations = made.campaign.stations
-    columns = [_column("x", stations, "m", "place of the station"),
-               _column("surface", [surface(list(made.nodes), x) for x in stations], "m", "height of the profile there"),
-               _column("passing", (records.peaks[:, :, 0] >= 0.0).sum(axis=0), "1", "trials whose rock comes by")]
+    columns = [result_column("x", stations, "m", "place of the station"),
+               result_column("surface", [surface(list(made.nodes), x) for x in stations], "m", "height of the profile there"),
+               result_column("passing", (records.peaks[:, :, 0] >= 0.0).sum(axis=0), "1", "trials whose rock comes by")]
     for name, _, unit in ALONG:
         words = {which: "largest" if which == "max" else f"{which[1:]} %" for which in along[name]}
-        columns += [_column(f"{name}.{which}", values, unit, f"{name}: {words[which]} of the rocks that come by")
+        columns += [result_column(f"{name}.{which}", values, unit, f"{name}: {words[which]} of the rocks that come by")
                     for which, values in along[name].items()]
-    return _table(columns)
+    return result_table(columns)

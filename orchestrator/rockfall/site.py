@@ -1,30 +1,17 @@
 """A site as data: rock, start, profile, ground, search lines and barriers. Form only: preparation.py checks the meaning."""
 
-import re
-import tomllib
-from collections.abc import Mapping
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
-from ..core.errors import InputRefused, Problem
-from ..core.names import nearest
-from .places import Places, line_and_column, places
+from ..input_files.form import Data, NotNegative, Number, Positive
 
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Distribution = Literal["truncated_normal", "uniform", "lognormal", "triangular"]
 
 MOST_TRIALS = 2**31 - 1
 
 
-class _Data(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Rock(_Data):
+class Rock(Data):
     """Mass, or density of a sphere; shape says what the moment of inertia follows from."""
 
     radius: Positive
@@ -34,7 +21,7 @@ class Rock(_Data):
     moment_of_inertia: Positive | None = None
 
 
-class Start(_Data):
+class Start(Data):
     """Of the rock's centre (m, m/s, rad/s); without y it starts in contact with the slope."""
 
     x: Number
@@ -43,7 +30,7 @@ class Start(_Data):
     angular_velocity: Number = 0.0
 
 
-class Profile(_Data):
+class Profile(Data):
     """Nodes ``[x, y]`` or ``[x, y, material]`` from left to right, or a file with them (CSV, DXF).
 
     layers: those of a DXF file that are read; all by default. end: x (m) at which a trial ends, by default that of the last node.
@@ -55,7 +42,7 @@ class Profile(_Data):
     end: Number | None = None
 
 
-class Ground(_Data):
+class Ground(Data):
     """The material between two x (m); without them, of the whole profile."""
 
     material: str
@@ -63,14 +50,14 @@ class Ground(_Data):
     right: Annotated[Number | None, Field(alias="to")] = None
 
 
-class Scatter(_Data):
+class Scatter(Data):
     """Mean and standard deviation."""
 
     mean: Number
     deviation: NotNegative = 0.0
 
 
-class Material(_Data):
+class Material(Data):
     """What a cell is made of; with ``like``, only what differs from that material. Names and units: those of SlopeRockfall."""
 
     like: str | None = None
@@ -82,7 +69,7 @@ class Material(_Data):
     resistance: Number | None = None
     tilt: Scatter | None = None
     roughness: Scatter | None = None
-    source: dict[str, str] = {}
+    source: dict[str, str] = Field(default_factory=dict)
 
 
 class LimitSpeed(Scatter):
@@ -91,14 +78,14 @@ class LimitSpeed(Scatter):
     distribution: Distribution = "truncated_normal"
 
 
-class Distributions(_Data):
+class Distributions(Data):
     """Of R_o and K_s."""
 
     roughness: Distribution = "truncated_normal"
     tilt: Distribution = "truncated_normal"
 
 
-class Line(_Data):
+class Line(Data):
     """A search line between two points, or upwards from the surface at x."""
 
     name: Annotated[str, Field(min_length=1)]
@@ -106,7 +93,7 @@ class Line(_Data):
     x: Number | None = None
 
 
-class Barrier(_Data):
+class Barrier(Data):
     """Upright on the surface. It holds a rock of at most ``capacity`` (J) whose centre passes below height - free_border (m)."""
 
     name: Annotated[str, Field(min_length=1)]
@@ -116,7 +103,7 @@ class Barrier(_Data):
     free_border: NotNegative | None = None
 
 
-class Site(_Data):
+class Site(Data):
     """All that a campaign is made of. hypercube: trials of a Latin hypercube, 0: independent trials. model: other parameters of
     SlopeRockfall by name. stations: places along the profile at which envelopes are kept.
     """
@@ -129,82 +116,11 @@ class Site(_Data):
     rock: Rock
     start: Start
     profile: Profile
-    ground: list[Ground] = []
-    material: dict[str, Material] = {}
+    ground: list[Ground] = Field(default_factory=list)
+    material: dict[str, Material] = Field(default_factory=dict)
     limit_speed: LimitSpeed
     distribution: Distributions = Distributions()
-    model: dict[str, bool | float | str] = {}
-    line: list[Line] = []
-    barrier: list[Barrier] = []
+    model: dict[str, bool | float | str] = Field(default_factory=dict)
+    line: list[Line] = Field(default_factory=list)
+    barrier: list[Barrier] = Field(default_factory=list)
     stations: Annotated[int, Field(ge=2, le=100_000)] = 201
-
-
-def read_toml(path: Path) -> tuple[dict[str, Any], Places]:
-    """Content of a TOML file, and where each value stands.
-
-    Raises:
-        InputRefused: it cannot be read, or is not TOML.
-    """
-    try:
-        text = path.read_text(encoding="utf-8")
-        return tomllib.loads(text), places(str(path), text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
-    except UnicodeDecodeError as error:
-        raise InputRefused([Problem(f"{path}, {_undecodable(path, error)}", "is not UTF-8 text", "save it as UTF-8")]) from error
-    except OSError as error:
-        raise InputRefused([Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]) from error
-
-
-def _undecodable(path: Path, error: UnicodeDecodeError) -> str:
-    before = path.read_bytes()[:error.start].decode("utf-8")
-    return line_and_column(before, len(before))
-
-
-def site_from(data: Mapping[str, Any], where: Places, problems: list[Problem]) -> Site | None:
-    """A site from plain data; None, and the reasons in ``problems``, if its form is wrong."""
-    try:
-        return Site.model_validate(data)
-    except ValidationError as error:
-        found: dict[tuple[Any, ...], list[str]] = {}
-        for entry in error.errors():
-            found.setdefault(_key(entry["loc"]), []).append(_sentence(entry))
-        problems += [Problem(where.of(key), f"{_name(key)}: {' or '.join(dict.fromkeys(texts))}", _remedy(key, texts))
-                     for key, texts in found.items()]
-        return None
-
-
-def _key(location: tuple[Any, ...]) -> tuple[Any, ...]:
-    return tuple(part for part in location if part not in ("bool", "float", "str"))
-
-
-def _name(key: tuple[Any, ...]) -> str:
-    """``barrier[1].height``: elements are counted from 1 for people."""
-    text = ""
-    for part in key:
-        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if text else str(part)
-    return text
-
-
-def _sentence(error: Any) -> str:
-    if error["type"] == "extra_forbidden":
-        return "there is no such key"
-    if error["type"] == "missing":
-        return "is missing"
-    given = "" if isinstance(error["input"], dict | list) else f" (given: {error['input']!r})"
-    message = re.sub(r"a valid dictionary.*", "a table", str(error["msg"]))
-    return message[0].lower() + message[1:] + given
-
-
-def _remedy(key: tuple[Any, ...], texts: list[str]) -> str:
-    if "there is no such key" not in texts:
-        return ""
-    return nearest(str(key[-1]), known_keys(key[0] if len(key) > 1 else ""))
-
-
-def known_keys(section: str) -> list[str]:
-    """Keys of a section, or of the whole file."""
-    owners: dict[str, type[BaseModel]] = {
-        "rock": Rock, "start": Start, "profile": Profile, "ground": Ground, "material": Material, "limit_speed": LimitSpeed,
-        "distribution": Distributions, "line": Line, "barrier": Barrier}
-    return [entry.alias or name for name, entry in owners.get(section, Site).model_fields.items()]

@@ -22,6 +22,8 @@ from .running import Done, run_all
 from .study import INTERRUPTED, Outcomes, Study
 
 PAPERS = {"sonoda1993": "Sonoda, Satoh, Ishikawa, Ohta 1993",
+          "mogami1973": "Mogami, Tamura 1973, settlement of sandy ground under an impulsive load",
+          "uto1974": "Uto, Fuyuki, Kondo, Yamada, about 1974",
           "ushiro": "Ushiro, A study on computer simulation of rockfalls (DRSP)"}
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"

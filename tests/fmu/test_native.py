@@ -22,7 +22,8 @@ from .conftest import HERE
 from .host import ERROR, OK, Host
 
 DRIVE = {"RBSMBeam": ("force.y[2]", -1e3), "FallingRock": ("force.x", 3.0), "SandCushion": ("rock.velocity.y", -1.0),
-         "Probe": ("inflow", 0.5), "SlopeRockfall": ("force.x", 0.0)}
+         "Probe": ("inflow", 0.5), "SlopeRockfall": ("force.x", 0.0), "Hammer": ("head.wave", 1e3), "PileRod": ("head.force", 1e4),
+         "ImpulsiveGround": ("force.y", -5e3)}
 """An input of each component, and a value that makes it move."""
 STEPS = 20
 

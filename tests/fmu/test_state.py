@@ -18,7 +18,7 @@ def fmus(request):
     return request.getfixturevalue(f"{request.param}_fmus")
 
 
-DRIVE = {"RBSMBeam": {"force.y[2]": -1e3}}
+DRIVE = {"RBSMBeam": {"force.y[2]": -1e3}, "ImpulsiveGround": {"force.y": -5e3}}
 """What makes a component move that rests by itself."""
 
 CONTINUE = """

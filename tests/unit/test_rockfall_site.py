@@ -8,9 +8,9 @@ import pytest
 
 import orchestrator
 from orchestrator.core.errors import InputRefused
+from orchestrator.input_files.places import places
 from orchestrator.rockfall import profile
 from orchestrator.rockfall.materials import QUANTITIES, shipped, source_of
-from orchestrator.rockfall.places import places
 from orchestrator.rockfall.preparation import prepare
 
 HEAD = """\

@@ -1,0 +1,59 @@
+"""Variables of the hammer. Equations, frame and signs: README.md beside this file."""
+
+from ..ports import Layout, State, choice, inp, out, param, switch
+from ..stepping import internal_step, stable_step
+from ..units import cm, cm2
+
+KINEMATICS, WAVES = 1, 2
+
+_UTO = "Uto et al. 1974, table 1: standard penetration test"
+
+LAYOUT = Layout((
+    param("mass", "mass of the ram", 63.5, "kg", minimum=1e-6, source=_UTO),
+    param("drop_height", "height of fall", 75 * cm, "m", minimum=0.0, source=_UTO),
+    param("efficiency", "part of the energy of the fall that the ram has when it strikes", 1.0, "1", minimum=0.0, maximum=1.0),
+    param("gravity", "acceleration of gravity", 9.80665, "m/s2", minimum=0.0),
+    switch("weight", "whether the ram's weight acts during the blow too", True),
+    param("cushion.stiffness", "stiffness of the hammer cushion; 0: none, ram and head are rigid", 0.0, "N/m", minimum=0.0),
+    param("cushion.restitution", "coefficient of restitution of the cushion: it gives back its square of the energy", 1.0, "1",
+          minimum=0.01, maximum=1.0),
+    param("gap", "distance between ram and head at the start; the ram has its full velocity there", 0.0, "m", minimum=0.0),
+    param("blow.interval", "time from blow to blow: the ram is put on the head again and has its full velocity; 0: one blow", 0.0,
+          "s", minimum=0.0),
+    choice("port", "kinematics: takes position and velocity of the head; waves: takes impedance and wave of the rod. Both give the "
+           "mean force of the step", ("kinematics", "waves"), "waves"),
+    internal_step(1e-6),
+    inp("head.position", "position of the head, downwards; for the port kinematics", "m"),
+    inp("head.velocity", "velocity of the head, downwards, constant in the step; for the port kinematics", "m/s"),
+    inp("head.wave", "wave that comes out of the rod, mean over the step; for the port waves", "N"),
+    inp("head.impedance", "impedance of the rod; for the port waves", "N.s/m", 5.8 * cm2 * 7850.0 * 5120.0, minimum=0.0,
+        source=_UTO),
+    out("force", "force of the hammer on the head, mean over the step, downwards: compression positive", "N",
+        initial_dependencies=()),
+    out("end_force", "force of the hammer on the head at the end of the step", "N", initial_dependencies=()),
+    out("position", "position of the ram, downwards; it touches the head where it equals head.reached", "m",
+        initial_dependencies=("gap", "head.position", "port")),
+    out("velocity", "velocity of the ram, downwards", "m/s", initial_dependencies=("drop_height", "efficiency", "gravity")),
+    out("head.reached", "position of the head as the hammer knows it, downwards", "m",
+        initial_dependencies=("head.position", "port")),
+    out("impact_velocity", "velocity with which the ram strikes, downwards", "m/s",
+        initial_dependencies=("drop_height", "efficiency", "gravity")),
+    out("cushion.compression", "compression of the cushion", "m", initial_dependencies=()),
+    out("touching", "1 while the hammer presses on the head, else 0", initial_dependencies=()),
+    out("separation", "time at which the ram last left the head; -1 before", "s", initial_dependencies=()),
+    out("blows", "number of blows that have begun", initial_dependencies=()),
+    stable_step(),
+    out("energy.kinetic", "kinetic energy of the ram", "J"),
+    out("energy.gravity", "potential energy of the ram, zero at position 0", "J"),
+    out("energy.cushion", "elastic energy in the cushion", "J"),
+    out("energy.supplied", "energy supplied by the blows after the first", "J"),
+    out("energy.cushion_loss", "energy dissipated in the cushion", "J"),
+    out("energy.contact", "energy lost between rigid ram and head: the error of the scheme when they separate", "J"),
+    out("energy.work.head", "work that the head has done on the hammer: negative where it is driven", "J"),
+    out("energy.residual", "energies + losses - work - supplied, minus their sum at the start", "J"),
+    out("energy.start", "kinetic + gravity at the start", "J"),
+), (
+    State("largest", lambda sizes: 1),
+    State("ends", lambda sizes: 1),
+))
+"""Hidden: ``largest`` compression of the cushion in this blow (m), ``ends`` force (N) at the end of the last internal step."""

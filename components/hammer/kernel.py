@@ -1,0 +1,175 @@
+"""The ram on its cushion against the head of a rod, by the implicit midpoint rule."""
+
+import math
+
+from ..compilation import kernel
+from ..component import OK
+from ..ports import view
+from ..stepping import substep_count, substep_length
+from ..wave_port import TOGETHER, rigid_mass
+from .cushion import cushion_force, met, steeper
+from .declarations import KINEMATICS, LAYOUT, WAVES
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+RIGID_NEEDS_WAVES, NO_IMPEDANCE, DIVERGED = 1, 2, 3
+UNBOUNDED_STEP = 1e6
+"""Published as stable step (s): the midpoint rule is stable with every step."""
+_ROUNDING = 1e-9
+
+
+@kernel
+def initialise(w, x, k):
+    """The ram above or on the head, with the velocity of its fall."""
+    if w[V.port] == KINEMATICS and w[V.cushion_stiffness] == 0.0:
+        return RIGID_NEEDS_WAVES
+    view(x, k, A.largest)[0], view(x, k, A.ends)[0] = 0.0, 0.0
+    w[V.impact_velocity] = math.sqrt(2.0 * w[V.gravity] * w[V.drop_height] * w[V.efficiency])
+    w[V.velocity], w[V.position] = w[V.impact_velocity], -w[V.gap]
+    w[V.touching] = 1.0 if w[V.gap] == 0.0 and w[V.impact_velocity] > 0.0 else 0.0
+    w[V.separation], w[V.blows], w[V.stable_step] = -1.0, 1.0, UNBOUNDED_STEP
+    w[V.force], w[V.end_force] = 0.0, 0.0
+    w[V.energy_supplied], w[V.energy_cushion_loss], w[V.energy_contact], w[V.energy_work_head] = 0.0, 0.0, 0.0, 0.0
+    return OK
+
+
+@kernel
+def evaluate(w, x, k):
+    """Outputs at the start. Where the head is given, the ram starts above it."""
+    w[V.head_reached] = 0.0
+    if w[V.port] == KINEMATICS:
+        w[V.head_reached] = w[V.head_position]
+    w[V.position] = w[V.head_reached] - w[V.gap]
+    w[V.energy_start] = 0.0
+    publish(w, x, k)
+    w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
+    return OK
+
+
+@kernel
+def step(t, h, w, x, k):
+    """Advance by h (s) against a head with the given motion, or against the given wave."""
+    if w[V.port] == WAVES and w[V.head_impedance] <= 0.0:
+        return NO_IMPEDANCE
+    if w[V.port] == KINEMATICS:
+        _place_head(w, x, k)
+    n = substep_count(h, w[V.internal_step])
+    dt = substep_length(h, n, w[V.internal_step])
+    impulse = 0.0
+    for i in range(n):
+        now = t + i * dt
+        if w[V.blow_interval] > 0.0 and now >= w[V.blows] * w[V.blow_interval] - _ROUNDING * dt:
+            _strike_again(w, x, k)
+        impulse += dt * (_rigid(now, dt, w) if w[V.cushion_stiffness] == 0.0 else _cushioned(now, dt, w, x, k))
+    w[V.force] = impulse / (n * dt)
+    if w[V.cushion_stiffness] == 0.0:
+        w[V.end_force] = w[V.touching] * max(0.0, w[V.head_impedance] * w[V.velocity] - w[V.head_wave])
+    else:
+        w[V.end_force] = view(x, k, A.ends)[0]
+    publish(w, x, k)
+    return OK if math.isfinite(w[V.position] + w[V.force] + w[V.energy_work_head]) else DIVERGED
+
+
+@kernel
+def _compression(w):
+    return w[V.position] - w[V.head_reached]
+
+
+@kernel
+def _cushion_energy(w, x, k):
+    """Elastic energy in the cushion (J): what it would give back."""
+    if w[V.cushion_stiffness] == 0.0:
+        return 0.0
+    stiffness, restitution = w[V.cushion_stiffness], w[V.cushion_restitution]
+    force = cushion_force(_compression(w), view(x, k, A.largest)[0], stiffness, restitution)
+    return 0.5 * force * force / steeper(stiffness, restitution)
+
+
+@kernel
+def _place_head(w, x, k):
+    """Put the head where it is given. The cushion follows; the work of the jump is that of the mean of both forces."""
+    largest, stiffness, restitution = view(x, k, A.largest), w[V.cushion_stiffness], w[V.cushion_restitution]
+    way, kept = w[V.head_position] - w[V.head_reached], _cushion_energy(w, x, k)
+    before = cushion_force(_compression(w), largest[0], stiffness, restitution)
+    w[V.head_reached] = w[V.head_position]
+    after = cushion_force(_compression(w), largest[0], stiffness, restitution)
+    largest[0] = max(largest[0], _compression(w))
+    work = 0.5 * (before + after) * way
+    w[V.energy_work_head] -= work
+    w[V.energy_cushion_loss] += kept - work - _cushion_energy(w, x, k)
+
+
+@kernel
+def _strike_again(w, x, k):
+    """Put the ram on the head with the velocity of its fall, the cushion as new."""
+    before = _mechanical(w, x, k)
+    w[V.position], w[V.velocity], w[V.touching] = w[V.head_reached], w[V.impact_velocity], 1.0
+    view(x, k, A.largest)[0] = 0.0
+    w[V.blows] += 1.0
+    w[V.energy_supplied] += _mechanical(w, x, k) - before
+
+
+@kernel
+def _mechanical(w, x, k):
+    return (0.5 * w[V.mass] * w[V.velocity] * w[V.velocity] - w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
+            + _cushion_energy(w, x, k))
+
+
+@kernel
+def _rigid(now, dt, w):
+    """A step of a rigid ram on the wave. Returns the mean force on the head (N)."""
+    drive, before, force = w[V.mass] * w[V.gravity] * w[V.weight], w[V.velocity], 0.0
+    if w[V.touching] > 0.0:
+        contact = rigid_mass(w[V.mass], before, drive, w[V.head_impedance], w[V.head_wave], dt)
+        w[V.velocity], force = contact.velocity, contact.mean_force
+        if contact.separation < TOGETHER:
+            w[V.touching], w[V.separation] = 0.0, now + contact.separation * dt
+    else:
+        w[V.velocity] += drive / w[V.mass] * dt
+    mean, head = 0.5 * (before + w[V.velocity]), (force + w[V.head_wave]) / w[V.head_impedance]
+    w[V.position] += mean * dt
+    w[V.head_reached] += head * dt
+    if w[V.touching] == 0.0 and w[V.position] >= w[V.head_reached]:
+        w[V.touching] = 1.0
+    if w[V.touching] > 0.0:
+        w[V.position] = w[V.head_reached]
+    w[V.energy_work_head] -= force * head * dt
+    w[V.energy_contact] += force * (mean - head) * dt
+    return force
+
+
+@kernel
+def _cushioned(now, dt, w, x, k):
+    """A step of the ram on its cushion. Returns the mean force on the head (N)."""
+    largest, stiffness, restitution = view(x, k, A.largest), w[V.cushion_stiffness], w[V.cushion_restitution]
+    drive, before, kept, start = w[V.mass] * w[V.gravity] * w[V.weight], w[V.velocity], _cushion_energy(w, x, k), _compression(w)
+    given, compliance = w[V.head_velocity], 0.0
+    if w[V.port] == WAVES:
+        given, compliance = w[V.head_wave] / w[V.head_impedance], 1.0 / w[V.head_impedance]
+    half = 0.5 * dt / w[V.mass]
+    free = dt * (before + half * drive - given)
+    force = met(start, free, dt * (half + compliance), largest[0], stiffness, restitution)
+    w[V.velocity] += 2.0 * half * (drive - force)
+    mean, head = 0.5 * (before + w[V.velocity]), given + compliance * force
+    w[V.position] += mean * dt
+    w[V.head_reached] += head * dt
+    largest[0] = max(largest[0], _compression(w))
+    at_end = cushion_force(_compression(w), largest[0], stiffness, restitution)
+    view(x, k, A.ends)[0] = at_end
+    if w[V.touching] > 0.0 and at_end == 0.0:
+        w[V.separation] = now + dt
+    w[V.touching] = 1.0 if at_end > 0.0 else 0.0
+    w[V.energy_work_head] -= force * head * dt
+    w[V.energy_cushion_loss] += force * (_compression(w) - start) - (_cushion_energy(w, x, k) - kept)
+    return force
+
+
+@kernel
+def publish(w, x, k):
+    """Refresh cushion and energies."""
+    w[V.cushion_compression] = max(_compression(w), 0.0)
+    w[V.energy_kinetic] = 0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
+    w[V.energy_gravity] = -w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
+    w[V.energy_cushion] = _cushion_energy(w, x, k)
+    w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_gravity] + w[V.energy_cushion] + w[V.energy_cushion_loss]
+                            + w[V.energy_contact] - w[V.energy_work_head] - w[V.energy_supplied] - w[V.energy_start])

@@ -1,0 +1,129 @@
+"""Masses and springs after Smith: places with the velocities, forces from places, velocities with the forces.
+
+Eqs (2)-(5) of Uto et al. with the sign of (5) corrected: V = v + (F[m-1] - F[m] - R[m]) dt / M[m]. Places and forces belong to one
+time, velocities to half a step later. T(v) + 1/2 D(t) K D(t + dt) is then conserved exactly.
+"""
+
+from ..compilation import kernel
+from ..ports import view
+from .bookkeeping import book_head, envelope, shaft_soil, toe_soil
+from .declarations import LAYOUT, PORT, RAM, REFLECTION
+from .segments import below_toe, has_tail
+from .soil import drag, static, stored, stretched
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+
+@kernel
+def advance(time, dt, head_force, toe_force, w, x, k):
+    """One step dt (s), from time (s) on, with the forces (N) of the ports: downwards on the head, upwards on the toe."""
+    place, rate, n, last = view(x, k, A.place), view(x, k, A.rate), k[A.impedance + 1], view(k, k, A.free)[2]
+    w[V.energy_contact] += contact_energy(dt, w, x, k)
+    before = _soil_energy(dt, w, x, k)
+    for i in range(last + 1):
+        place[i] += rate[i] * dt
+    _move_soil(dt, w, x, k)
+    above = 0.0
+    for i in range(last + 1):
+        below = spring_force(i, w, x, k)
+        if i < n:
+            envelope(i, below, w, x, k)
+        if i == 0:
+            _strike(time, dt, head_force, below, w, x, k)
+        else:
+            before += _push(i, above - below, dt, toe_force, w, x, k)
+        above = below
+    if last < n:
+        w[V.toe_contact_force] = above
+    w[V.energy_contact] -= contact_energy(dt, w, x, k)
+    w[V.energy_plastic] += before - _soil_energy(dt, w, x, k)
+
+
+@kernel
+def spring_force(i, w, x, k):
+    """Force (N, compression positive) of the spring below node i; below the last node is fixed ground. A ram is not held back."""
+    place, spring, last = view(x, k, A.place), view(x, k, A.spring), view(k, k, A.free)[2]
+    force = spring[i] * (place[i] - (place[i + 1] if i < last else 0.0))
+    return max(force, 0.0) if i == 0 and w[V.ram_mass] > 0.0 else force
+
+
+@kernel
+def spring_energy(i, ahead, w, x, k):
+    """Energy (J) of the spring below node i: half its force times its compression a time ahead (s)."""
+    place, rate, last = view(x, k, A.place), view(x, k, A.rate), view(k, k, A.free)[2]
+    compression = place[i] - (place[i + 1] if i < last else 0.0)
+    closing = rate[i] - (rate[i + 1] if i < last else 0.0)
+    return 0.5 * spring_force(i, w, x, k) * (compression + ahead * closing)
+
+
+@kernel
+def contact_energy(dt, w, x, k):
+    """Energy (J) of the spring between ram and rod; 0 without a ram, where the spring is one like any other."""
+    return spring_energy(0, dt, w, x, k) if w[V.ram_mass] > 0.0 else 0.0
+
+
+@kernel
+def _strike(time, dt, force, below, w, x, k):
+    """Change the velocity of node 0, ram or head, under the force of the spring below it (N)."""
+    rate, mass, ram = view(x, k, A.rate), view(x, k, A.mass), view(x, k, A.ram_state)
+    load, was = mass[0] * w[V.gravity], rate[0]
+    rate[0] += (force + load - below) / mass[0] * dt
+    mean = 0.5 * (was + rate[0])
+    w[V.energy_work_head] += force * mean * dt
+    w[V.energy_work_gravity] += load * mean * dt
+    if w[V.ram_mass] > 0.0:
+        if ram[RAM.touching] > 0.0 and below <= 0.0 and view(x, k, A.place)[0] < view(x, k, A.place)[1]:
+            w[V.ram_separation] = time + dt
+        ram[RAM.touching] = 1.0 if below > 0.0 else 0.0
+        w[V.energy_contact] += below * mean * dt
+        book_head(below, mean, dt, w)
+    else:
+        book_head(force, mean, dt, w)
+
+
+@kernel
+def _push(i, net, dt, toe_force, w, x, k):
+    """Change the velocity of node i under the springs' net force (N, downwards). Returns the work on the static soil (J)."""
+    rate, mass, n, last = view(x, k, A.rate), view(x, k, A.mass), k[A.impedance + 1], view(k, k, A.free)[2]
+    shaft, toe, was = shaft_soil(i, w, x, k) if i <= n else shaft_soil(0, w, x, k), toe_soil(i == n, w, x, k), rate[i]
+    on_shaft, under_toe = static(shaft, shaft.stretch), static(toe, toe.stretch)
+    in_soil, standing = drag(shaft, on_shaft) + drag(toe, under_toe), 0.0
+    if i == last and has_tail(w):
+        standing = below_toe(w, x, k) if w[V.toe_condition] == REFLECTION else view(x, k, A.impedance)[n - 1]
+    load = mass[i] * w[V.gravity] if i <= n else 0.0
+    pushed = toe_force if i == n and w[V.toe_condition] == PORT else 0.0
+    half = 0.5 * dt / mass[i]
+    damped = half * (in_soil + standing)
+    rate[i] = (was * (1.0 - damped) + 2.0 * half * (net + load - on_shaft - under_toe - pushed)) / (1.0 + damped)
+    mean = 0.5 * (was + rate[i])
+    w[V.energy_work_gravity] += load * mean * dt
+    w[V.energy_work_toe] -= pushed * mean * dt
+    w[V.energy_damping] += in_soil * mean * mean * dt
+    w[V.energy_radiated] += standing * mean * mean * dt
+    if i == 1 and w[V.ram_mass] > 0.0:
+        w[V.energy_contact] -= spring_force(0, w, x, k) * mean * dt
+    if i == n:
+        below = spring_force(n, w, x, k)
+        w[V.toe_contact_force] = under_toe + drag(toe, under_toe) * mean + pushed + below + (standing * mean if i == last else 0.0)
+    return (on_shaft + under_toe) * mean * dt
+
+
+@kernel
+def _move_soil(dt, w, x, k):
+    """The soil goes with the nodes of the rod, up to its quake."""
+    rate, stretch, toe, n = view(x, k, A.rate), view(x, k, A.soil), view(x, k, A.toe_soil), k[A.impedance + 1]
+    for i in range(1, n + 1):
+        stretch[i] = stretched(shaft_soil(i, w, x, k), rate[i] * dt)
+    toe[0] = stretched(toe_soil(True, w, x, k), rate[n] * dt)
+
+
+@kernel
+def _soil_energy(dt, w, x, k):
+    """Elastic energy (J) in the soil."""
+    rate, n = view(x, k, A.rate), k[A.impedance + 1]
+    total = 0.0
+    for i in range(1, n + 1):
+        shaft = shaft_soil(i, w, x, k)
+        total += stored(shaft, shaft.stretch, stretched(shaft, rate[i] * dt))
+    toe = toe_soil(True, w, x, k)
+    return total + stored(toe, toe.stretch, stretched(toe, rate[n] * dt))

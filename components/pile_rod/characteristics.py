@@ -1,0 +1,127 @@
+"""The exact scheme: waves that move by one segment in a step, and nodes that divide them by impedances.
+
+In a step dt = dx/c each segment hands its waves on to the nodes at its ends. With f the velocity of the wave downwards from above,
+b that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - Z2 (v - 2 b) = R. Waves are constant over a segment,
+so that jumps stay sharp.
+"""
+
+from ..compilation import kernel
+from ..ports import view
+from ..wave_port import TOGETHER, rigid_mass
+from .bookkeeping import book_head, book_soil, envelope, shaft_soil, toe_soil
+from .declarations import LAYOUT, MATCHED, PORT, RAM
+from .segments import below_toe, toe_is_fixed
+from .soil import gripped
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+
+@kernel
+def advance(time, dt, head_force, toe_force, w, x, k):
+    """One step dt (s), from time (s) on, with the mean forces (N) of the ports: downwards on the head, upwards on the toe."""
+    down, up, impedance = view(x, k, A.down), view(x, k, A.up), view(x, k, A.impedance)
+    place, rate, n = view(x, k, A.place), view(x, k, A.rate), len(impedance)
+    arriving = down[0]
+    rate[0] = _head(time, dt, head_force, w, x, k)
+    down[0] = rate[0] - up[0]
+    for i in range(1, n):
+        above, below = impedance[i - 1], impedance[i]
+        drive = 2.0 * (above * arriving + below * up[i]) + weight(i, dt, w, x, k)
+        rate[i] = _node(i, above + below, drive, dt, w, x, k)
+        up[i - 1] = rate[i] - arriving
+        envelope(i - 1, above * (down[i - 1] - up[i - 1]), w, x, k)
+        arriving, down[i] = down[i], rate[i] - up[i]
+    rate[n] = _toe(arriving, dt, toe_force, w, x, k)
+    up[n - 1] = rate[n] - arriving
+    envelope(n - 1, impedance[n - 1] * (down[n - 1] - up[n - 1]), w, x, k)
+    for i in range(n + 1):
+        place[i] += rate[i] * dt
+
+
+@kernel
+def weight(i, dt, w, x, k):
+    """Weight (N) of what is nearest to node i: half a segment on either side."""
+    impedance = view(x, k, A.impedance)
+    above = impedance[i - 1] if i > 0 else 0.0
+    below = impedance[i] if i < len(impedance) else 0.0
+    return 0.5 * dt * w[V.gravity] * (above + below)
+
+
+@kernel
+def _head(time, dt, force, w, x, k):
+    """Velocity of the head (m/s), mean over the step."""
+    up, impedance = view(x, k, A.up), view(x, k, A.impedance)
+    lead = weight(0, dt, w, x, k)
+    wave = 2.0 * impedance[0] * up[0] + lead
+    acting = force
+    if w[V.ram_mass] > 0.0:
+        acting = _ram(time, dt, force, wave, w, x, k)
+    else:
+        w[V.energy_work_head] += force * (force + wave) / impedance[0] * dt
+    velocity = (acting + wave) / impedance[0]
+    w[V.energy_work_gravity] += lead * velocity * dt
+    book_head(acting, velocity, dt, w)
+    return velocity
+
+
+@kernel
+def _ram(time, dt, force, wave, w, x, k):
+    """Move the ram. Returns the mean force between it and the head (N)."""
+    ram, impedance, place = view(x, k, A.ram_state), view(x, k, A.impedance), view(x, k, A.place)
+    before, drive, acting = ram[RAM.velocity], force + w[V.ram_mass] * w[V.gravity], 0.0
+    if ram[RAM.touching] > 0.0:
+        contact = rigid_mass(w[V.ram_mass], before, drive, impedance[0], wave, dt)
+        ram[RAM.velocity], acting = contact.velocity, contact.mean_force
+        if contact.separation < TOGETHER:
+            ram[RAM.touching], w[V.ram_separation] = 0.0, time + contact.separation * dt
+    else:
+        ram[RAM.velocity] += drive / w[V.ram_mass] * dt
+    mean, head = 0.5 * (before + ram[RAM.velocity]), (acting + wave) / impedance[0]
+    ram[RAM.position] += mean * dt
+    if ram[RAM.touching] == 0.0 and ram[RAM.position] >= place[0] + head * dt:
+        ram[RAM.touching] = 1.0
+    if ram[RAM.touching] > 0.0:
+        ram[RAM.position] = place[0] + head * dt
+    w[V.energy_contact] += acting * (mean - head) * dt
+    w[V.energy_work_head] += force * mean * dt
+    w[V.energy_work_gravity] += w[V.ram_mass] * w[V.gravity] * mean * dt
+    return acting
+
+
+@kernel
+def _node(i, impedance, drive, dt, w, x, k):
+    """Velocity (m/s) of a node inside the rod, mean over the step."""
+    shaft = shaft_soil(i, w, x, k)
+    velocity = drive / impedance
+    if shaft.resistance > 0.0:
+        grip = gripped(impedance, drive, shaft, toe_soil(False, w, x, k), dt)
+        velocity = grip.velocity
+        book_soil(i, shaft, toe_soil(False, w, x, k), grip, dt, w, x, k)
+    w[V.energy_work_gravity] += weight(i, dt, w, x, k) * velocity * dt
+    return velocity
+
+
+@kernel
+def _toe(arriving, dt, force, w, x, k):
+    """Velocity of the toe (m/s), mean over the step, from the wave that arrives there."""
+    impedance, n, what = view(x, k, A.impedance), k[A.impedance + 1], w[V.toe_condition]
+    below, lead = impedance[n - 1], weight(n, dt, w, x, k)
+    shaft, toe = shaft_soil(n, w, x, k), toe_soil(True, w, x, k)
+    drive, leaving = 2.0 * below * arriving + lead, below
+    if toe_is_fixed(w):
+        w[V.toe_contact_force] = drive
+        return 0.0
+    standing = below if what == MATCHED else below_toe(w, x, k)
+    if what == PORT:
+        drive -= force
+    velocity = drive / (leaving + standing)
+    w[V.toe_contact_force] = force if what == PORT else standing * velocity
+    if shaft.resistance + toe.resistance > 0.0:
+        grip = gripped(leaving + standing, drive, shaft, toe, dt)
+        velocity = grip.velocity
+        book_soil(n, shaft, toe, grip, dt, w, x, k)
+    if what == PORT:
+        w[V.energy_work_toe] -= force * velocity * dt
+    w[V.energy_radiated] += standing * velocity * velocity * dt
+    w[V.energy_work_gravity] += lead * velocity * dt
+    return velocity

@@ -1,0 +1,1 @@
+"""Wave analysis of a driven pile or rod: ``rockshed pile``."""
