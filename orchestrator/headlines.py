@@ -105,7 +105,7 @@ def roles(run: "Run") -> Roles:
         names = [name for name, facts in run.provenance["components"].items() if facts["model"] == model]
         return names[0] if len(names) == 1 else None
 
-    return Roles(only("FallingRock"), only("SandCushion"), only("RBSMBeam"))
+    return Roles(only("FallingRock") or only("SlopeRockfall"), only("SandCushion"), only("RBSMBeam"))
 
 
 def driven(run: "Run") -> bool:
@@ -150,9 +150,11 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
 
 
 def impact_energy(run: "Run") -> float | None:
-    """Kinetic energy (J) of the rock at the start; None where a machine drives it."""
-    column = f"{roles(run).rock}.energy.kinetic"
-    return float(run.series[column][0]) if column in run.series and not driven(run) else None
+    """Kinetic energy (J) of the rock at the start, or as it is handed over from its slope; None where a machine drives it."""
+    rock = roles(run).rock
+    column, received = f"{rock}.energy.kinetic", run.series.get(f"{rock}.received")
+    first = 0 if received is None else int(received.argmax())
+    return float(run.series[column][first]) if column in run.series and not driven(run) else None
 
 
 def beam_energies(run: "Run") -> tuple[float | None, float | None]:

@@ -30,6 +30,7 @@ from .declarations import (
     ROW,
     SPIN,
     SUM,
+    UNBOUNDED,
 )
 from .vector_rows import LANES, columns_to_pairs, pairs_to_columns
 
@@ -169,6 +170,13 @@ def beam_place(px, body, n, m):
 
 
 @inlined
+def away_from_wall(out, over, thickness):
+    """How far (m) a point that lies ``out`` outside a wall's inner face and ``over`` its top is from the wall: outwards, upwards."""
+    beyond = min(out, 0.0) + max(out - thickness, 0.0)
+    return beyond, max(over, 0.0)
+
+
+@inlined
 def touch(i, b, w, body, n, m):
     """Geometry of a contact of disc i (or the rock) with boundary b.
 
@@ -191,13 +199,22 @@ def touch(i, b, w, body, n, m):
         vx = (1.0 - share) * (body[ROW * a + 2] - body[ROW * a + SPIN]) + share * (body[ROW * c + 2] - body[ROW * c + SPIN])
         vy = (1.0 - share) * body[ROW * a + 3] + share * body[ROW * c + 3]
         return 0.0, -1.0, yi - top - ri, vx, vy
-    vy = 0.0
+    vy, foot = 0.0, w[V.base_y]
     nx = -1.0 if b == n + m + 1 else 1.0
     face = w[V.box_left] if b == n + m + 1 else w[V.box_left] + w[V.box_width]
     if w[V.walls] == ON_BEAM:
         a, share = beam_place(face, body, n, m)
-        vy = (1.0 - share) * body[ROW * a + 3] + (0.0 if m == 1 else share * body[ROW * (a + 1) + 3])
-    return nx, 0.0, (xi - face) * -nx - ri, 0.0, vy
+        c = a if m == 1 else a + 1
+        vy = (1.0 - share) * body[ROW * a + 3] + (0.0 if m == 1 else share * body[ROW * c + 3])
+        foot = (1.0 - share) * body[ROW * a + 1] + share * body[ROW * c + 1] + body[ROW * a + RADIUS]
+    out, over = (xi - face) * nx, yi - foot - w[V.box_wall_height]
+    if i != n or (over <= 0.0 and out <= 0.0) or w[V.box_wall_height] == UNBOUNDED:
+        return nx, 0.0, (xi - face) * -nx - ri, 0.0, vy
+    beyond, above = away_from_wall(out, over, w[V.box_wall_thickness])
+    distance = math.sqrt(beyond * beyond + above * above)
+    if distance == 0.0:
+        return nx, 0.0, -out - ri, 0.0, vy
+    return -nx * beyond / distance, -above / distance, distance - ri, 0.0, vy
 
 
 @inlined

@@ -157,6 +157,8 @@ _PARTS = (
     ("lost in sliding", "#c0561a", (("sand", "energy.sliding"),)),
     ("lost in rolling", "#8c2f12", (("sand", "energy.rolling"),)),
     ("lost in the beam", "#5c3a2e", (("beam", "energy.damping"),)),
+    ("lost on the slope, in the run", "#3b2b52", (("rock", "energy.impact"), ("rock", "energy.friction"),
+                                                  ("rock", "energy.roughness"), ("rock", "energy.resistance"))),
 )
 """Name, colour and energies of each layer; the components by their role."""
 _SHOWN = 1e-4
@@ -189,15 +191,15 @@ def energy(run: Run, file: Path) -> None:
 
 
 def _layers(run: Run) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, colour and energy (J) of the layers that there are. Gravity and capillary energy count from their least value, so that
-    they stack."""
+    """Name, colour and energy (J) of the layers that there are. What can be negative counts from its least value, so that it stacks,
+    and so do gravity and what a rock has lost on its slope before the run."""
     role = {key: name for key, name in vars(h.roles(run)).items() if name}
     found = []
     for name, colour, members in _PARTS:
         columns = [run.series[f"{role[r]}.{output}"] for r, output in members if r in role and f"{role[r]}.{output}" in run.series]
         if columns:
-            parts = [values - min(float(values.min()), 0.0) if "gravity" not in name else values - values.min()
-                     for values in columns]
+            from_least = name.startswith(("gravity", "lost on the slope"))
+            parts = [values - (values.min() if from_least else min(float(values.min()), 0.0)) for values in columns]
             found.append((name, colour, np.sum(parts, axis=0)))
     total = max((float(values.max()) for _, _, values in found), default=0.0)
     yield from (layer for layer in found if layer[2].max() > _SHOWN * total)

@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -142,11 +143,11 @@ def test_an_unreachable_scheduler_is_refused_within_seconds(rockshed, monkeypatc
 
 
 def test_a_scheduler_without_workers_is_refused(client, rockshed, monkeypatch):
-    from distributed import LocalCluster
-
     monkeypatch.setattr(cluster, "CONNECT_TIMEOUT", 0.5)
-    with LocalCluster(n_workers=0, dashboard_address="127.0.0.1:0") as empty:
-        result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", empty.scheduler_address)
+    client.cluster.scale(0)
+    while client.nthreads():
+        time.sleep(0.05)
+    result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", client.scheduler.address)
     assert result.exit_code == 2
     assert "the scheduler has no workers" in result.stderr
 
