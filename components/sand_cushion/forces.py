@@ -171,9 +171,16 @@ def beam_place(px, body, n, m):
 
 @inlined
 def away_from_wall(out, over, thickness):
-    """How far (m) a point that lies ``out`` outside a wall's inner face and ``over`` its top is from the wall: outwards, upwards."""
+    """How far (m) a point ``out`` outside a wall's inner face and ``over`` its top is from the wall: outwards, upwards."""
     beyond = min(out, 0.0) + max(out - thickness, 0.0)
     return beyond, max(over, 0.0)
+
+
+@inlined
+def is_beside(px, w):
+    """Whether a rock at ``px`` (m) is on or beyond the walls, where there is no base. Walls without end let none out."""
+    inside = w[V.box_left] <= px <= w[V.box_left] + w[V.box_width]
+    return w[V.box_wall_height] != UNBOUNDED and not inside
 
 
 @inlined
@@ -191,6 +198,8 @@ def touch(i, b, w, body, n, m):
         turning = body[ROW * b + SPIN]  # the contact lies at -n * radius from b's centre
         return nx, ny, distance - ri - body[ROW * b + RADIUS], body[ROW * b + 2] + turning * ny, body[ROW * b + 3] - turning * nx
     if b == n + m + 3:
+        if i == n and is_beside(xi, w):
+            return 0.0, -1.0, UNBOUNDED, 0.0, 0.0
         if w[V.base] != BEAM_SURFACE:
             return 0.0, -1.0, yi - w[V.base_y] - ri, 0.0, 0.0
         a, share = beam_place(xi, body, n, m)

@@ -28,8 +28,9 @@ class Layer:
     """The layer of sand of a case and what meets it.
 
     width, height: of the layer (m). disc_radius, rock_radius: (m). speed: of the rock at the surface, downwards (m/s). falling:
-    whether it speeds up on the way there. dropped: whether it starts above the layer, and does not come from a slope. on_beam: whether the sand lies on a beam. duration: of the run (s). step: of the sand
-    (s), where the case's own is longer than prepared layers bear.
+    whether it speeds up on the way there. dropped: whether it starts above the layer, and does not come from a slope. on_beam:
+    whether the sand lies on a beam. duration: of the run (s). step: of the sand (s), where the case's own is longer than prepared
+    layers bear.
     """
 
     width: float
