@@ -1,4 +1,4 @@
-"""A rock from its slope onto the cushion of a rock shed: ``examples/shed.toml`` above the full-scale girders of Sonoda et al. (1993).
+"""A rock from its slope onto the cushion of a rock shed: ``examples/shed.toml`` above the girders of Sonoda et al. (1993).
 
 The rock is a trial of the campaign over that slope: of the rocks that land on the cushion the one at the 95th percentile of the
 kinetic energy. It comes in obliquely, over the side wall, is handed over above the sand, and may bounce and go on along the slope.

@@ -191,8 +191,8 @@ def energy(run: Run, file: Path) -> None:
 
 
 def _layers(run: Run) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, colour and energy (J) of the layers that there are. Gravity, capillary energy and what a rock has lost on its slope count
-    from their least value, so that they stack."""
+    """Name, colour and energy (J) of the layers that there are. Gravity, capillary energy and what a rock has lost on its slope
+    count from their least value, so that they stack."""
     role = {key: name for key, name in vars(h.roles(run)).items() if name}
     found = []
     for name, colour, members in _PARTS:
