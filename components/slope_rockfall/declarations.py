@@ -176,6 +176,9 @@ LAYOUT = Layout(
         out("energy.residual", "kinetic + gravity + dissipated - work, minus their sum at the start", "J"),
         out("energy.start", "kinetic + gravity at the start of the trial", "J"),
         out("fault.cell", "number of the cell that the initialisation refuses, 0 if none", kind=Kind.INTEGER),
+        out("fault.value", "what is wrong with that cell: end.x, tilt, roughness or friction"),
+        out("fault.roughness", "largest roughness of that cell"),
+        out("fault.locking", "mu tan(phi) of that cell with its largest roughness"),
     ),
     states=(
         State("path", lambda sizes: JOINTS * sizes["cells"] * len(PATH)),
