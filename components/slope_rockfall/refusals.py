@@ -35,7 +35,8 @@ _FACTS = {
     FOLDED: "end.x[{fault.cell}] = {fault.value} m", STEEP: "end.x[{fault.cell}] = {fault.value} m",
     TILT_SIGN: "tilt[{fault.cell}] = {fault.value}", ROUGHNESS_SIGN: "roughness[{fault.cell}] = {fault.value}",
     ROUGH: "roughness[{fault.cell}] = {fault.value}, largest {fault.roughness}",
-    LOCKED: "friction[{fault.cell}] = {fault.value}, roughness[{fault.cell}] up to {fault.roughness}, mu tan(phi) = {fault.locking}",
+    LOCKED: "friction[{fault.cell}] = {fault.value}, roughness[{fault.cell}] up to {fault.roughness}, "
+            "mu tan(phi) = {fault.locking}",
 }
 
 FAULTS = {fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()} | {
@@ -90,7 +91,7 @@ def tell_fault(fault, c, w, k):
     if c < 0:
         return
     w[V.fault_roughness], w[V.fault_locking] = widest_roughness(c, w, k), locking(c, w, k)
-    if fault == FOLDED or fault == STEEP:
+    if fault in (FOLDED, STEEP):
         w[V.fault_value] = view(w, k, A.end_x)[c]
     elif fault == TILT_SIGN:
         w[V.fault_value] = view(w, k, A.tilt)[c]
