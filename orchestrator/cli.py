@@ -282,13 +282,13 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
 
 
 @app.command()
-def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupling|start", help="All of them by "
-                                                           "default.")] = None,
+def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupling|start|rockfall|cluster", help="All of "
+                                                           "them by default.")] = None,
           rounds: Annotated[int, typer.Option(min=3, help="Rounds in which everything takes its turn.")] = 7,
           as_json: Json = False, quiet: Quiet = False) -> None:
     """Measure speed and price of the coupling.
 
-    All figures are ratios within interleaved rounds. Takes about two minutes.
+    All figures are ratios within interleaved rounds. Takes some minutes.
     """
     with _screen(quiet, as_json) as screen:
         from .bench.table import PARTS
