@@ -289,13 +289,13 @@ def plot(run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a ru
 
 
 @app.command()
-def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupling|exchange|start", help="All of them by "
-                                                           "default.")] = None,
+def bench(part: Annotated[list[str] | None, typer.Argument(metavar="discs|coupling|exchange|start|rockfall|cluster",
+                                                           help="All of them by default.")] = None,
           rounds: Annotated[int, typer.Option(min=3, help="Rounds in which everything takes its turn.")] = 7,
           as_json: Json = False, quiet: Quiet = False) -> None:
     """Measure speed and price of the coupling.
 
-    All figures are ratios within interleaved rounds. Takes about two minutes.
+    All figures are ratios within interleaved rounds. Takes some minutes.
     """
     with _screen(quiet, as_json) as screen:
         from .bench.table import PARTS
@@ -401,14 +401,25 @@ def rockfall(site: Annotated[Path, typer.Argument(metavar="PROFILE.toml", help="
              replay: Annotated[list[int] | None, typer.Option(metavar="TRIAL", help="Animate this trial. May be repeated.")] = None,
              animation: Annotated[str | None, typer.Option(metavar="mp4|gif", help="Default: mp4 if it can be written.")] = None,
              output_dir: Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")] = None,
-             workers: Annotated[int | None, typer.Option(min=1, help="Threads; default: one for each core.")] = None,
+             workers: Annotated[int | None, typer.Option(min=1, help="Threads, or processes of --scheduler local; default: one for "
+                                                         "each core.")] = None,
+             scheduler: Annotated[str | None, typer.Option(metavar="local|tcp://HOST:PORT", help="Compute on Dask: on processes "
+                                                           "of this computer, or on the workers of a running scheduler.")] = None,
              no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
              as_json: Json = False, quiet: Quiet = False) -> None:
     """Monte Carlo of rockfall on a slope: envelopes, percentiles with confidence intervals, end points, replays."""
+    from .screen import RUN_FAILED
+
     with _screen(quiet, as_json) as screen:
+        from .rockfall.campaign import CampaignFailed
         from .rockfall.command import rockfall
 
-        rockfall(screen, RESULTS, site, trials, preset, seed, replay or [], animation, output_dir, workers, not no_figures)
+        try:
+            rockfall(screen, RESULTS, site, trials, preset, seed, replay or [], animation, output_dir, workers, scheduler,
+                     not no_figures)
+        except CampaignFailed as failure:
+            screen.fail(str(failure))
+            raise typer.Exit(RUN_FAILED) from None
 
 
 @app.command()

@@ -11,7 +11,7 @@ def result_column(name: str, values: Any, unit: str, description: str) -> Column
     """A column; NaN and None are null."""
     import pyarrow as pa
 
-    array = pa.array(values, from_pandas=True)
+    array = values if isinstance(values, pa.Array) else pa.array(values, from_pandas=True)
     return array, pa.field(name, array.type, metadata={"unit": unit, "description": description})
 
 

@@ -110,7 +110,7 @@ def roles(run: "Run") -> Roles:
         names = named(run, model)
         return names[0] if len(names) == 1 else None
 
-    return Roles(only("FallingRock"), only("SandCushion"), only("RBSMBeam"))
+    return Roles(only("FallingRock") or only("SlopeRockfall"), only("SandCushion"), only("RBSMBeam"))
 
 
 def driven(run: "Run") -> bool:
@@ -166,10 +166,13 @@ def _preload(run: "Run", rod: str) -> float:
 
 
 def impact_energy(run: "Run") -> float | None:
-    """Kinetic energy (J) of the rock, or else of the hammers, at the start; None where a machine drives it."""
+    """Kinetic energy (J) at the start of the rock, or else of the hammers; of a rock from its slope, as it is handed over. None where
+    a machine drives it."""
     rock = roles(run).rock
+    received = run.series.get(f"{rock}.received")
+    first = 0 if received is None else int(received.argmax())
     columns = [f"{name}.energy.kinetic" for name in ([rock] if rock else named(run, "Hammer"))]
-    found = [float(run.series[column][0]) for column in columns if column in run.series]
+    found = [float(run.series[column][first]) for column in columns if column in run.series]
     return sum(found) if found and not driven(run) else None
 
 

@@ -160,8 +160,12 @@ class Screen:
     def counting(self, text: str) -> "Iterator[Callable[[int, int], None]]":
         """A bar over pieces of work: called with the number done and the number of all. Elsewhere a note for each tenth."""
         if self.quiet or not self.err.is_terminal:
+            tenths = 0
+
             def tell(done: int, total: int) -> None:
-                if 10 * done // total > 10 * (done - 1) // total:
+                nonlocal tenths
+                if 10 * done // total > tenths:
+                    tenths = 10 * done // total
                     self.note(f"{text}: {done} of {total}")
 
             yield tell

@@ -25,7 +25,7 @@ COMPONENT = Component(
                             "{surface_height} m; raise the rock's position0.y by at least that much",
         kernel.ROCK_BESIDE: "the rock starts in or behind a side wall: with its radius of {rock.radius} m at x = "
                             "{rock.position.x} m it does not fit into the box from {box.left} m on, {box.width} m wide; "
-                            "move the rock or widen the box",
+                            "move the rock or widen the box, or give the walls a box.wall_height over which it comes",
         kernel.DISC_TOO_WIDE: "a sand disc of radius {disc.radius} m (spread {disc.spread}) does not fit into the box, which is "
                               "{box.width} m wide: make the discs smaller or the box wider",
         kernel.TOO_LOOSE: "the sand cannot lie as loosely as solid_fraction = {solid_fraction}: with its friction it falls to "

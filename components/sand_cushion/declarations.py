@@ -43,6 +43,8 @@ INDEX = 0x7FFFFFFF
 away; see forces.py."""
 BLOCK = 32
 """Pairs for which the law of contact is computed together."""
+UNBOUNDED = 1e30
+"""Height (m) of a wall without end."""
 PLANES = 3
 """Left wall, right wall, base."""
 
@@ -93,7 +95,10 @@ LAYOUT = Layout(
         # the cushion
         param("box.left", "x of the left side wall's inner face", 41.5 * cm, "m"),
         param("box.width", "distance of the side walls", 37 * cm, "m", minimum=1e-6, source="Sonoda et al. 1993, fig. 2"),
-        param("base.y", "y of the floor, used when base = floor", 0.0, "m"),
+        param("box.wall_height", "height of the side walls for the rock, above base.y, or above the beam's top where they stand on "
+              "it; for sand they have no end", UNBOUNDED, "m", minimum=0.0),
+        param("box.wall_thickness", "thickness of the side walls for the rock", 0.2, "m", minimum=1e-6),
+        param("base.y", "y of the floor, used when base = floor; side walls fixed in space count their height from it", 0.0, "m"),
         param("disc.radius", "radius of a sand disc (mean radius of a random packing)", 0.5 * cm, "m", minimum=1e-9,
               source="Sonoda et al. 1993, sec. 3 (2): diameter 1.0 cm"),
         param("disc.spread", "random packing: radii are uniform within radius * (1 - spread, 1 + spread)", 0.0,

@@ -30,6 +30,7 @@ from .declarations import (
     ROW,
     SPIN,
     SUM,
+    UNBOUNDED,
 )
 from .vector_rows import LANES, columns_to_pairs, pairs_to_columns
 
@@ -169,6 +170,20 @@ def beam_place(px, body, n, m):
 
 
 @inlined
+def away_from_wall(out, over, thickness):
+    """How far (m) a point ``out`` outside a wall's inner face and ``over`` its top is from the wall: outwards, upwards."""
+    beyond = min(out, 0.0) + max(out - thickness, 0.0)
+    return beyond, max(over, 0.0)
+
+
+@inlined
+def is_beside(px, w):
+    """Whether a rock at ``px`` (m) is on or beyond the walls, where there is no base. Walls without end let none out."""
+    inside = w[V.box_left] <= px <= w[V.box_left] + w[V.box_width]
+    return w[V.box_wall_height] != UNBOUNDED and not inside
+
+
+@inlined
 def touch(i, b, w, body, n, m):
     """Geometry of a contact of disc i (or the rock) with boundary b.
 
@@ -183,6 +198,8 @@ def touch(i, b, w, body, n, m):
         turning = body[ROW * b + SPIN]  # the contact lies at -n * radius from b's centre
         return nx, ny, distance - ri - body[ROW * b + RADIUS], body[ROW * b + 2] + turning * ny, body[ROW * b + 3] - turning * nx
     if b == n + m + 3:
+        if i == n and is_beside(xi, w):
+            return 0.0, -1.0, UNBOUNDED, 0.0, 0.0
         if w[V.base] != BEAM_SURFACE:
             return 0.0, -1.0, yi - w[V.base_y] - ri, 0.0, 0.0
         a, share = beam_place(xi, body, n, m)
@@ -191,13 +208,22 @@ def touch(i, b, w, body, n, m):
         vx = (1.0 - share) * (body[ROW * a + 2] - body[ROW * a + SPIN]) + share * (body[ROW * c + 2] - body[ROW * c + SPIN])
         vy = (1.0 - share) * body[ROW * a + 3] + share * body[ROW * c + 3]
         return 0.0, -1.0, yi - top - ri, vx, vy
-    vy = 0.0
+    vy, foot = 0.0, w[V.base_y]
     nx = -1.0 if b == n + m + 1 else 1.0
     face = w[V.box_left] if b == n + m + 1 else w[V.box_left] + w[V.box_width]
     if w[V.walls] == ON_BEAM:
         a, share = beam_place(face, body, n, m)
-        vy = (1.0 - share) * body[ROW * a + 3] + (0.0 if m == 1 else share * body[ROW * (a + 1) + 3])
-    return nx, 0.0, (xi - face) * -nx - ri, 0.0, vy
+        c = a if m == 1 else a + 1
+        vy = (1.0 - share) * body[ROW * a + 3] + (0.0 if m == 1 else share * body[ROW * c + 3])
+        foot = (1.0 - share) * body[ROW * a + 1] + share * body[ROW * c + 1] + body[ROW * a + RADIUS]
+    out, over = (xi - face) * nx, yi - foot - w[V.box_wall_height]
+    if i != n or (over <= 0.0 and out <= 0.0) or w[V.box_wall_height] == UNBOUNDED:
+        return nx, 0.0, (xi - face) * -nx - ri, 0.0, vy
+    beyond, above = away_from_wall(out, over, w[V.box_wall_thickness])
+    distance = math.sqrt(beyond * beyond + above * above)
+    if distance == 0.0:
+        return nx, 0.0, -out - ri, 0.0, vy
+    return -nx * beyond / distance, -above / distance, distance - ri, 0.0, vy
 
 
 @inlined

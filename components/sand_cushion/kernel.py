@@ -29,7 +29,7 @@ from .declarations import (
     SPIN,
     SUM,
 )
-from .forces import ROLLING, contact_forces
+from .forces import ROLLING, contact_forces, touch
 from .packing import disc_mass, mean_base, pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -436,11 +436,12 @@ def beam_fault(w, k):
 
 @kernel
 def rock_fault(w, x, k):
-    """Fault of the start: a rock inside the sand or in a side wall. The walls are planes without an upper end."""
-    n, body = disc_count(k), view(x, k, A.body)
-    if (w[V.rock_position_x] - w[V.rock_radius] < w[V.box_left] - _TOUCHING
-            or w[V.rock_position_x] + w[V.rock_radius] > w[V.box_left] + w[V.box_width] + _TOUCHING):
-        return ROCK_BESIDE
+    """Fault of the start: a rock inside the sand or in a side wall."""
+    n, m, body = disc_count(k), beam_count(k), view(x, k, A.body)
+    for wall in range(n + m + 1, n + m + 3):
+        _, _, gap, _, _ = touch(n, wall, w, body, n, m)
+        if gap < -_TOUCHING:
+            return ROCK_BESIDE
     for i in range(n):
         dx, dy = body[ROW * n] - body[ROW * i], body[ROW * n + 1] - body[ROW * i + 1]
         if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + body[ROW * i + RADIUS] - _TOUCHING:

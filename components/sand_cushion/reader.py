@@ -3,6 +3,7 @@
 Nothing is simulated here: positions are those of the state, and forces follow from them and from the springs it holds.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ from ..component import HEADER, ComponentError, Instance
 from ..ports import view
 from . import COMPONENT
 from .contact_search import base_top, beam_count, disc_count
-from .declarations import ANGLE, BEAM_DISCS, KIND, LAW, LAYOUT, RADIUS, ROW
+from .declarations import ANGLE, BEAM_DISCS, KIND, LAW, LAYOUT, ON_BEAM, RADIUS, ROW, UNBOUNDED
 from .forces import kind_of, touch
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -40,11 +41,14 @@ class Discs:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """The box (m): inner face of the left wall, distance of the walls, height of the base's highest point."""
+    """The box (m): inner face of the left wall, distance of the walls, height of the base's highest point; upper end (infinite if
+    there is none) and thickness of the walls, for the rock."""
 
     left: float
     width: float
     base: float
+    wall_top: float
+    wall_thickness: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +112,10 @@ def _discs(body: Floats, angle: Floats, which: slice) -> Discs:
 
 
 def _box(instance: Instance) -> Box:
-    return Box(instance["box.left"], instance["box.width"], float(_base(instance.w, instance.x, instance.k)))
+    base, height = float(_base(instance.w, instance.x, instance.k)), instance["box.wall_height"]
+    foot = base if instance["walls"] == ON_BEAM else instance["base.y"]
+    return Box(instance["box.left"], instance["box.width"], base, math.inf if height == UNBOUNDED else foot + height,
+               instance["box.wall_thickness"])
 
 
 def _contacts(instance: Instance) -> Contacts:

@@ -25,6 +25,8 @@ COMPONENT = Component(
                            "(height {height} m): let the receiver end where what is in it meets the slope",
         kernel.DIVERGED: "the position is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
                          "reduce the exchange step or the step of the component that computes it",
+        kernel.NEVER_RECEIVED: "trial {trial} of seed {seed} never enters the receiver, and lead_time counts from there: choose "
+                               "another trial or receiver, or leave lead_time out",
         kernel.RESTLESS: "a million events in one step, at ({position.x}, {position.y}) m: give cell {cell} some roughness, or "
                          "hardening below 1",
     },

@@ -43,6 +43,10 @@ next event; direction of motion, R_o, sine and cosine of phi, and the forces P, 
 number of random numbers drawn, of events in a row without progress, and of impacts; dissipated energies and work of the
 inputs (J); number of hand-overs and time of the last; which trial it is."""
 
+Clock = namedtuple("Clock", "origin begun")
+CLOCK = Clock(*range(2))
+"""The tool's time at the start of the trial, and the time of the trial at which the FMU has begun (s); see lead_time."""
+
 EXAMPLE = ((0, 100), (6, 96), (12, 84), (20, 76), (26, 64), (34, 58), (40, 50), (47, 45), (54, 36), (62, 31), (70, 24), (78, 19),
            (88, 13), (98, 9), (110, 5), (140, 4))
 """An example slope of 100 m height (m); its upper 60 % are rock, the rest is soil."""
@@ -123,6 +127,8 @@ LAYOUT = Layout(
         param("receiver.right", "right side of the receiver", 0.0, "m"),
         param("receiver.bottom", "lower side of the receiver", 0.0, "m"),
         param("receiver.top", "upper side of the receiver", 0.0, "m"),
+        param("lead_time", "begin so long before the rock enters the receiver for the first time, or at the start of the trial if "
+              "that is later; 1e30: at the start of the trial", NEVER, "s", minimum=0.0),
         internal_step(1e-5),
         # the slope
         param("profile.x", "x of the slope's first node", float(EXAMPLE[0][0]), "m", source=_TABLE_1),
@@ -144,9 +150,9 @@ LAYOUT = Layout(
         inp("force.y", "force on the rock in the receiver without its weight, upwards", "N"),
         inp("torque", "torque on the rock in the receiver about its centre, counter-clockwise", "N.m"),
         # outputs
-        out("position.x", "position of the centre, to the right", "m", initial_dependencies=("position0.x",)),
+        out("position.x", "position of the centre, to the right", "m"),
         out("position.y", "position of the centre, upwards", "m"),
-        out("angle", "angle, counter-clockwise", "rad", initial_dependencies=("angle0",)),
+        out("angle", "angle, counter-clockwise", "rad"),
         out("velocity.x", "velocity, to the right", "m/s"),
         out("velocity.y", "velocity, upwards", "m/s"),
         out("angular_velocity", "angular velocity, counter-clockwise", "rad/s"),
@@ -169,14 +175,17 @@ LAYOUT = Layout(
         out("energy.resistance", "energy dissipated by the resistance of the surface in line motion", "J"),
         out("energy.work.contact", "work that the inputs force and torque have done on the rock", "J"),
         out("energy.residual", "kinetic + gravity + dissipated - work, minus their sum at the start", "J"),
-        out("energy.start", "kinetic + gravity at the start", "J"),
+        out("energy.start", "kinetic + gravity at the start of the trial", "J"),
         out("fault.cell", "number of the cell that the initialisation refuses, 0 if none", kind=Kind.INTEGER),
+        out("fault.value", "what is wrong with that cell: end.x, tilt, roughness or friction"),
+        out("fault.roughness", "largest roughness of that cell"),
+        out("fault.locking", "mu tan(phi) of that cell with its largest roughness"),
     ),
     states=(
         State("path", lambda sizes: JOINTS * sizes["cells"] * len(PATH)),
         State("ground", lambda sizes: sizes["cells"] * len(GROUND)),
         State("body", lambda sizes: len(BODY)),
-        State("clock", lambda sizes: 1),
+        State("clock", lambda sizes: len(CLOCK)),
         State("order.begin", lambda sizes: sizes["cells"] + 1),
         State("order", lambda sizes: sizes["cells"], integer=True),
         State("lines", lambda sizes: 1, integer=True),

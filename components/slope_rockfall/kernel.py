@@ -7,7 +7,7 @@ from ..component import OK
 from ..counter_random import stream
 from ..ports import view
 from ..stepping import substep_count, substep_length
-from .declarations import BODY, GROUND, LAYOUT, LEAVE, NEVER, PATH, RECEIVED
+from .declarations import BODY, CLOCK, GROUND, LAYOUT, LEAVE, NEVER, PATH, RECEIVED
 from .events import begin, happen, inertia, losses, plan, world
 from .flight import move
 from .geometry import build_path, height_above, line_below
@@ -15,7 +15,7 @@ from .refusals import START_BELOW, first_fault
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-FORCE_OUTSIDE, LEFT_BELOW, DIVERGED, RESTLESS = range(20, 24)
+FORCE_OUTSIDE, LEFT_BELOW, DIVERGED, RESTLESS, NEVER_RECEIVED = range(20, 25)
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
 TOUCHING = 1e-9
@@ -74,19 +74,47 @@ def prepare(w, x, k):
 
 @kernel
 def initialise(w, x, k):
-    """The rock at its start, and what it will do first."""
+    """The rock at its start, or ``lead_time`` before it is handed over, and what it will do first."""
+    clock, b = view(x, k, A.clock), view(x, k, A.body)
     view(k, k, A.started)[0] = 0
-    view(x, k, A.clock)[0] = 0.0
+    clock[CLOCK.origin], clock[CLOCK.begun] = 0.0, 0.0
     w[V.stable_step] = UNBOUNDED_STEP
     status = prepare(w, x, k)
     if status != OK:
         return status
-    clear = begin(world(w, x, k), int(w[V.seed]), int(w[V.trial]), w, view(x, k, A.body))
+    constants, seed, trial = world(w, x, k), int(w[V.seed]), int(w[V.trial])
+    clear = begin(constants, seed, trial, w, b)
+    if clear and w[V.lead_time] < NEVER:
+        status = skip(constants, seed, trial, w, b, clock)
     w[V.energy_start] = 0.0
-    publish(0.0, w, x, k)
+    publish(clock[CLOCK.begun], w, x, k)
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
     w[V.fault_cell] = 0.0 if clear else w[V.cell]
-    return OK if clear else START_BELOW
+    return status if clear else START_BELOW
+
+
+@kernel
+def skip(world, seed, trial, w, b, clock):
+    """Bring the trial to ``lead_time`` before its first hand-over: once to learn when that is, and once again up to there."""
+    entry = first_entry(world, stream(seed, trial), b)
+    begin(world, seed, trial, w, b)
+    if entry == NEVER:
+        return NEVER_RECEIVED
+    clock[CLOCK.begun] = on_grid(max(0.0, entry - w[V.lead_time]))
+    clock[CLOCK.origin] = -clock[CLOCK.begun]
+    return advance(world, stream(seed, trial), clock[CLOCK.begun], b)
+
+
+@kernel
+def first_entry(world, source, b):
+    """Time (s) at which the rock is handed over for the first time; NEVER if it is not. The rock is elsewhere then."""
+    for _ in range(MOST_EVENTS):
+        if b[BODY.handovers] > 0.0:
+            return b[BODY.handover_time]
+        if b[BODY.next_time] >= NEVER:
+            return NEVER
+        happen(world, source, b)
+    return NEVER
 
 
 @kernel
@@ -102,8 +130,8 @@ def step(t, h, w, x, k):
     """Advance by h (s): from event to event, or with constant force and torque where the rock is handed over."""
     started, clock, b = view(k, k, A.started), view(x, k, A.clock), view(x, k, A.body)
     if started[0] == 0:
-        started[0], clock[0] = 1, t
-    now, end = on_grid(t - clock[0]), on_grid(t + h - clock[0])
+        started[0], clock[CLOCK.origin] = 1, t - clock[CLOCK.begun]
+    now, end = on_grid(t - clock[CLOCK.origin]), on_grid(t + h - clock[CLOCK.origin])
     constants = world(w, x, k)
     if w[V.force_x] == 0.0 and w[V.force_y] == 0.0 and w[V.torque] == 0.0:
         status = advance(constants, stream(int(w[V.seed]), int(w[V.trial])), end, b)
@@ -170,7 +198,7 @@ def publish(time, w, x, k):
 @kernel
 def publish_place(world, b, w, x, k):
     """Mode, cell, height, next event and hand-over."""
-    origin = view(x, k, A.clock)[0]
+    origin = view(x, k, A.clock)[CLOCK.origin]
     j = line_below(w[V.position_x], world.lines, world.path)
     w[V.mode] = b[BODY.mode]
     w[V.cell] = world.path[j * len(PATH) + PATH.cell] + 1.0

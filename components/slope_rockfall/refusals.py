@@ -32,12 +32,14 @@ RULES = {
 }
 """What is wrong with a cell that has a fault, and what to do."""
 _FACTS = {
-    FOLDED: "end.x[{cell}] = {end:.6g} m", STEEP: "end.x[{cell}] = {end:.6g} m", TILT_SIGN: "tilt[{cell}] = {tilt:.6g}",
-    ROUGH: "roughness[{cell}] = {roughness:.6g}, largest {widest:.6g}", ROUGHNESS_SIGN: "roughness[{cell}] = {roughness:.6g}",
-    LOCKED: "friction[{cell}] = {friction:.6g}, roughness[{cell}] up to {widest:.6g}, mu tan(phi) = {locking:.6g}",
+    FOLDED: "end.x[{fault.cell}] = {fault.value} m", STEEP: "end.x[{fault.cell}] = {fault.value} m",
+    TILT_SIGN: "tilt[{fault.cell}] = {fault.value}", ROUGHNESS_SIGN: "roughness[{fault.cell}] = {fault.value}",
+    ROUGH: "roughness[{fault.cell}] = {fault.value}, largest {fault.roughness}",
+    LOCKED: "friction[{fault.cell}] = {fault.value}, roughness[{fault.cell}] up to {fault.roughness}, "
+            "mu tan(phi) = {fault.locking}",
 }
 
-FAULTS = {fault: f"cell {{fault.cell}}: {rule}" for fault, rule in RULES.items()} | {
+FAULTS = {fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()} | {
     LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal distribution: choose another "
                 "limit_speed.distribution",
     RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than receiver.right = {receiver.right} "
@@ -83,6 +85,23 @@ def has_fault(fault, c, w, k):
 
 
 @kernel
+def tell_fault(fault, c, w, k):
+    """Publish what the message of this fault of cell c needs; a fault of no cell is told with c = -1."""
+    w[V.fault_cell], w[V.fault_value], w[V.fault_roughness], w[V.fault_locking] = c + 1.0, 0.0, 0.0, 0.0
+    if c < 0:
+        return
+    w[V.fault_roughness], w[V.fault_locking] = widest_roughness(c, w, k), locking(c, w, k)
+    if fault in (FOLDED, STEEP):
+        w[V.fault_value] = view(w, k, A.end_x)[c]
+    elif fault == TILT_SIGN:
+        w[V.fault_value] = view(w, k, A.tilt)[c]
+    elif fault == LOCKED:
+        w[V.fault_value] = view(w, k, A.friction)[c]
+    else:
+        w[V.fault_value] = view(w, k, A.roughness)[c]
+
+
+@kernel
 def common_fault(w):
     """Fault of the parameters that belong to no cell, or 0."""
     if w[V.limit_speed_distribution] == LOGNORMAL and w[V.limit_speed_mean] <= 0.0:
@@ -93,12 +112,12 @@ def common_fault(w):
 
 @kernel
 def first_fault(w, k):
-    """Number of the first fault, or 0; the output fault.cell names its cell."""
-    w[V.fault_cell] = 0.0
+    """Number of the first fault, or 0; the outputs fault.* describe its cell."""
+    tell_fault(0, -1, w, k)
     for c in range(k[A.end_x + 1]):
         for fault in range(FOLDED, LIMIT_SIGN):
             if has_fault(fault, c, w, k):
-                w[V.fault_cell] = c + 1.0
+                tell_fault(fault, c, w, k)
                 return fault
     return common_fault(w)
 
@@ -107,10 +126,11 @@ def cell_problems(instance: "Instance") -> "Iterator[tuple[int, int, str]]":
     """Every fault of every cell: number of the cell, from 0, the fault, and what is wrong in words."""
     w, k = instance.w, instance.k
     for c in range(instance.sizes["cells"]):
-        facts = {"cell": c + 1, "end": instance["end.x"][c], "roughness": instance["roughness"][c], "tilt": instance["tilt"][c],
-                 "friction": instance["friction"][c], "widest": widest_roughness(c, w, k), "locking": locking(c, w, k)}
-        yield from ((c, fault, f"cell {c + 1} ({_FACTS[fault].format(**facts)}): {rule}") for fault, rule in RULES.items()
-                    if has_fault(fault, c, w, k))
+        for fault in RULES:
+            if has_fault(fault, c, w, k):
+                tell_fault(fault, c, w, k)
+                yield c, fault, instance.message(fault)
+    tell_fault(0, -1, w, k)
 
 
 def problems(instance: "Instance") -> list[str]:

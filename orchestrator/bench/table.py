@@ -13,7 +13,7 @@ from pathlib import Path
 
 from fmus.build import BuildError, Runtime
 
-from . import coupling, discs
+from . import coupling, discs, rockfall
 from .exchange import BARE, OURS, PEERS, Pair
 from .interleave import interleave
 
@@ -106,6 +106,26 @@ def start_rows(rounds: int) -> Iterator[Row]:
     yield Row("rockshed run lab-impact, warm: the whole command without pictures", statistics.median(whole[1:]), "s")
 
 
+def rockfall_rows(rounds: int) -> Iterator[Row]:
+    """CPU time of a trial on one core."""
+    times = interleave({"ours": rockfall.own_kernel()}, rounds)
+    took = times.median("ours") / rockfall.TRIALS
+    yield Row("rockfall trial, 15 cells and 3 search lines", took * 1e6, "us of one core", goal=10.0)
+
+
+def cluster_rows(rounds: int) -> Iterator[Row]:
+    """Wall time of a campaign on two local Dask workers, as a multiple of half that on one; needs two idle cores."""
+    if not rockfall.dask_available():
+        return
+    with rockfall.dask_campaigns() as contestants:
+        times = interleave(contestants, rounds)
+    one = times.median("1 workers")
+    yield Row("rockfall, 1,000,000 trials on one Dask worker", one, "s")
+    yield Row("rockfall, 1,000,000 trials on two Dask workers", 2.0 * times.ratio("2 workers", "1 workers"), "ratio",
+              "half of one worker's", 1.25)
+
+
 PARTS: Mapping[str, Callable[[int], Iterator[Row]]] = {
-    "discs": disc_rows, "coupling": coupling_rows, "exchange": exchange_rows, "start": start_rows}
+    "discs": disc_rows, "coupling": coupling_rows, "exchange": exchange_rows, "start": start_rows, "rockfall": rockfall_rows,
+    "cluster": cluster_rows}
 """Parts of the benchmark. Contestants that are compared take turns in every round."""

@@ -158,10 +158,10 @@ def cushion_weight(system: System, discs: int) -> float:
     return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
 
 
-def layer(impact: Impact) -> Layer:
-    """The sand of an impact, for the models of it."""
+def layer(impact: Impact, dropped: bool = True) -> Layer:
+    """The sand of an impact, for the models of it. dropped: whether the rock starts above it."""
     return Layer(impact.width, LAYER, DISC_RADIUS, ROCK_RADIUS, ROCK_SPEED, FULL_SCALE_SOIL, impact.stop_time,
-                 on_beam=bool(impact.span))
+                 on_beam=bool(impact.span), dropped=dropped)
 
 
 HANDBOOK_LAME = 1e6

@@ -13,7 +13,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
 from ..core.system import System, Value
 from ..headlines import References
-from . import full_scale, shed_on_piles, sonoda1993, spt, static_test
+from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt, static_test
 from .sand_models import Changes, Layer, Soil, changes, sand_model
 
 Sizes = Mapping[str, Mapping[str, int]]
@@ -53,7 +53,7 @@ def cases() -> dict[str, Case]:
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
     return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values()),
-                                       _shed_on_piles(), _spt()]}
+                                       _slope_to_cushion(), _shed_on_piles(), _spt()]}
 
 
 def case(name: str) -> Case:
@@ -202,15 +202,21 @@ def _spt() -> Case:
         make=make, derived=lambda system, sizes: spt.partner_stiffness(system))
 
 
+_FULL_SCALE_COUPLINGS = {"paper": "sand first, inputs held, exchange every 0.05 ms",
+                         "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms"}
+
+
+def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
+    """The weight of the sand, under which a beam starts bent."""
+    with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
+        return {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])} if "beam" in sizes else {}
+    return {}
+
+
 def _full_scale(impact: full_scale.Impact) -> Case:
     def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
         return full_scale.full_scale_system(fmus, impact, cast(full_scale.Coupling, coupling), sizes["sand"]["discs"],
                                             sizes["sand"]["elements"])
-
-    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
-        with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
-            return {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])} if impact.span else {}
-        return {}
 
     beam = {"beam": "RBSMBeam"} if impact.span else {}
     elements = {"elements": impact.elements}
@@ -218,7 +224,21 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         impact.name, f"Sonoda et al. 1993, full scale: {impact.summary}",
         models={"sand": "SandCushion", "rock": "FallingRock", **beam},
         sizes={"sand": {"discs": impact.discs, **elements}, **dict.fromkeys(beam, elements)},
-        couplings={"paper": "sand first, inputs held, exchange every 0.05 ms",
-                   "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms"},
-        make=make, one_size=("sand.elements", "beam.elements") if beam else (), derived=derived,
+        couplings=_FULL_SCALE_COUPLINGS, make=make, one_size=("sand.elements", "beam.elements") if beam else (),
+        derived=_weight_on_beam,
         references=partial(full_scale.references, impact), layer=full_scale.layer(impact))
+
+
+def _slope_to_cushion() -> Case:
+    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+        return slope_to_cushion.slope_system(fmus, cast(full_scale.Coupling, coupling), sizes["sand"]["discs"],
+                                             sizes["sand"]["elements"])
+
+    impact = slope_to_cushion.IMPACT
+    elements = {"elements": impact.elements}
+    return Case(
+        impact.name, f"Slope, sand and girders: {impact.summary}",
+        models={"sand": "SandCushion", "rock": "SlopeRockfall", "beam": "RBSMBeam"},
+        sizes={"sand": {"discs": impact.discs, **elements}, "beam": elements, "rock": {"cells": slope_to_cushion.cells()}},
+        couplings=_FULL_SCALE_COUPLINGS, make=make, one_size=("sand.elements", "beam.elements"), derived=_weight_on_beam,
+        layer=slope_to_cushion.sand_layer())

@@ -28,8 +28,9 @@ class Layer:
     """The layer of sand of a case and what meets it.
 
     width, height: of the layer (m). disc_radius, rock_radius: (m). speed: of the rock at the surface, downwards (m/s). falling:
-    whether it speeds up on the way there. on_beam: whether the sand lies on a beam. duration: of the run (s). step: of the sand
-    (s), where the case's own is longer than prepared layers bear.
+    whether it speeds up on the way there. dropped: whether it starts above the layer, and does not come from a slope. on_beam:
+    whether the sand lies on a beam. duration: of the run (s). step: of the sand (s), where the case's own is longer than prepared
+    layers bear.
     """
 
     width: float
@@ -40,6 +41,7 @@ class Layer:
     soil: Soil
     duration: float
     falling: bool = True
+    dropped: bool = True
     on_beam: bool = False
     step: float | None = None
 
@@ -134,9 +136,10 @@ def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes
     clearance = 1.5 * largest
     gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
     values |= {"sand.cohesion": state.cohesion, "sand.solid_fraction": state.solid_fraction,
-               "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665),
-               "rock.position0.y": layer.height + clearance + layer.rock_radius,
-               "rock.velocity0.y": -math.sqrt(layer.speed**2 - gained)}
+               "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665)}
+    if layer.dropped:
+        values |= {"rock.position0.y": layer.height + clearance + layer.rock_radius,
+                   "rock.velocity0.y": -math.sqrt(layer.speed**2 - gained)}
     if layer.step:
         values["sand.internal_step"] = layer.step
     if layer.on_beam:

@@ -157,6 +157,8 @@ _PARTS = (
     ("lost in sliding", "#c0561a", (("sand", "energy.sliding"),)),
     ("lost in rolling", "#8c2f12", (("sand", "energy.rolling"),)),
     ("lost in the beam", "#5c3a2e", (("beam", "energy.damping"),)),
+    ("lost on the slope, in the run", "#3b2b52", (("rock", "energy.impact"), ("rock", "energy.friction"),
+                                                  ("rock", "energy.roughness"), ("rock", "energy.resistance"))),
 )
 """Name, colour and energies of each layer; the components by their role."""
 _OF_PILES: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = (
@@ -200,15 +202,15 @@ def energy(run: Run, file: Path) -> None:
 
 
 def _layers(run: Run) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
-    """Name, colour and energy (J) of the layers that there are. Gravity and capillary energy count from their least value, so that
-    they stack."""
+    """Name, colour and energy (J) of the layers that there are. Gravity, capillary energy and what a rock has lost on its slope
+    count from their least value, so that they stack."""
     role = {key: name for key, name in vars(h.roles(run)).items() if name}
     found = []
     for name, colour, members in _PARTS:
         columns = [run.series[f"{role[r]}.{output}"] for r, output in members if r in role and f"{role[r]}.{output}" in run.series]
         if columns:
-            parts = [values - min(float(values.min()), 0.0) if "gravity" not in name else values - values.min()
-                     for values in columns]
+            from_least = name.startswith(("gravity", "lost on the slope"))
+            parts = [values - (values.min() if from_least else min(float(values.min()), 0.0)) for values in columns]
             found.append((name, colour, np.sum(parts, axis=0)))
     for name, colour, several in _OF_PILES:
         columns = [run.series[f"{owner}.{output}"] for model, output in several for owner in h.named(run, model)

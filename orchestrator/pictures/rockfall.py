@@ -18,7 +18,7 @@ from ..rockfall.campaign import Records
 from ..rockfall.preparation import Prepared
 from ..rockfall.profile import surface
 from ..rockfall.replay import MODES, Replay, replay
-from ..rockfall.results import QUANTITIES, Passing, passings
+from ..rockfall.results import QUANTITIES, Passing
 from .animation import FRAMES_PER_SECOND, write_animation
 from .style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH, captioned, legend, styled
 
@@ -48,13 +48,13 @@ def caption(made: Prepared) -> list[str]:
             f"{site.limit_speed.deviation:g} m/s"]
 
 
-def draw_all(made: Prepared, records: Records, along: Envelopes, folder: Path) -> list[Path]:
+def draw_all(made: Prepared, records: Records, passed: Sequence[Passing], along: Envelopes, folder: Path) -> list[Path]:
     """All pictures of a campaign, as files in ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / "envelopes.png", folder / "ends.png"]
     _profile_and_envelopes(made, along, files[0])
     _ends(made, records, files[1])
-    if found := [passing for passing in passings(made.campaign, records) if passing.count > 1]:
+    if found := [passing for passing in passed if passing.count > 1]:
         files.append(folder / "lines.png")
         _histograms(made, found, files[-1])
     return files

@@ -1,5 +1,6 @@
 """The sand at several instants: discs, rock, beam, and the forces in the contacts as lines."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +11,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
-from components.sand_cushion.reader import Discs, SandState, read, sizes_of
+from components.sand_cushion.reader import Box, Discs, SandState, read, sizes_of
 from components.units import cm, kN, ms
 from fmus.python_fmu import component_state
 
@@ -148,7 +150,7 @@ def _scale_bar(axes: Axes, box: float) -> None:
 def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
     """Left, right, bottom, top (m) of what all panels show."""
     box = shown[0].state.box
-    margin = 0.06 * box.width
+    margin = max(0.06 * box.width, 0.0 if math.isinf(box.wall_top) else 1.2 * box.wall_thickness)
     beam = max(float(frame.state.beam.radius.max(initial=0.0)) for frame in shown)
     top = max(float(disc.y.max() + disc.radius.max()) for frame in shown for disc in (frame.state.rock, frame.state.discs))
     highest = min(top, box.base + 1.2 * box.width)
@@ -165,12 +167,21 @@ def _panel(run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[flo
     if not _on_floor(run):
         _discs(axes, state.beam, _BEAM_FACE, BEAM, 3)
     _discs(axes, state.rock, _ROCK_FACE, INK, 3)
-    for wall in (state.box.left, state.box.left + state.box.width):
-        axes.plot([wall / cm, wall / cm], [state.box.base / cm, top], color=GREY, linewidth=1.0, zorder=2)
+    _walls(axes, state.box, top)
     axes.axhline(state.box.base / cm, color=GREY, linewidth=0.5, zorder=2)
     _axis_of_beam(run, frame, axes)
     axes.set_title(f"{frame.time / ms:g} ms")
     axes.set_title(_words(run, frame), loc="right", fontsize=7.5, color=GREY)
+
+
+def _walls(axes: Axes, box: Box, top: float) -> None:
+    """The inner faces of the side walls; those of a finite height as thick as they are."""
+    for face, outwards in ((box.left, -1.0), (box.left + box.width, 1.0)):
+        if math.isinf(box.wall_top):
+            axes.plot([face / cm, face / cm], [box.base / cm, top], color=GREY, linewidth=1.0, zorder=2)
+        else:
+            axes.add_patch(Rectangle((face / cm, box.base / cm), outwards * box.wall_thickness / cm, (box.wall_top - box.base) / cm,
+                                     facecolor=_BEAM_FACE, edgecolor=GREY, linewidth=0.7, zorder=2))
 
 
 def _on_floor(run: Run) -> bool:

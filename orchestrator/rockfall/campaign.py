@@ -3,9 +3,11 @@
 A block is a function of the campaign and the numbers of its trials alone: whoever computes it, the bits are the same.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,11 @@ from components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, trials
 Floats = NDArray[np.float64]
 Done = Callable[[int, int], None]
 """Told the number of trials done, and of all."""
+
+
+class CampaignFailed(Exception):  # noqa: N818 (as RunFailed)
+    """A campaign began and could not go on."""
+
 
 BLOCK = 500
 """Trials in a block: some milliseconds, after which Ctrl-C is heard."""
@@ -84,24 +91,44 @@ def compute(given: Campaign, first: int, count: int) -> Records:
     return made
 
 
+def fill(made: Records, first: int, block: Records) -> int:
+    """Put the records of a block of trials, the first of which is number ``first``, where they belong; returns their number."""
+    count = len(block.outcomes)
+    rows = slice(first, first + count)
+    made.passages[rows], made.peaks[rows], made.outcomes[rows] = block.passages, block.peaks, block.outcomes
+    return count
+
+
+@dataclass(frozen=True)
+class Crew:
+    """Who computes the trials. run: all of a campaign; facts: what ``run.json`` says of it."""
+
+    run: Callable[[Campaign, Done], Records]
+    facts: Mapping[str, Any]
+
+
+@contextmanager
+def threads(workers: int) -> Iterator[Crew]:
+    """So many threads of this process."""
+    yield Crew(lambda given, done: run(given, workers, done), {"workers": workers})
+
+
 def run(given: Campaign, workers: int, done: Done = lambda count, total: None) -> Records:
     """All trials of a campaign, on so many threads."""
     made = empty_records(given, given.trials)
-    starts = range(0, given.trials, BLOCK)
-    with ThreadPoolExecutor(workers) as threads:
-        waiting = [threads.submit(_fill, given, start, min(BLOCK, given.trials - start), made) for start in starts]
+    with ThreadPoolExecutor(workers) as pool:
+        waiting = [pool.submit(_compute_into, given, start, min(BLOCK, given.trials - start), made)
+                   for start in range(0, given.trials, BLOCK)]
         try:
             finished = 0
             for block in as_completed(waiting):
                 finished += block.result()
                 done(finished, given.trials)
         except BaseException:
-            threads.shutdown(wait=True, cancel_futures=True)
+            pool.shutdown(wait=True, cancel_futures=True)
             raise
     return made
 
 
-def _fill(given: Campaign, first: int, count: int, made: Records) -> int:
-    block, rows = compute(given, first, count), slice(first, first + count)
-    made.passages[rows], made.peaks[rows], made.outcomes[rows] = block.passages, block.peaks, block.outcomes
-    return count
+def _compute_into(given: Campaign, first: int, count: int, made: Records) -> int:
+    return fill(made, first, compute(given, first, count))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..core.results import Figure, RunFolder
-from .campaign import Done, run
+from .campaign import Crew, Done
 from .preparation import Prepared
 from .replay import check
 from .results import Passing, envelopes, passings, write
@@ -27,30 +27,33 @@ class Finished:
     pictures: Sequence[Path]
 
 
-def carry_out(made: Prepared, folder: Path, workers: int, counting: Callable[[str], AbstractContextManager[Done]],
-              with_pictures: bool = True, replays: Sequence[int] = (), animation: str = "gif") -> Finished:
+def carry_out(made: Prepared, folder: Path, crew: AbstractContextManager[Crew],
+              counting: Callable[[str], AbstractContextManager[Done]], with_pictures: bool = True, replays: Sequence[int] = (),
+              animation: str = "gif") -> Finished:
     """Compute all trials and write everything into ``folder``.
 
-    counting: opens a progress bar with this text. replays: trials that become animations of this kind.
+    crew: who computes the trials; it is there as long as that takes. counting: opens a progress bar with this text. replays: trials
+    that become animations of this kind.
 
     Raises:
-        InputRefused: the folder cannot be written or holds something else, or there is no such trial to replay.
+        InputRefused: the folder cannot be written or holds something else, there is no such trial to replay, or nobody to compute.
     """
     for number in replays:
         check(made, number)
     with RunFolder(folder) as place:
-        began = time.perf_counter()
-        with counting("trials") as done:
-            records = run(made.campaign, workers, done)
-        wall_time = time.perf_counter() - began
+        with counting("trials") as done, crew as working:
+            began = time.perf_counter()
+            records = working.run(made.campaign, done)
+            wall_time = time.perf_counter() - began
         along = envelopes(made.campaign, records)
-        figures = write(made, records, along, place.running, wall_time, workers)
+        passed = passings(made.campaign, records)
+        figures = write(made, records, passed, along, place.running, wall_time, working.facts)
         pictures: list[Path] = []
         if with_pictures:
             from ..pictures.rockfall import draw_all
 
             with counting("drawing"):
-                pictures += draw_all(made, records, along, place.running / FIGURES)
+                pictures += draw_all(made, records, passed, along, place.running / FIGURES)
         for number in replays:
             from ..pictures.rockfall import animate
 
@@ -60,4 +63,4 @@ def carry_out(made: Prepared, folder: Path, workers: int, counting: Callable[[st
                 animate(made, number, pictures[-1], done)
         place.swap()
     inside = [folder / file.relative_to(place.running) for file in pictures]
-    return Finished(folder, made.campaign.trials, wall_time, figures, passings(made.campaign, records), inside)
+    return Finished(folder, made.campaign.trials, wall_time, figures, passed, inside)

@@ -2,19 +2,25 @@
 
 import os
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..building import is_cold
 from ..core.errors import InputRefused, Problem
 from ..core.names import nearest
 from ..screen import COLD_START, Screen
 
+if TYPE_CHECKING:
+    from .campaign import Crew
+
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
 
 
 def rockfall(screen: Screen, results: Path, file: Path, trials: int | None, preset: str | None, seed: int | None,
-             replays: Sequence[int], animation: str | None, folder: Path | None, workers: int | None, with_pictures: bool) -> None:
+             replays: Sequence[int], animation: str | None, folder: Path | None, workers: int | None, scheduler: str | None,
+             with_pictures: bool) -> None:
     """Carry out a campaign and show its table or JSON. results: folder of the runs that name no other.
 
     Raises:
@@ -28,9 +34,9 @@ def rockfall(screen: Screen, results: Path, file: Path, trials: int | None, pres
     from .report import lines, tables
 
     kind = _kind(screen, animation) if replays else "gif"
+    crew = _crew(scheduler, workers)
     made = prepare(file, count, seed)
-    done = carry_out(made, folder or results / made.name, workers or os.cpu_count() or 1, screen.counting, with_pictures,
-                     replays, kind)
+    done = carry_out(made, folder or results / made.name, crew, screen.counting, with_pictures, replays, kind)
     if screen.as_json:
         screen.dump({"status": "complete", "folder": str(done.folder), "figures": [figure.as_entry() for figure in done.figures],
                      "pictures": [str(file) for file in done.pictures]})
@@ -49,6 +55,17 @@ def _count(trials: int | None, preset: str | None) -> int | None:
     if trials is not None:
         raise InputRefused([Problem("--preset", "and --trials are two numbers of trials", "give one of them")])
     return PRESETS[preset]
+
+
+def _crew(scheduler: str | None, workers: int | None) -> "AbstractContextManager[Crew]":
+    """Threads of this process, or workers of a Dask scheduler."""
+    if scheduler is None:
+        from .campaign import threads
+
+        return threads(workers or os.cpu_count() or 1)
+    from .cluster import dask_workers
+
+    return dask_workers(scheduler, workers)
 
 
 def _kind(screen: Screen, wanted: str | None) -> str:

@@ -10,7 +10,7 @@ figures/              pictures
 """
 
 import platform
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -69,8 +69,8 @@ ALONG = (("height", PEAK.height, "m"), ("speed", PEAK.speed, "m/s"), ("energy", 
 class Passing:
     """The rocks that pass a search line or barrier, each at its first passage.
 
-    values: by name of the quantity, of the rocks that pass. share, low, high: part of all trials, with its interval.
-    barrier: None for a search line; else how many were stopped, and passed below its reach or above it.
+    values: by name of the quantity, of the rocks that pass, in ascending order. share, low, high: part of all trials, with its
+    interval. barrier: None for a search line; else how many were stopped, and passed below its reach or above it.
     """
 
     name: str
@@ -83,8 +83,7 @@ class Passing:
 
     def percentiles(self, quantity: str) -> list[Percentile]:
         """Of the rocks that pass; empty if none does."""
-        ordered = np.sort(self.values[quantity])
-        return [percentile(ordered, share) for share in SHARES] if len(ordered) else []
+        return [percentile(self.values[quantity], share) for share in SHARES] if self.count else []
 
 
 def passings(given: Campaign, records: Records) -> list[Passing]:
@@ -97,7 +96,7 @@ def _passing(given: Campaign, records: Records, i: int) -> Passing:
     rows, count = records.passages[passed, i], int(passed.sum())
     low, high = proportion(count, given.trials)
     barrier = _barrier(given, records, i, passed) if given.barriers[i, 0] >= 0.0 else None
-    values = {q.name: np.abs(rows[:, q.column]) for q in QUANTITIES}
+    values = {q.name: np.sort(np.abs(rows[:, q.column])) for q in QUANTITIES}
     return Passing(given.names[i], count, count / given.trials, low, high, values, barrier)
 
 
@@ -112,7 +111,7 @@ def _barrier(given: Campaign, records: Records, i: int, passed: NDArray[np.bool_
 
 # --- figures ---
 
-def figures(given: Campaign, records: Records) -> list[Figure]:
+def figures(given: Campaign, records: Records, passed: Sequence[Passing]) -> list[Figure]:
     """The summary: how trials end, and every line and barrier with percentiles and their intervals."""
     ends = records.outcomes[:, OUTCOME.end].astype(int)
     found = [Figure("trials", given.trials), *(Figure(f"end.{words.replace(' ', '_')}", int((ends == code).sum()))
@@ -121,7 +120,7 @@ def figures(given: Campaign, records: Records) -> list[Figure]:
     found += [Figure(f"largest.{name}", float(records.outcomes[:, column].max()), unit)
               for name, column, unit in (("height", OUTCOME.height, "m"), ("speed", OUTCOME.speed, "m/s"),
                                          ("energy", OUTCOME.kinetic, "J"))]
-    for passing in passings(given, records):
+    for passing in passed:
         found += _figures_of(passing)
     return found
 
@@ -152,28 +151,29 @@ def envelopes(given: Campaign, records: Records) -> dict[str, dict[str, NDArray[
 
 # --- files ---
 
-def write(made: Prepared, records: Records, along: dict[str, dict[str, NDArray[np.float64]]], folder: Path,
-          wall_time: float, workers: int) -> list[Figure]:
-    """All files except the pictures; ``run.json`` comes last. Returns the summary."""
+def write(made: Prepared, records: Records, passed: Sequence[Passing], along: dict[str, dict[str, NDArray[np.float64]]],
+          folder: Path, wall_time: float, crew: Mapping[str, Any]) -> list[Figure]:
+    """All files except the pictures; ``run.json`` comes last, with the facts of the crew. Returns the summary."""
     import pyarrow.csv
     import pyarrow.parquet
 
-    found = figures(made.campaign, records)
-    pyarrow.parquet.write_table(_trials(made.campaign, records), folder / TRIALS, compression="zstd")
+    found = figures(made.campaign, records, passed)
+    pyarrow.parquet.write_table(_trials(made.campaign, records), folder / TRIALS, compression="zstd",
+                                use_dictionary=["end", "barrier"])  # nearly all numbers of the others are different
     table = _envelopes(made, records, along)
     pyarrow.parquet.write_table(table, folder / ENVELOPES, compression="zstd")
     pyarrow.csv.write_csv(table, folder / ENVELOPES_CSV)
     write_json(folder / SUMMARY, [figure.as_entry() for figure in found])
-    write_json(folder / RUN, _facts(made, wall_time, workers))
+    write_json(folder / RUN, _facts(made, wall_time, crew))
     return found
 
 
-def _facts(made: Prepared, wall_time: float, workers: int) -> dict[str, Any]:
+def _facts(made: Prepared, wall_time: float, crew: Mapping[str, Any]) -> dict[str, Any]:
     return {"status": "complete", "kind": "rockfall", "name": made.name, "ended": datetime.now(UTC).isoformat(timespec="seconds"),
             "site_file": str(made.file), "site": made.site.model_dump(mode="json", by_alias=True),
             "materials": {name: described(material) for name, material in made.materials.items()},
             "nodes": [{"x": node.x, "y": node.y, "material": node.material} for node in made.nodes],
-            "confidence": CONFIDENCE, "wall_time": wall_time, "workers": workers, "platform": platform.platform(),
+            "confidence": CONFIDENCE, "wall_time": wall_time, **crew, "platform": platform.platform(),
             "versions": {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}}
 
 
@@ -181,11 +181,13 @@ def _trials(given: Campaign, records: Records) -> Any:
     """A row for each trial; what has no value (a line that is not passed) is null."""
     import pyarrow as pa
 
-    ends, outcomes = records.outcomes[:, OUTCOME.end].astype(int), records.outcomes
-    by = outcomes[:, OUTCOME.barrier].astype(int)
+    outcomes = records.outcomes
+    ends = np.searchsorted(list(ENDS), outcomes[:, OUTCOME.end]).astype(np.int32)
+    by = outcomes[:, OUTCOME.barrier].astype(np.int32)
+    barriers = pa.DictionaryArray.from_arrays(pa.array(by, mask=by < 0), pa.array(list(given.names), pa.string()))
     columns = [result_column("trial", np.arange(given.trials), "1", "number of the trial: it replays by itself"),
-               result_column("end", pa.array([ENDS[code] for code in ends]).dictionary_encode(), "1", "how the trial ended"),
-               result_column("barrier", [given.names[i] if i >= 0 else None for i in by], "1", "the barrier that stopped it")]
+               result_column("end", pa.DictionaryArray.from_arrays(ends, list(ENDS.values())), "1", "how the trial ended"),
+               result_column("barrier", barriers, "1", "the barrier that stopped it")]
     for name, column, unit, words in (
             ("x", OUTCOME.x, "m", "place of the centre at the end, to the right"), ("y", OUTCOME.y, "m", "the same, upwards"),
             ("time", OUTCOME.time, "s", "time at the end"),

@@ -110,3 +110,55 @@ def test_a_force_that_is_no_number_stops_it(force):
     rock["force.x"] = force
     with pytest.raises(ComponentError, match="reduce the exchange step"):
         rock.step(0.0, 1e-4)
+
+
+# --- a start shortly before the hand-over ---
+
+ALL = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "mode", "height", "impacts", "received",
+       "energy.kinetic", "energy.impact", "energy.roughness")
+ROUGH = {"roughness": 0.1, "roughness_deviation": 0.03, "tilt_deviation": 0.1, "hardening": 0.7, "friction": 0.5,
+         "tilt__meaning": "absolute"}
+
+
+def bouncing(**values):
+    """It bounces along the slope before it comes into the box, over a cliff."""
+    start = {"position0__x": -20.0, "position0__y": 14.0, "velocity0__x": 6.0, "trial": 3}
+    box = {"receiver__present": 1.0, "receiver__left": 5.0, "receiver__right": 12.0, "receiver__bottom": -8.0, "receiver__top": 8.0}
+    return slope([(-50, 20), (5, -2), (6, -12), (50, -12)], **{**start, **box, **ROUGH, **values})
+
+
+@pytest.mark.parametrize("lead", [0.0, 0.02, 1.7])
+def test_with_a_lead_time_it_is_the_same_trial_from_there_on(lead):
+    entry, late = bouncing_entry(), bouncing(lead_time=lead)
+    begun = math.floor((entry - lead) * 1e12 + 0.5) / 1e12
+    again = bouncing()
+    again.step(0.0, begun)
+    assert [late[name] for name in ALL] == [again[name] for name in ALL]
+    assert late["impacts"] > 0
+    for i in range(8):
+        again.step(begun + 0.25 * i, 0.25)
+        late.step(3.0 + 0.25 * i, 0.25)  # the tool's clock may begin at any time
+        assert [late[name] for name in ALL] == [again[name] for name in ALL]
+    assert late["handover.time"] == pytest.approx(3.0 + lead, abs=1e-9)
+
+
+def test_a_lead_time_longer_than_the_way_begins_at_the_start():
+    rock = bouncing(lead_time=1e3)
+    assert (rock["position.x"], rock["impacts"]) == (-20.0, 0.0)
+    rock.step(0.0, bouncing_entry() + 0.1)
+    assert rock["handover.time"] == bouncing_entry()
+
+
+def bouncing_entry():
+    """When it enters the box, without a lead time (s)."""
+    rock, time = bouncing(), 0.0
+    while rock["received"] == 0.0 and time < 20.0:
+        rock.step(time, 0.01)
+        time += 0.01
+    assert 2.0 < rock["handover.time"] < 20.0
+    return rock["handover.time"]
+
+
+def test_a_rock_that_never_enters_has_no_lead_time():
+    with pytest.raises(ComponentError, match="trial 3 of seed 1 never enters the receiver, and lead_time counts from there"):
+        bouncing(lead_time=0.1, receiver__left=60.0, receiver__right=61.0, receiver__top=100.0, receiver__bottom=90.0)

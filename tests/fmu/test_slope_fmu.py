@@ -3,8 +3,16 @@
 import pytest
 
 from components.catalogue import component
+from fmus.build import Runtime
 
-from .host import DISCARD, OK, Host
+from .host import DISCARD, ERROR, OK, Host
+
+
+@pytest.fixture(params=list(Runtime))
+def either(request):
+    """The FMU with Python inside and the native one."""
+    with Host(request.getfixturevalue(f"{request.param}_fmus")["SlopeRockfall"], "rock") as host:
+        yield host
 
 
 @pytest.fixture
@@ -66,6 +74,22 @@ def test_all_that_is_wrong_with_the_profile_is_logged(rock):
     assert "cell 3 (end.x[3] = 1 m): its right node must lie to the right" in text
     assert "cell 7 (friction[7] = 20, roughness[7] up to 0.1588, mu tan(phi) = " in text
     assert rock.step(0.0, 0.1) == DISCARD
+
+
+@pytest.mark.parametrize(("values", "reason"), [
+    ({"end.x[3]": 1.0}, "cell 3 (end.x[3] = 1 m): its right node must lie to the right of its left node"),
+    ({"end.x[3]": 12.001}, "cell 3 (end.x[3] = 12.001 m): it is steeper than 89 degrees"),
+    ({"friction[7]": 20.0}, "cell 7 (friction[7] = 20, roughness[7] up to 0.1588, mu tan(phi) = 5.87"),
+    ({"roughness[2]": 1.98}, "cell 2 (roughness[2] = 1.98, largest 2.0388): roughness with its deviation reaches 2"),
+    ({"hardening[4]": 1.2}, "hardening[4] = 1.2: allowed is 0 to 1"),
+    ({"position0.y": 90.0}, "the rock starts below the surface: its lowest point is at -"),
+    ({"receiver.present": True}, "the receiver is empty"),
+    ({"lead_time": 0.1}, "never enters the receiver"),
+])
+def test_both_runtimes_refuse_the_same_in_the_same_words(either, values, reason):
+    either.start(**values)
+    assert reason in " ".join(either.errors())
+    assert either.step(0.0, 0.1) in (DISCARD, ERROR)
 
 
 def test_a_force_outside_the_receiver_is_discarded_with_its_reason(rock):

@@ -1,6 +1,7 @@
 """A serialized state, decoded."""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -33,7 +34,7 @@ def test_bodies_and_box_are_where_the_state_has_them():
     assert state.rock.y[0] == pytest.approx(sand["surface_height"] + 0.01, abs=1e-4)
     np.testing.assert_array_equal(state.beam.x, sand["beam.position.x"])
     assert state.beam.radius.tolist() == [0.025] * 4
-    assert dataclasses.astuple(state.box) == (0.0, 0.1, 0.0)
+    assert dataclasses.astuple(state.box) == (0.0, 0.1, 0.0, math.inf, 0.2)
 
 
 def test_contacts_are_all_pairs_that_overlap():

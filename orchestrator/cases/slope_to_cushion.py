@@ -1,0 +1,100 @@
+"""A rock from its slope onto the cushion of a rock shed: ``examples/shed.toml`` above the girders of Sonoda et al. (1993).
+
+The rock is a trial of the campaign over that slope: of the rocks that land on the cushion the one at the 95th percentile of the
+kinetic energy. It comes in obliquely, over the side wall, is handed over above the sand, and may bounce and go on along the slope.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from components.component import Instance
+from components.ports import Causality, Kind
+from components.units import cm, cm2, kgf
+
+from ..core.system import ComponentSpec, System, Value
+from .full_scale import GIRDER_DEPTH, Coupling, Impact, full_scale_system, layer
+from .sand_models import Layer
+
+SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
+LINE, SHARE = "cushion", 0.95
+"""Search line of the site that the rocks pass as they land on the cushion, and the percentile of their kinetic energy there."""
+TRIAL = 7649
+"""The trial at this percentile in the site's 10,000; a test finds it again."""
+
+IMPACT = Impact("slope-to-cushion", "95th-percentile rock of a 35 m slope on 90 cm of crushed sand on H-300x400 girders of 10 m",
+                100.0 * kgf / cm2, 10.0, GIRDER_DEPTH, 0.6, 10.0)
+"""The girders of the case ``girders-10`` with sand on their whole length, as on a roof; the rock is that of the site."""
+# A roof is flat: the sand lies on the surface of the beam, and not between its discs, where it chatters.
+WALL_HEIGHT, WALL_THICKNESS = 89 * cm, 50 * cm
+"""A little lower than the ground on the uphill side, which does not touch it; as wide as rocks need that are on their way off."""
+BEAM_DAMPING = 5e-6
+"""Rayleigh damping of the beam's stiffness (s): less than 0.01 % of critical for its first mode, tens of percent for its fastest,
+which would grow without any, for the contact forces on the beam are held over an exchange (4 % of the impact energy after 1 s)."""
+LEAD_TIME = 5e-3
+"""Time (s) from the start to the hand-over."""
+_MARGIN = 5 * cm
+
+
+@cache
+def cells() -> int:
+    """Number of cells of the site's slope; each begins at a node that names its material."""
+    with SITE.open("rb") as file:
+        return len(tomllib.load(file)["profile"]["points"]) - 1
+
+
+@cache
+def _site() -> Instance:
+    """The site as an initialised component, as its campaign has it."""
+    from ..rockfall.preparation import prepare
+
+    return prepare(SITE).instance
+
+
+def site_parameters(instance: Instance) -> dict[str, Value]:
+    """Every parameter of a slope that differs from its start value, as the FMU takes it."""
+    found: dict[str, Value] = {}
+    names = iter(instance.references.items())
+    for variable in instance.component.layout.ordered:
+        for number in range(1 if variable.size is None else instance.sizes[variable.size]):
+            name, index = next(names)
+            value = float(instance.w[index])
+            if variable.causality is Causality.PARAMETER and value != variable.start_at(number, instance.sizes):
+                found[name] = variable.choices[int(value) - 1] if variable.kind is Kind.ENUMERATION else value
+    return found
+
+
+def receiver(radius: float) -> dict[str, Value]:
+    """The box in which the rock is handed over, for a rock of this radius (m): between the outer faces of the walls, and on the
+    downhill side until the rock has fallen clear of them; its upper side is the search line."""
+    with SITE.open("rb") as file:
+        line = next(entry for entry in tomllib.load(file)["line"] if entry["name"] == LINE)
+    return {"receiver.present": True, "receiver.left": -WALL_THICKNESS + _MARGIN, "receiver.bottom": -1.0,
+            "receiver.right": IMPACT.width + WALL_THICKNESS + radius + _MARGIN, "receiver.top": line["points"][0][1]}
+
+
+def slope_system(fmus: Mapping[str, str], coupling: Coupling = "paper", discs: int | None = None,
+                 elements: int | None = None) -> System:
+    """Slope, sand and girders as a co-simulation of FMUs. The origin is the left support, below the surface of the beam.
+
+    discs, elements: sizes that ``sand`` and ``beam`` were built with, by default those of the impact.
+    """
+    system = full_scale_system(fmus, IMPACT, coupling, discs, elements)
+    site, sand, beam = _site(), system.components["sand"], system.components["beam"]
+    shared = {name: value.model_copy(update={"value": site[name.removeprefix("rock_")]}) if name.startswith("rock_") else value
+              for name, value in system.shared.items()}
+    given = {name: value for name, value in site_parameters(site).items() if name not in ("mass", "radius")}
+    rock = {**given, "trial": TRIAL, "lead_time": LEAD_TIME, **receiver(site["radius"]),
+            "internal_step": system.components["rock"].parameters["internal_step"]}
+    roof = {"base": "beam_surface", "box.wall_height": WALL_HEIGHT, "box.wall_thickness": WALL_THICKNESS}
+    return system.model_copy(update={
+        "description": IMPACT.summary, "shared": shared,
+        "components": {**system.components, "rock": ComponentSpec(fmu=fmus["rock"], parameters=rock),
+                       "sand": sand.model_copy(update={"parameters": {**sand.parameters, **roof}}),
+                       "beam": beam.model_copy(update={"parameters": {**beam.parameters, "damping.stiffness": BEAM_DAMPING}})}})
+
+
+def sand_layer() -> Layer:
+    """The sand, for the models of it."""
+    return layer(IMPACT, dropped=False)

@@ -1,0 +1,176 @@
+"""``rockshed rockfall --scheduler``: the same bits from the workers of a Dask scheduler, however many and whoever dies."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+from typer.testing import CliRunner
+
+import orchestrator
+from orchestrator.cli import app
+from orchestrator.rockfall import campaign, cluster
+from orchestrator.rockfall.preparation import prepare
+
+EXAMPLE = Path(orchestrator.__file__).parent / "examples" / "slope.toml"
+
+
+@pytest.fixture(scope="module")
+def client():
+    """A scheduler with one worker; tests add to it."""
+    with cluster._local(1) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def made():
+    return prepare(EXAMPLE, trials=5000).campaign
+
+
+@pytest.fixture(scope="module")
+def records(made):
+    return campaign.run(made, 1)
+
+
+@pytest.fixture
+def rockshed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "500")
+    return lambda *arguments: CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+def assert_same(found, expected):
+    for name in ("outcomes", "passages", "peaks"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+
+
+def busiest(client):
+    """Process number of the worker that has the most to do."""
+    waiting = client.processing()
+    return client.run(os.getpid, workers=[max(waiting, key=lambda name: len(waiting[name]))]).popitem()[1]
+
+
+class Killer:
+    """A progress display that kills a worker when the first block is there."""
+
+    def __init__(self, client):
+        self.client, self.killed = client, None
+
+    def __call__(self, count, total):
+        if self.killed is None:
+            self.killed = busiest(self.client)
+            os.kill(self.killed, signal.SIGKILL)
+
+
+def test_an_only_worker_that_is_killed_loses_nothing(client, made, records, monkeypatch):
+    """Another one is started, and computes again what the dead one has not handed over."""
+    monkeypatch.setattr(cluster, "BLOCK", 200)
+    killer = Killer(client)
+    assert_same(cluster._run(client, made, killer), records)
+    assert killer.killed is not None
+    assert not psutil.pid_exists(killer.killed)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3, 4])
+def test_any_number_of_workers_gives_the_same_bits(client, made, records, monkeypatch, workers):
+    monkeypatch.setattr(cluster, "BLOCK", 300)  # the last is shorter
+    client.cluster.scale(workers)
+    client.wait_for_workers(workers)
+    told = []
+    assert_same(cluster._run(client, made, lambda count, total: told.append((count, total))), records)
+    assert len(told) == 17
+    assert told[-1] == (5000, 5000)
+    few = prepare(EXAMPLE, trials=200).campaign
+    assert_same(cluster._run(client, few, lambda count, total: None),
+                campaign.Records(records.passages[:200], records.peaks[:200], records.outcomes[:200]))
+
+
+def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch):
+    monkeypatch.setattr(cluster, "BLOCK", 1000)
+    given = prepare(EXAMPLE, trials=30_000).campaign
+    killer = Killer(client)
+    assert_same(cluster._run(client, given, killer), campaign.run(given, 1))
+    assert not psutil.pid_exists(killer.killed)
+
+
+def test_workers_with_another_version_are_refused(client, made, monkeypatch):
+    monkeypatch.setattr(cluster, "source_stamp", lambda component: "another")
+    with pytest.raises(campaign.CampaignFailed, match="another version of rockshed: install the same"):
+        cluster._run(client, made, lambda count, total: None)
+
+
+def test_the_command_takes_a_running_scheduler(client, rockshed):
+    address = client.scheduler.address
+    result = rockshed("rockfall", EXAMPLE, "--trials", 6000, "--no-figures", "--scheduler", address)
+    assert result.exit_code == 0, result.output
+    assert "trials: 6000 of 6000" in result.stderr
+    facts = json.loads(Path("results/slope/run.json").read_text())
+    assert (facts["scheduler"], facts["workers"]) == (address, len(client.nthreads()))
+    on_threads = rockshed("rockfall", EXAMPLE, "--trials", 6000, "--no-figures", "--output-dir", "threads")
+    assert on_threads.exit_code == 0
+    assert Path("threads/trials.parquet").read_bytes() == Path("results/slope/trials.parquet").read_bytes()
+    assert Path("threads/envelopes.csv").read_bytes() == Path("results/slope/envelopes.csv").read_bytes()
+
+
+@pytest.mark.parametrize(("options", "words"), [
+    (["--scheduler", "locl"], "--scheduler locl: is no address"),
+    (["--scheduler", "tcp://localhost:8786", "--workers", "2"], "a running scheduler has its own workers"),
+    (["--scheduler", "carrier-pigeon://loft"], "unknown address scheme 'carrier-pigeon'"),
+])
+def test_addresses_that_are_none_are_refused(rockshed, options, words):
+    result = rockshed("rockfall", EXAMPLE, *options)
+    assert result.exit_code == 2
+    assert words in " ".join(result.stderr.split())
+    assert not list(Path().iterdir())
+
+
+def test_an_unreachable_scheduler_is_refused_within_seconds(rockshed, monkeypatch):
+    monkeypatch.setattr(cluster, "CONNECT_TIMEOUT", 0.5)
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{unused.getsockname()[1]}"
+        result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", address)
+    assert result.exit_code == 2
+    assert f"--scheduler {address}: no scheduler answers there within 0.5 s" in " ".join(result.stderr.split())
+    assert not list(Path().iterdir())
+
+
+def test_a_scheduler_without_workers_is_refused(client, rockshed, monkeypatch):
+    monkeypatch.setattr(cluster, "CONNECT_TIMEOUT", 0.5)
+    client.cluster.scale(0)
+    while client.nthreads():
+        time.sleep(0.05)
+    result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", client.scheduler.address)
+    assert result.exit_code == 2
+    assert "the scheduler has no workers" in result.stderr
+
+
+def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):
+    monkeypatch.setattr(cluster, "find_spec", lambda name: None)
+    assert 'pip install "rockshed[cluster]"' in rockshed("rockfall", EXAMPLE, "--scheduler", "local").stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a terminal's Ctrl-C is a signal to a group of processes")
+def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_nothing(tmp_path):
+    command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "1000000", "--scheduler", "local",
+               "--workers", "1", "--output-dir", str(tmp_path / "out")]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True,
+                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    assert run.stderr is not None
+    assert any("trials: " in line for line in run.stderr)
+    started = psutil.Process(run.pid).children(recursive=True)
+    assert started
+    os.killpg(run.pid, signal.SIGINT)
+    _, rest = run.communicate(timeout=120)
+    assert run.returncode == 130
+    assert rest.strip() == "failed: interrupted"
+    psutil.wait_procs(started, timeout=10)
+    assert not [p for p in started if p.is_running() and p.status() != psutil.STATUS_ZOMBIE]
+    assert not list(tmp_path.iterdir())
