@@ -71,7 +71,7 @@ class Platform:
 
 
 PLATFORMS: Mapping[str, Platform] = {
-    "linux64": Platform(".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm")),
+    "linux64": Platform(".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread")),
     "win64": Platform(".dll", "x86_64-windows-gnu"),
     "darwin64": Platform(".dylib", "x86_64-macos.11.0"),
 }

@@ -6,6 +6,7 @@ from collections import namedtuple
 from ..component import Size
 from ..ports import Layout, Sizes, State, choice, count, inp, out, param
 from ..stepping import internal_step, stable_step
+from ..threads import MOST
 from ..units import cm, deg, kgf
 
 SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
@@ -171,6 +172,8 @@ LAYOUT = Layout(
               0.0, "kg", minimum=0.0),
         # integration and exchange
         internal_step(1e-5),
+        count("threads", "threads that share the work of a step; their number changes no bit. Of use from some 50,000 discs on", 1,
+              minimum=1, maximum=MOST),
         choice("kinematics", "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
                "given (linear)", ("held", "linear"), "held"),
         choice("forces", "forces returned: those of the last internal step, or the mean over the communication step, which keeps "

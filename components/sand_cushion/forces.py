@@ -4,6 +4,7 @@ import math
 
 from ..compilation import inlined, kernel
 from ..ports import view
+from ..threads import shared_among_threads
 from .contact_law import normal_force, permanent_overlap, rolling_moment, tangential_force, yield_loss
 from .contact_search import beam_count, disc_count, first_of, second_of
 from .declarations import (
@@ -121,20 +122,29 @@ def move_discs(begin, end, dt, gravity, turning, body, load, angle, motion):
 
 
 @kernel
+def press_part(c, moving, dt, w, x, k):
+    """:func:`press_pairs` for the pairs within part c."""
+    part, row = view(k, k, A.part), view(k, k, A.row)
+    press_pairs(row[part[c]], row[part[c + 1]], c, moving, dt, w, x, k)
+
+
+press_parts = shared_among_threads(press_part)
+
+
+@kernel
 def between_discs(dt, moving, w, x, k):
     """Forces between sand discs, added to ``load``, and what they do to the energy. With ``moving`` the discs go on in time.
 
     Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
     velocities half a step before and after it, m v_before v_after / 2. They are nothing without ``moving``.
     """
-    part, row, across = view(k, k, A.part), view(k, k, A.row), view(k, k, A.across)
+    across, parts = view(k, k, A.across), view(k, k, A.part).size - 1
     for entry in (A.tally, A.motion, A.rolling):
         numbers = view(x, k, entry)
         for q in range(numbers.size):
             numbers[q] = 0.0
     press_pairs(across[0], across[across.size - 1], 0, False, dt, w, x, k)
-    for c in range(part.size - 1):
-        press_pairs(row[part[c]], row[part[c + 1]], c, moving, dt, w, x, k)
+    press_parts(int(w[V.threads]), parts, moving, dt, w, x, k)
     add_energies(dt, view(x, k, A.law), view(x, k, A.tally), view(x, k, A.rolling), view(x, k, A.sums))
     return add_motion(dt, w[V.gravity], view(x, k, A.motion), view(x, k, A.sums))
 
