@@ -52,6 +52,15 @@ def second_of(pair):
 
 
 @kernel
+def part_count(k):
+    """Number of parts in use; behind them the room is empty."""
+    part, parts = view(k, k, A.part), 1
+    while part[parts] < disc_count(k):
+        parts += 1
+    return parts
+
+
+@kernel
 def divide(k):
     """Divide the discs into parts of equal size, of which small cushions have one. The rest of the room stays empty."""
     n, part = disc_count(k), view(k, k, A.part)

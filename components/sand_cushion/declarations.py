@@ -57,11 +57,11 @@ PLANES = 3
 Kind = namedtuple("Kind", "sand rock base wall rock_base rock_wall")
 KIND = Kind(*range(6))
 """Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
-Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge")
-LAW = Law(*range(10))
+Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge softness")
+LAW = Law(*range(11))
 """Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance,
 unloading stiffness (N/m), part of the overlap that stays, capillary force / distance of centres (N/m), longest bridge / distance
-of centres."""
+of centres, 1/k_s."""
 
 Column = namedtuple("Column", "x y vx vy spin reach root")
 COLUMN = Column(*range(7))

@@ -6,7 +6,7 @@ from ..compilation import inlined, kernel
 from ..ports import view
 from ..threads import shared_among_threads
 from .contact_law import normal_force, permanent_overlap, rolling_moment, tangential_force, yield_loss
-from .contact_search import beam_count, disc_count, first_of, second_of
+from .contact_search import beam_count, disc_count, first_of, part_count, second_of
 from .declarations import (
     BEAM_SURFACE,
     BLOCK,
@@ -29,7 +29,7 @@ from .declarations import (
     TALLY,
 )
 from .vector_law import lasting_law, plain_law
-from .vector_rows import FASTEST, KINETIC, POTENTIAL, columns_to_pairs, move_rows, pairs_to_columns
+from .vector_rows import FASTEST, KINETIC, POTENTIAL, columns_to_pairs, forces_to_pairs, move_rows, pairs_to_columns
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -37,23 +37,32 @@ ROLLING = 2.25
 """Rolling stiffness / (k_n (mu_r R)^2), after Ai et al. (2011), eq. (20)."""
 
 
+@inlined
+def set_to_zero(numbers):
+    """All of them."""
+    for q in range(numbers.size):
+        numbers[q] = 0.0
+
+
 @kernel
 def clear(begin, load, sums):
     """Forget the forces on the bodies from ``begin`` on, and what refers to the step before."""
-    for q in range(FORCE_ROW * begin, load.size):
-        load[q] = 0.0
+    set_to_zero(load[FORCE_ROW * begin:])
     sums[SUM.elastic], sums[SUM.transmitted], sums[SUM.capillary] = 0.0, 0.0, 0.0
 
 
 @inlined
-def press_block(p, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling):
+def press_block(p, turning, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling):
     """Forces of a block of pairs, those from ``p`` on."""
     pairs_to_columns(body, pair, p, block)
     if lasting:
         lasting_law(block, spring, plastic, law, dt, p, tally)
     else:
         plain_law(block, spring, plastic, law, dt, p, tally)
-    columns_to_pairs(load, pair, p, block)
+    if turning:
+        columns_to_pairs(load, pair, p, block)
+    else:
+        forces_to_pairs(load, pair, p, block)
     if rolls:
         block_rolling(p, dt, body, load, pair, roll, block, law, rolling)
 
@@ -103,7 +112,7 @@ def press_pairs(begin, end, c, moving, dt, w, x, k):
     lasting = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
     done, last = part[c], part[c + 1]
     for p in range(begin, end, BLOCK):
-        press_block(p, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling)
+        press_block(p, turning, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling)
         if moving:
             ready = first_of(pair[p + BLOCK]) if p + BLOCK < end else last
             move_discs(done, ready, dt, w[V.gravity], turning, body, load, angle, motion)
@@ -138,24 +147,22 @@ def between_discs(dt, moving, w, x, k):
     Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
     velocities half a step before and after it, m v_before v_after / 2. They are nothing without ``moving``.
     """
-    across, parts = view(k, k, A.across), view(k, k, A.part).size - 1
+    across, parts = view(k, k, A.across), part_count(k)
     for entry in (A.tally, A.motion, A.rolling):
-        numbers = view(x, k, entry)
-        for q in range(numbers.size):
-            numbers[q] = 0.0
+        set_to_zero(view(x, k, entry))
     press_pairs(across[0], across[across.size - 1], 0, False, dt, w, x, k)
     press_parts(int(w[V.threads]), parts, moving, dt, w, x, k)
-    add_energies(dt, view(x, k, A.law), view(x, k, A.tally), view(x, k, A.rolling), view(x, k, A.sums))
-    return add_motion(dt, w[V.gravity], view(x, k, A.motion), view(x, k, A.sums))
+    add_energies(dt, view(x, k, A.law), view(x, k, A.tally)[:parts * LANES * len(TALLY)], view(x, k, A.rolling), view(x, k, A.sums))
+    return add_motion(dt, w[V.gravity], view(x, k, A.motion)[:parts * MOTION], view(x, k, A.sums))
 
 
 @kernel
 def add_energies(dt, law, tally, rolling, sums):
     """Add what the parts have added up to the sums, and give it its scale."""
-    sums[SUM.elastic] += 0.5 * (total(TALLY.elastic, tally) + total(TALLY.stretched, tally) / law[LAW.tangential])
+    sums[SUM.elastic] += 0.5 * (total(TALLY.elastic, tally) + total(TALLY.stretched, tally) * law[LAW.softness])
     sums[SUM.normal_dashpot] += total(TALLY.normal_dashpot, tally) * dt
     sums[SUM.tangential_dashpot] += law[LAW.tangential_damping] * total(TALLY.tangential_dashpot, tally) * dt
-    sums[SUM.sliding] += total(TALLY.sliding, tally) * dt + 0.5 * total(TALLY.released, tally) / law[LAW.tangential]
+    sums[SUM.sliding] += total(TALLY.sliding, tally) * dt + 0.5 * total(TALLY.released, tally) * law[LAW.softness]
     sums[SUM.plastic] += total(TALLY.plastic, tally)
     sums[SUM.capillary] += total(TALLY.capillary, tally)
     for q in range(0, rolling.size, len(ROLL)):
@@ -165,11 +172,11 @@ def add_energies(dt, law, tally, rolling, sums):
 
 @kernel
 def total(energy, tally):
-    """One of the energies of TALLY, of all parts."""
+    """One of the energies of TALLY, of all parts: the sum of the lanes in four pairs."""
     result = 0.0
-    for begin in range(0, tally.size, LANES * len(TALLY)):
-        for lane in range(LANES):
-            result += tally[begin + LANES * energy + lane]
+    for begin in range(LANES * energy, tally.size, LANES * len(TALLY)):
+        lane = tally[begin:begin + LANES]
+        result += (lane[0] + lane[4]) + (lane[1] + lane[5]) + ((lane[2] + lane[6]) + (lane[3] + lane[7]))
     return result
 
 
@@ -272,7 +279,7 @@ def with_boundaries(dt, w, x, k):
         at, force_at = ROW * i & INDEX, FORCE_ROW * i & INDEX
         nx, ny, gap, vx, vy = touch(i, b, w, body, n, m)
         kind = kind_of(i, b, n, m) * len(LAW) & INDEX
-        tangential = law[kind + LAW.tangential]
+        softness = law[kind + LAW.softness]
         stiffness, share = law[kind + LAW.unloading], law[kind + LAW.yielding]
         yielded = permanent_overlap(plastic[p], -gap, share)
         if yielded > plastic[p]:
@@ -281,7 +288,7 @@ def with_boundaries(dt, w, x, k):
         gap += plastic[p]
         if gap >= 0.0:
             if spring[p] != 0.0:
-                slid += 0.5 * spring[p] * spring[p] / tangential
+                slid += 0.5 * spring[p] * spring[p] * softness
                 spring[p] = 0.0
             roll[p] = 0.0
             continue
@@ -291,9 +298,10 @@ def with_boundaries(dt, w, x, k):
         mass_root = dashpot_root(i, b, w, body, n, m)
         normal = normal_force(-gap, opening, stiffness, law[kind + LAW.damping] * mass_root)
         dashpot = law[kind + LAW.tangential_damping] * mass_root
-        force, kept, taken = tangential_force(spring[p], slip, tangential, dashpot, law[kind + LAW.friction] * normal, dt)
+        limit = law[kind + LAW.friction] * normal
+        force, kept, taken = tangential_force(spring[p], slip, law[kind + LAW.tangential], dashpot, limit, dt)
         spring[p] = kept
-        elastic += stiffness * gap * gap + kept * kept / tangential
+        elastic += stiffness * gap * gap + kept * kept * softness
         dashpot_n += (-stiffness * gap - normal) * opening
         dashpot_t += dashpot * taken * taken
         slid += force * (slip - taken) * dt
@@ -362,9 +370,7 @@ def contact_forces(dt, w, x, k):
 @kernel
 def forget_forces(x, k):
     """Forget the forces on the discs, as :func:`advance_discs` needs it; those on rock and beam stay."""
-    load = view(x, k, A.load)
-    for q in range(FORCE_ROW * disc_count(k)):
-        load[q] = 0.0
+    set_to_zero(view(x, k, A.load)[:FORCE_ROW * disc_count(k)])
 
 
 @kernel

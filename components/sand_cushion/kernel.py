@@ -86,6 +86,7 @@ def set_law(kind, stiffness, friction, w, law):
     law[at + LAW.yielding] = 1.0 - 1.0 / ratio
     law[at + LAW.pull] = capillary_strength(w) if kind == KIND.sand else 0.0
     law[at + LAW.bridge] = w[V.cohesion_range]
+    law[at + LAW.softness] = 1.0 / tangential
 
 
 @kernel

@@ -130,11 +130,20 @@ class Access:
 
     def load(self, argument: int, place: ir.Value | int, width: int) -> Lanes:
         """A vector out of a float array."""
-        return Lanes(self.builder, self.builder.load(self.pointer(argument, place, ir.VectorType(REAL, width)), align=8))
+        return self.loaded(self.pointer(argument, place, REAL), width)
 
     def store(self, lanes: Lanes, argument: int, place: ir.Value | int) -> None:
         """A vector into a float array."""
-        self.builder.store(lanes.value, self.pointer(argument, place, lanes.value.type), align=8)
+        self.put(lanes, self.pointer(argument, place, REAL))
+
+    def loaded(self, address: ir.Value, width: int) -> Lanes:
+        """A vector from an address."""
+        kind = ir.VectorType(REAL, width).as_pointer()
+        return Lanes(self.builder, self.builder.load(self.builder.bitcast(address, kind), align=8))
+
+    def put(self, lanes: Lanes, address: ir.Value) -> None:
+        """A vector to an address."""
+        self.builder.store(lanes.value, self.builder.bitcast(address, lanes.value.type.as_pointer()), align=8)
 
     def running(self, argument: int, place: int, width: int) -> Running:
         """A running value that begins with what an array holds; see :meth:`Running.keep`."""

@@ -95,27 +95,41 @@ def pairs_to_columns(typing, body, pair, at, block):
     return types.void(body, pair, types.int64, block), generate
 
 
-@intrinsic
-def columns_to_pairs(typing, load, pair, at, block):
-    """:func:`plain_columns_to_pairs` as vectors."""
-    def generate(context, builder, signature, arguments):
-        access = Access(context, builder, signature, arguments)
-        nothing, sign = Lanes(builder, constant([0.0] * LANES)), Lanes(builder, constant([-1.0, -1.0, 1.0, 1.0]))
-        even, odd = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
-        with _lanes_of_block(builder) as (lane, _):
-            x, y, turning = (access.load(3, access.place(lane, column * BLOCK), LANES) for column in range(3))
-            force = (x.shuffled(even, y), x.shuffled(odd, y))
-            turn = (turning.shuffled(even, nothing), turning.shuffled(odd, nothing))
-            for q in range(LANES):
-                i, j = (builder.lshr(body, INDEX(1)) for body in _bodies(access, access.place(builder.add(access[2], lane), q)))
-                two = q - q % 2
-                row = force[q % 2].shuffled([two, two + 1, two + 8, two + 9], turn[q % 2])
-                access.store(fma(row, sign, access.load(0, i, FORCE_ROW)), 0, i)
-                access.store(row + access.load(0, j, FORCE_ROW), 0, j)
-        return context.get_dummy_value()
-
+def _load_row(access: Access, body: ir.Value) -> ir.Value:
+    """Begin of a load row, which is half as long as the body row that begins at ``body``: places are halves of numbers."""
+    b = access.builder
     assert ROW == 2 * FORCE_ROW
-    return types.void(load, pair, types.int64, block), generate
+    return b.gep(b.bitcast(access[0], WORD.as_pointer()), [body])
+
+
+def _columns_to_pairs(turning: bool) -> Any:
+    def columns_to_pairs(typing, load, pair, at, block):
+        """:func:`plain_columns_to_pairs` as vectors."""
+        def generate(context, builder, signature, arguments):
+            access = Access(context, builder, signature, arguments)
+            nothing, sign = Lanes(builder, constant([0.0] * LANES)), Lanes(builder, constant([-1.0, -1.0, 1.0, 1.0]))
+            even, odd = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
+            width = FORCE_ROW if turning else 2
+            with _lanes_of_block(builder) as (lane, _):
+                x, y, turn = (access.load(3, access.place(lane, column * BLOCK), LANES) for column in range(3))
+                forces = (x.shuffled(even, y), x.shuffled(odd, y))
+                turns = (turn.shuffled(even, nothing), turn.shuffled(odd, nothing))
+                for q in range(LANES):
+                    i, j = (_load_row(access, body) for body in _bodies(access, access.place(builder.add(access[2], lane), q)))
+                    two = q - q % 2
+                    row = forces[q % 2].shuffled([two, two + 1, two + 8, two + 9][:width], turns[q % 2])
+                    before = access.loaded(i, width)
+                    access.put(fma(row, sign, before) if turning else before - row, i)
+                    access.put(row + access.loaded(j, width), j)
+            return context.get_dummy_value()
+
+        return types.void(load, pair, types.int64, block), generate
+
+    return intrinsic(columns_to_pairs)
+
+
+columns_to_pairs, forces_to_pairs = _columns_to_pairs(turning=True), _columns_to_pairs(turning=False)
+""":func:`plain_columns_to_pairs` as vectors; and the same for discs that do not turn, without what would turn them."""
 
 
 @intrinsic

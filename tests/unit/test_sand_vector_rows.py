@@ -23,6 +23,11 @@ def to_rows(load, pair, block):
     vector_rows.columns_to_pairs(load, pair, 0, block)
 
 
+@kernel
+def to_rows_that_do_not_turn(load, pair, block):
+    vector_rows.forces_to_pairs(load, pair, 0, block)
+
+
 def pairs(seed):
     """A block of pairs of which many share a disc, also next to each other."""
     random = np.random.default_rng(seed)
@@ -55,6 +60,10 @@ def test_loads_add_up_in_the_order_of_the_plain_loop(seed):
     to_rows(vector, pair, block)
     vector_rows.plain_columns_to_pairs(plain, pair, 0, block)
     np.testing.assert_array_equal(vector, plain)
+    locked = start.copy()
+    to_rows_that_do_not_turn(locked, pair, block)
+    np.testing.assert_array_equal(locked.reshape(-1, 4)[:, :2], plain.reshape(-1, 4)[:, :2])
+    np.testing.assert_array_equal(locked.reshape(-1, 4)[:, 2:], start.reshape(-1, 4)[:, 2:])
     gained = (plain - start).reshape(-1, 4).sum(axis=0)
     assert gained[:2] == pytest.approx(0.0, abs=1e-12)  # action and reaction
     assert gained[2] == pytest.approx(2.0 * block[2 * BLOCK:3 * BLOCK].sum())
