@@ -98,6 +98,7 @@ class Later:
 
 
 numba_types: Any = Later("numba.types")
+numba_cgutils: Any = Later("numba.core.cgutils")
 
 
 def kernel(function: Callable[..., Any]) -> Any:

@@ -111,7 +111,7 @@ class Instance:
         self.component, self.sizes = component, dict(sizes)
         entries, n_w, n_x, n_k = component.layout.table(sizes)
         self.w: Buffer = np.zeros(n_w)
-        self.x: Buffer = np.zeros(n_x)
+        self.x: Buffer = _on_cache_lines(n_x)
         self.k: NDArray[np.int64] = np.zeros(n_k, np.int64)
         self.k[:len(entries)] = entries
         for index, (variable, number) in enumerate(self._elements()):
@@ -231,6 +231,13 @@ class Instance:
         values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
         self.w[:], self.x[:] = values[:self.w.size], values[self.w.size:]
         self.k[:] = np.frombuffer(content, np.int64, self.k.size, len(expected) + values.nbytes)
+
+
+def _on_cache_lines(length: int) -> Buffer:
+    """Zeros that begin where a cache line begins: states whose rows are cache lines are read faster so."""
+    room = np.zeros(length + 8)
+    begin = -room.ctypes.data // 8 % 8
+    return room[begin:begin + length]
 
 
 def value_problems(variable: Variable, name: str, value: float) -> list[str]:

@@ -72,7 +72,7 @@ class Platform:
 
 
 PLATFORMS: Mapping[str, Platform] = {
-    "linux64": Platform("x86_64-linux", ".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm")),
+    "linux64": Platform("x86_64-linux", ".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread")),
     "win64": Platform("x86_64-windows", ".dll", "x86_64-windows-gnu"),
     "darwin64": Platform("x86_64-darwin", ".dylib", "x86_64-macos.11.0"),
 }

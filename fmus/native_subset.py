@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 ALLOWED = frozenset(re.findall(r"\w+", """
     acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs floor fma fmax fmin fmod frexp
     hypot ldexp lgamma log log10 log1p log2 nearbyint pow rint round sin sinh sqrt tan tanh tgamma trunc
-    memcpy memmove memset"""))
-"""Functions of the C library that kernels may call. Anything else would be Python's or numba's."""
+    memcpy memmove memset pthread_create pthread_join"""))
+"""Functions of the C library (under Windows: of the shim) that kernels may call. Anything else would be Python's or numba's."""
 
 
 UNKNOWN_PLACE = "at an unknown place"

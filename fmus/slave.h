@@ -35,6 +35,11 @@ extern int64_t rockshed_initialise(double *w, double *x, int64_t *k);
 extern int64_t rockshed_evaluate(double *w, double *x, int64_t *k);
 extern int64_t rockshed_step(double t, double h, double *w, double *x, int64_t *k);
 
+#ifdef _WIN32 /* has no POSIX threads; kernels to whom a thread is refused do its part themselves */
+int pthread_create(void *thread, const void *traits, void *(*work)(void *), void *share) { return 1; }
+int pthread_join(uint64_t thread, void **result) { return 1; }
+#endif
+
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
 #else

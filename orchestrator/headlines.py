@@ -166,8 +166,8 @@ def _preload(run: "Run", rod: str) -> float:
 
 
 def impact_energy(run: "Run") -> float | None:
-    """Kinetic energy (J) at the start of the rock, or else of the hammers; of a rock from its slope, as it is handed over. None where
-    a machine drives it."""
+    """Kinetic energy (J) of the rock, or else of the hammers, at the start; of a rock from its slope, as it is handed over. None
+    where a machine drives it."""
     rock = roles(run).rock
     received = run.series.get(f"{rock}.received")
     first = 0 if received is None else int(received.argmax())

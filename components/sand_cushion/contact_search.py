@@ -1,17 +1,19 @@
 """Candidates for contact: a Verlet list made on a grid of cells, whose contact springs survive a rebuild.
 
 Bodies are numbered: discs 0 .. N-1, the rock N, beam discs N+1 .. N+M, then the planes: left wall, right wall, base. There are
-two lists. ``first`` and ``second`` name the pairs of discs, the lower number first and in ascending order; the pairs of disc i
-begin at ``row[i]``. ``edge_body`` and ``edge_partner`` name what discs and rock have near them else: rock, beam discs and
+two lists. ``pair`` names the pairs of discs, see :func:`pair_of`, the lower number first and in ascending order. The discs are
+divided into parts, part c from ``part[c]`` on, so that threads can share the work: the list begins with the pairs within the
+parts, part by part, those of disc i from ``row[i]`` on; the pairs between two parts follow, those of disc i from ``across[i]`` on.
+Each part fills whole blocks. ``edge_body`` and ``edge_partner`` name what discs and rock have near them else: rock, beam discs and
 planes; those of disc i begin at ``edge_row[i]``. A pair is listed while its gap is below the skin; the lists are made anew before
 two bodies can have closed a gap of one skin.
 """
 
 import math
 
-from ..compilation import kernel
+from ..compilation import inlined, kernel
 from ..ports import view
-from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PLANES, RADIUS, ROW, SUM
+from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PART, PLANES, RADIUS, ROW, SUM
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -29,6 +31,42 @@ def disc_count(k):
 def beam_count(k):
     """Number of beam discs M."""
     return k[A.beam_position_x + 1]
+
+
+@inlined
+def pair_of(i, j):
+    """A pair as one number: the begin of its second disc's row in ``body`` above that of the first, 32 bits each."""
+    return ROW * i | ROW * j << 32
+
+
+@inlined
+def first_of(pair):
+    """The disc of a pair that has the lower number."""
+    return (pair & 0xFFFFFFFF) // ROW
+
+
+@inlined
+def second_of(pair):
+    """The other disc of a pair."""
+    return (pair >> 32) // ROW
+
+
+@kernel
+def part_count(k):
+    """Number of parts in use; behind them the room is empty."""
+    part, parts = view(k, k, A.part), 1
+    while part[parts] < disc_count(k):
+        parts += 1
+    return parts
+
+
+@kernel
+def divide(k):
+    """Divide the discs into parts of equal size, of which small cushions have one. The rest of the room stays empty."""
+    n, part = disc_count(k), view(k, k, A.part)
+    parts = max(1, n // PART)
+    for c in range(part.size):
+        part[c] = min(n, n * c // parts)
 
 
 @kernel
@@ -76,24 +114,33 @@ def sort_into_cells(body, n, cell_start, cell_disc, disc_cell, left, bottom, siz
 
 
 @kernel
-def disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, first, second, at):
-    """List the discs near disc i that have a higher number. Returns the end of the list, or -1 where there is no room."""
+def disc_partners(i, lowest, end, body, cell_start, cell_disc, disc_cell, columns, rows, skin, pair, at):
+    """List the discs near disc i whose numbers are at least ``lowest`` and less than ``end``. Returns the end of the list, or -1
+    where there is no room."""
     xi, yi, ri = body[ROW * i], body[ROW * i + 1], body[ROW * i + RADIUS]
     line, column = disc_cell[i] // columns, disc_cell[i] % columns
     for near in range(max(0, line - 1), min(rows, line + 2)):
         for c in range(near * columns + max(0, column - 1), near * columns + min(columns, column + 2)):
             # after the backwards sort, entry c + 1 of cell_start is the begin of cell c
-            end = n if c + 2 > columns * rows else cell_start[c + 2]
-            for q in range(cell_start[c + 1], end):
+            for q in range(cell_start[c + 1], disc_cell.size if c + 2 > columns * rows else cell_start[c + 2]):
                 j = cell_disc[q]
-                if j > i:
+                if lowest <= j < end:
                     dx, dy = body[ROW * j] - xi, body[ROW * j + 1] - yi
                     reach = ri + body[ROW * j + RADIUS] + skin
                     if dx * dx + dy * dy < reach * reach:
-                        if at + BLOCK >= first.size:
+                        if at + BLOCK >= pair.size:
                             return -1
-                        first[at], second[at] = i, j
+                        pair[at] = pair_of(i, j)
                         at += 1
+    return at
+
+
+@kernel
+def fill_up(at, first, far, pair):
+    """Fill up the last block with pairs that cannot touch. Returns the end of the list."""
+    while at % BLOCK:
+        pair[at] = pair_of(first, far)
+        at += 1
     return at
 
 
@@ -148,8 +195,9 @@ def inherit(rows, row, partner, spring, row_before, partner_before, spring_befor
 @kernel
 def inherit_pairs(n, spring, spring_before, k):
     """:func:`inherit` for the pairs of discs."""
-    inherit(n, view(k, k, A.row), view(k, k, A.second), spring, view(k, k, A.row_before), view(k, k, A.second_before),
-            spring_before)
+    pair, before = view(k, k, A.pair), view(k, k, A.pair_before)
+    inherit(n, view(k, k, A.row), pair, spring, view(k, k, A.row_before), before, spring_before)
+    inherit(n, view(k, k, A.across), pair, spring, view(k, k, A.across_before), before, spring_before)
 
 
 @kernel
@@ -162,9 +210,9 @@ def inherit_edges(n, spring, spring_before, k):
 @kernel
 def forget(x, k):
     """Empty the lists, and with them all contact springs."""
-    row, edge_row = view(k, k, A.row), view(k, k, A.edge_row)
+    row, across, edge_row = view(k, k, A.row), view(k, k, A.across), view(k, k, A.edge_row)
     for i in range(row.size):
-        row[i] = 0
+        row[i], across[i] = 0, 0
     for i in range(edge_row.size):
         edge_row[i] = 0
 
@@ -180,11 +228,12 @@ def set_aside(count, source, target):
 def keep_for_inheritance(x, k):
     """Set the present lists aside."""
     n = disc_count(k)
-    row, edge_row = view(k, k, A.row), view(k, k, A.edge_row)
-    pairs, edges = row[n], edge_row[n + 1]
+    row, across, edge_row = view(k, k, A.row), view(k, k, A.across), view(k, k, A.edge_row)
+    pairs, edges = across[n], edge_row[n + 1]
     set_aside(n + 1, row, view(k, k, A.row_before))
+    set_aside(n + 1, across, view(k, k, A.across_before))
     set_aside(n + 2, edge_row, view(k, k, A.edge_row_before))
-    set_aside(pairs, view(k, k, A.second), view(k, k, A.second_before))
+    set_aside(pairs, view(k, k, A.pair), view(k, k, A.pair_before))
     set_aside(edges, view(k, k, A.edge_partner), view(k, k, A.edge_partner_before))
     set_aside(pairs, view(x, k, A.spring), view(x, k, A.spring_before))
     set_aside(pairs, view(x, k, A.plastic), view(x, k, A.plastic_before))
@@ -198,8 +247,7 @@ def keep_for_inheritance(x, k):
 def list_discs(w, x, k):
     """Make the list of pairs of discs anew. Returns False where the room for it does not suffice."""
     n, m = disc_count(k), beam_count(k)
-    body, row = view(x, k, A.body), view(k, k, A.row)
-    first, second = view(k, k, A.first), view(k, k, A.second)
+    body = view(x, k, A.body)
     cell_start, cell_disc, disc_cell = view(k, k, A.cell_start), view(k, k, A.cell_disc), view(k, k, A.disc_cell)
     skin = listed_gap(w)
     size = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) + skin
@@ -209,15 +257,24 @@ def list_discs(w, x, k):
     rows = max(1, cells // columns)
     sort_into_cells(body, n, cell_start, cell_disc, disc_cell, w[V.box_left], bottom, max(size, w[V.box_width] / columns),
                     columns, rows)
+    pair, part = view(k, k, A.pair), view(k, k, A.part)
+    parts = part.size - 1
     at = 0
-    for i in range(n):
-        row[i] = at
-        at = disc_partners(i, body, n, cell_start, cell_disc, disc_cell, columns, rows, skin, first, second, at)
-        if at < 0:
-            return False
-    row[n] = at
-    for p in range(at, at + BLOCK):  # what fills up the last block cannot touch
-        first[p], second[p] = 0, n + m + 1
+    for between in (False, True):
+        row = view(k, k, A.across if between else A.row)
+        for c in range(parts):
+            for i in range(part[c], part[c + 1]):
+                row[i] = at
+                if between and part[c + 1] == n:
+                    continue  # the last part
+                at = disc_partners(i, part[c + 1] if between else i + 1, n if between else part[c + 1], body, cell_start, cell_disc,
+                                   disc_cell, columns, rows, skin, pair, at)
+                if at < 0:
+                    return False
+            if not between:
+                at = fill_up(at, part[c], n + 1 + m + c, pair)
+        at = fill_up(at, 0, n + 1 + m, pair)
+        row[n] = at
     return True
 
 
@@ -247,7 +304,6 @@ def rebuild(w, x, k):
     keep_for_inheritance(x, k)
     if not list_discs(w, x, k) or not list_edges(w, x, k):
         return False
-    row = view(k, k, A.row)
     inherit_pairs(n, view(x, k, A.spring), view(x, k, A.spring_before), k)
     inherit_edges(n, view(x, k, A.edge_spring), view(x, k, A.edge_spring_before), k)
     if w[V.rolling_resistance] > 0.0:
@@ -256,9 +312,6 @@ def rebuild(w, x, k):
     if w[V.unloading_ratio] > 1.0:
         inherit_pairs(n, view(x, k, A.plastic), view(x, k, A.plastic_before), k)
         inherit_edges(n, view(x, k, A.edge_plastic), view(x, k, A.edge_plastic_before), k)
-    spring = view(x, k, A.spring)
-    for p in range(row[n], row[n] + BLOCK):
-        spring[p] = 0.0
     body, reference = view(x, k, A.body), view(x, k, A.boundary_reference)
     for b in range(m + 1):
         reference[2 * b], reference[2 * b + 1] = body[ROW * (n + b)], body[ROW * (n + b) + 1]

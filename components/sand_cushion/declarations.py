@@ -6,6 +6,7 @@ from collections import namedtuple
 from ..component import Size
 from ..ports import Layout, Sizes, State, choice, count, inp, out, param
 from ..stepping import internal_step, stable_step
+from ..threads import MOST
 from ..units import cm, deg, kgf
 
 SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
@@ -41,27 +42,41 @@ PARTNERS = 12
 INDEX = 0x7FFFFFFF
 """Larger than any index. A number masked with it is known not to be negative, and numba's handling of negative indices falls
 away; see forces.py."""
-BLOCK = 32
+BLOCK = 64
 """Pairs for which the law of contact is computed together."""
 UNBOUNDED = 1e30
 """Height (m) of a wall without end."""
+LANES = 8
+"""Pairs that are in a vector."""
+MOTION = 8
+"""Numbers that add up over the discs of a step; see vector_rows.py."""
+PART = 12_500
+"""Discs that are computed as one part, at least: threads share the parts. The division depends on the number of discs only, so the
+results do not depend on the number of threads."""
 PLANES = 3
 """Left wall, right wall, base."""
 
 Kind = namedtuple("Kind", "sand rock base wall rock_base rock_wall")
 KIND = Kind(*range(6))
 """Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
-Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge")
-LAW = Law(*range(10))
+Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge softness")
+LAW = Law(*range(11))
 """Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance,
 unloading stiffness (N/m), part of the overlap that stays, capillary force / distance of centres (N/m), longest bridge / distance
-of centres."""
+of centres, 1/k_s."""
 
-Column = namedtuple("Column", "x y vx vy spin reach root elastic tangential normal_dashpot tangential_dashpot sliding plastic "
-                              "capillary")
-COLUMN = Column(*range(14))
-"""Columns of the block of pairs: seven that describe the pairs, then energies, which add up over the blocks. The law leaves
-force to the right, force upwards, tangential and normal force in the first four."""
+Column = namedtuple("Column", "x y vx vy spin reach root")
+COLUMN = Column(*range(7))
+"""Columns of the block of pairs. The law leaves force to the right and upwards, tangential and normal force in the first four."""
+
+Tally = namedtuple("Tally", "elastic stretched normal_dashpot tangential_dashpot sliding released plastic capillary")
+TALLY = Tally(*range(8))
+"""Energies that add up over the pairs of a step, a number for each lane of the vectors: those of normal and tangential springs, of
+the dashpots, of sliding, of springs of contacts that opened, of yielding and of capillary bridges. Most are still to be scaled."""
+
+Roll = namedtuple("Roll", "elastic lost")
+ROLL = Roll(*range(2))
+"""Energies (J) of rolling resistance that add up over the pairs of a step."""
 
 Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam transmitted "
                         "travelled beam_key")
@@ -70,12 +85,18 @@ SUM = Sum(*range(12))
 
 
 def _bodies(sizes: Sizes) -> int:
-    """Discs, rock, beam discs, and one body far away that nothing touches: partner in the pairs that fill up the last block."""
-    return sizes["discs"] + 1 + sizes["elements"] + 1
+    """Discs, rock, beam discs, and for each part a body far away that nothing touches: partner in pairs that fill up a
+    block. An even number."""
+    return (sizes["discs"] + 1 + sizes["elements"] + _parts(sizes) + 1) // 2 * 2
+
+
+def _parts(sizes: Sizes) -> int:
+    """Room for parts; small cushions are one part and leave the other one empty."""
+    return max(2, sizes["discs"] // PART)
 
 
 def _pairs(sizes: Sizes) -> int:
-    return PARTNERS * sizes["discs"] + 2 * BLOCK
+    return PARTNERS * sizes["discs"] + (_parts(sizes) + 2) * BLOCK
 
 
 def _edges(sizes: Sizes) -> int:
@@ -156,6 +177,8 @@ LAYOUT = Layout(
               0.0, "kg", minimum=0.0),
         # integration and exchange
         internal_step(1e-5),
+        count("threads", "threads that share the work of a step; their number changes no bit. Of use from some 50,000 discs on", 1,
+              minimum=1, maximum=MOST),
         choice("kinematics", "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
                "given (linear)", ("held", "linear"), "held"),
         choice("forces", "forces returned: those of the last internal step, or the mean over the communication step, which keeps "
@@ -205,10 +228,15 @@ LAYOUT = Layout(
         out("energy.start", "kinetic + elastic + capillary + gravity at the start", "J"),
     ),
     states=(
+        # to spring: places in the buffer that are multiples of a cache line
         State("body", lambda n: ROW * _bodies(n)),
-        State("angle", lambda n: n["discs"]),
         State("load", lambda n: FORCE_ROW * _bodies(n)),
+        State("block", lambda n: BLOCK * len(COLUMN) * _parts(n)),
+        State("tally", lambda n: LANES * len(TALLY) * _parts(n)),
+        State("motion", lambda n: MOTION * _parts(n)),
         State("spring", _pairs),
+        State("angle", lambda n: n["discs"]),
+        State("rolling", lambda n: len(ROLL) * _parts(n)),
         State("spring_before", _pairs),
         State("roll", _pairs),
         State("roll_before", _pairs),
@@ -220,15 +248,16 @@ LAYOUT = Layout(
         State("edge_roll_before", _edges),
         State("edge_spring", _edges),
         State("edge_spring_before", _edges),
-        State("block", lambda n: BLOCK * len(COLUMN)),
         State("law", lambda n: len(KIND) * len(LAW)),
         State("sums", lambda n: len(SUM)),
         State("boundary_reference", lambda n: 2 * (n["elements"] + 1)),
+        State("part", lambda n: _parts(n) + 1, integer=True),
         State("row", lambda n: n["discs"] + 1, integer=True),
         State("row_before", lambda n: n["discs"] + 1, integer=True),
-        State("first", _pairs, integer=True),
-        State("second", _pairs, integer=True),
-        State("second_before", _pairs, integer=True),
+        State("across", lambda n: n["discs"] + 1, integer=True),
+        State("across_before", lambda n: n["discs"] + 1, integer=True),
+        State("pair", _pairs, integer=True),
+        State("pair_before", _pairs, integer=True),
         State("edge_row", lambda n: n["discs"] + 2, integer=True),
         State("edge_row_before", lambda n: n["discs"] + 2, integer=True),
         State("edge_body", _edges, integer=True),

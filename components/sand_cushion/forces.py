@@ -4,16 +4,9 @@ import math
 
 from ..compilation import inlined, kernel
 from ..ports import view
-from .contact_law import (
-    capillary_energy,
-    capillary_pull,
-    normal_force,
-    permanent_overlap,
-    rolling_moment,
-    tangential_force,
-    yield_loss,
-)
-from .contact_search import beam_count, disc_count
+from ..threads import shared_among_threads
+from .contact_law import normal_force, permanent_overlap, rolling_moment, tangential_force, yield_loss
+from .contact_search import beam_count, disc_count, first_of, part_count, second_of
 from .declarations import (
     BEAM_SURFACE,
     BLOCK,
@@ -23,16 +16,21 @@ from .declarations import (
     HALF_ROOT,
     INDEX,
     KIND,
+    LANES,
     LAW,
     LAYOUT,
+    MOTION,
     ON_BEAM,
     RADIUS,
+    ROLL,
     ROW,
     SPIN,
     SUM,
+    TALLY,
     UNBOUNDED,
 )
-from .vector_rows import LANES, columns_to_pairs, pairs_to_columns
+from .vector_law import lasting_law, plain_law
+from .vector_rows import FASTEST, KINETIC, POTENTIAL, columns_to_pairs, forces_to_pairs, move_rows, pairs_to_columns
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -40,122 +38,159 @@ ROLLING = 2.25
 """Rolling stiffness / (k_n (mu_r R)^2), after Ai et al. (2011), eq. (20)."""
 
 
+@inlined
+def set_to_zero(numbers):
+    """All of them."""
+    for q in range(numbers.size):
+        numbers[q] = 0.0
+
+
 @kernel
-def clear(load, sums):
-    """Forget the forces and the elastic energy of the step before."""
-    for q in range(load.size):
-        load[q] = 0.0
-    sums[SUM.elastic], sums[SUM.transmitted] = 0.0, 0.0
+def clear(begin, load, sums):
+    """Forget the forces on the bodies from ``begin`` on, and what refers to the step before."""
+    set_to_zero(load[FORCE_ROW * begin:])
+    sums[SUM.elastic], sums[SUM.transmitted], sums[SUM.capillary] = 0.0, 0.0, 0.0
 
 
 @inlined
-def block_law(block, spring, plastic, law, dt, lasting):
-    """The law of contact_law.py for a block of pairs, in a form that the compiler turns into vector instructions: no branches,
-    a quantity of all pairs beside the other. Pairs that do not touch come out with nothing.
-
-    lasting: whether contacts may keep an overlap or stick together; a constant of the calling place, so that the plain law costs
-    nothing more.
-    """
-    stiffness, damping, share = law[LAW.unloading], law[LAW.damping], law[LAW.yielding]
-    tangential, tangential_damping, friction = law[LAW.tangential], law[LAW.tangential_damping], law[LAW.friction]
-    for q in range(BLOCK):
-        dx, dy = block[COLUMN.x * BLOCK + q], block[COLUMN.y * BLOCK + q]
-        dvx, dvy = block[COLUMN.vx * BLOCK + q], block[COLUMN.vy * BLOCK + q]
-        root = block[COLUMN.root * BLOCK + q]
-        distance = math.sqrt(dx * dx + dy * dy)
-        inverse = 1.0 / distance
-        nx, ny = dx * inverse, dy * inverse
-        reach = block[COLUMN.reach * BLOCK + q]
-        overlap = reach - distance
-        opening = dvx * nx + dvy * ny
-        slip = dvy * nx - dvx * ny - block[COLUMN.spin * BLOCK + q]
-        pull = 0.0
-        if lasting:
-            bridge, full = law[LAW.bridge] * reach, law[LAW.pull] * reach
-            yielded = permanent_overlap(plastic[q], overlap, share)
-            lost = yield_loss(plastic[q], yielded, stiffness, share, full) if yielded > plastic[q] else 0.0
-            plastic[q] = yielded if overlap > -bridge else 0.0
-            overlap -= plastic[q]
-            pull = capillary_pull(overlap, full, bridge)
-            block[COLUMN.plastic * BLOCK + q] += lost
-            block[COLUMN.capillary * BLOCK + q] += capillary_energy(overlap, full, bridge)
-        pressed = normal_force(overlap, opening, stiffness, damping * root)
-        normal = pressed if overlap > 0.0 else 0.0
-        dashpot, before = tangential_damping * root, spring[q]
-        force, stretched, taken = tangential_force(before, slip, tangential, dashpot, friction * normal, dt)
-        kept = stretched if overlap > 0.0 else 0.0
-        spring[q] = kept
-        elastic = overlap * overlap
-        dashpot_n = (stiffness * overlap - normal) * opening
-        dashpot_t = dashpot * taken * taken
-        slid = force * (slip - taken) * dt
-        released = 0.5 * before * before / tangential
-        block[COLUMN.elastic * BLOCK + q] += elastic if overlap > 0.0 else 0.0
-        block[COLUMN.tangential * BLOCK + q] += kept * kept
-        block[COLUMN.normal_dashpot * BLOCK + q] += dashpot_n if overlap > 0.0 else 0.0
-        block[COLUMN.tangential_dashpot * BLOCK + q] += dashpot_t if overlap > 0.0 else 0.0
-        block[COLUMN.sliding * BLOCK + q] += slid if overlap > 0.0 else released
-        attracted = normal - pull
-        block[q] = attracted * nx + force * ny  # force that the first exerts on the second
-        block[BLOCK + q] = attracted * ny - force * nx
-        block[2 * BLOCK + q] = force
-        block[3 * BLOCK + q] = normal
+def press_block(p, turning, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling):
+    """Forces of a block of pairs, those from ``p`` on."""
+    pairs_to_columns(body, pair, p, block)
+    if lasting:
+        lasting_law(block, spring, plastic, law, dt, p, tally)
+    else:
+        plain_law(block, spring, plastic, law, dt, p, tally)
+    if turning:
+        columns_to_pairs(load, pair, p, block)
+    else:
+        forces_to_pairs(load, pair, p, block)
+    if rolls:
+        block_rolling(p, dt, body, load, pair, roll, block, law, rolling)
 
 
 @kernel
-def block_rolling(begin, end, dt, body, load, first, second, roll, block, law, sums):
+def block_rolling(begin, dt, body, load, pair, roll, block, law, rolling):
     """Rolling resistance of a block of pairs."""
-    stiffness, rolling = law[LAW.normal], law[LAW.rolling]
-    for p in range(begin, end):
-        normal = block[3 * BLOCK + p - begin]
+    stiffness, resistance = law[LAW.normal], law[LAW.rolling]
+    for q in range(BLOCK):
+        normal = block[3 * BLOCK + q]
         if normal <= 0.0:
-            roll[p] = 0.0
+            roll[begin + q] = 0.0
             continue
-        i, j = ROW * first[p], ROW * second[p]
+        first, second = first_of(pair[begin + q]), second_of(pair[begin + q])
+        i, j = ROW * first, ROW * second
         ri, rj = body[i + RADIUS], body[j + RADIUS]
         radius = ri * rj / (ri + rj)
-        bend = ROLLING * stiffness * rolling * rolling * radius * radius
+        bend = ROLLING * stiffness * resistance * resistance * radius * radius
         turning = body[j + SPIN] / rj - body[i + SPIN] / ri
-        roll[p], lost = rolling_moment(roll[p], turning, bend, rolling * radius * normal, dt)
-        sums[SUM.rolling] += lost
-        sums[SUM.elastic] += 0.5 * roll[p] * roll[p] / bend
-        load[FORCE_ROW * first[p] + 2] += roll[p] / ri
-        load[FORCE_ROW * second[p] + 2] -= roll[p] / rj
+        moment, lost = rolling_moment(roll[begin + q], turning, bend, resistance * radius * normal, dt)
+        roll[begin + q] = moment
+        rolling[ROLL.lost] += lost
+        rolling[ROLL.elastic] += 0.5 * moment * moment / bend
+        load[FORCE_ROW * first + 2] += moment / ri
+        load[FORCE_ROW * second + 2] -= moment / rj
+
+
+@inlined
+def part_of(buffer, k, entry, c, length):
+    """The room of part c in an array that holds ``length`` numbers for each part."""
+    begin = k[entry] + c * length
+    return buffer[begin:begin + length]
 
 
 @kernel
-def between_discs(dt, pairs, rolls, lasting, body, load, first, second, spring, plastic, roll, law, block, sums):
-    """Forces between sand discs: eq. (1) of the paper, block by block."""
-    for q in range(COLUMN.elastic * BLOCK, len(COLUMN) * BLOCK):
-        block[q] = 0.0
-    for b in range((pairs + BLOCK - 1) // BLOCK):
-        begin = b * BLOCK & INDEX
-        for q in range(0, BLOCK, LANES):
-            pairs_to_columns(body, first, second, begin + q, block, q, BLOCK)
-        if lasting:
-            block_law(block, spring[begin:begin + BLOCK], plastic[begin:begin + BLOCK], law, dt, True)
-        else:
-            block_law(block, spring[begin:begin + BLOCK], plastic[begin:begin + BLOCK], law, dt, False)
-        for q in range(0, BLOCK, LANES):
-            columns_to_pairs(load, first, second, begin + q, block, q, BLOCK)
-        if rolls:
-            block_rolling(begin, min(begin + BLOCK, pairs), dt, body, load, first, second, roll, block, law, sums)
-    sums[SUM.elastic] += 0.5 * (law[LAW.unloading] * lane_sum(block, COLUMN.elastic)
-                                + lane_sum(block, COLUMN.tangential) / law[LAW.tangential])
-    sums[SUM.normal_dashpot] += lane_sum(block, COLUMN.normal_dashpot) * dt
-    sums[SUM.tangential_dashpot] += lane_sum(block, COLUMN.tangential_dashpot) * dt
-    sums[SUM.sliding] += lane_sum(block, COLUMN.sliding)
-    sums[SUM.plastic] += lane_sum(block, COLUMN.plastic)
-    sums[SUM.capillary] = lane_sum(block, COLUMN.capillary)
+def press_pairs(begin, end, c, moving, dt, w, x, k):
+    """Forces between the discs of the pairs from ``begin`` to before ``end``, whole blocks: eq. (1) of the paper. With ``moving``,
+    these are the pairs of part c, and its discs go on in time, each as soon as it has been given its last force.
+    """
+    body, load, pair = view(x, k, A.body), view(x, k, A.load), view(k, k, A.pair)
+    spring, plastic, roll = view(x, k, A.spring), view(x, k, A.plastic), view(x, k, A.roll)
+    law, block = view(x, k, A.law), part_of(x, k, A.block, c, BLOCK * len(COLUMN))
+    tally, rolling = part_of(x, k, A.tally, c, LANES * len(TALLY)), part_of(x, k, A.rolling, c, len(ROLL))
+    motion, angle, part = part_of(x, k, A.motion, c, MOTION), view(x, k, A.angle), view(k, k, A.part)
+    turning = w[V.rotation] == FREE
+    rolls = turning and w[V.rolling_resistance] > 0.0
+    lasting = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
+    done, last = part[c], part[c + 1]
+    for p in range(begin, end, BLOCK):
+        press_block(p, turning, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling)
+        if moving:
+            ready = first_of(pair[p + BLOCK]) if p + BLOCK < end else last
+            move_discs(done, ready, dt, w[V.gravity], turning, body, load, angle, motion)
+            done = ready
+    if moving:
+        move_discs(done, last, dt, w[V.gravity], turning, body, load, angle, motion)
+
+
+@inlined
+def move_discs(begin, end, dt, gravity, turning, body, load, angle, motion):
+    """Semi-implicit Euler for the discs from ``begin`` to before ``end``, whose forces are forgotten."""
+    move_rows(body, load, begin, end, dt, gravity, 2.0 if turning else 0.0, motion)
+    if turning:
+        for i in range(begin, end):
+            angle[i] += body[ROW * i + SPIN] / body[ROW * i + RADIUS] * dt
 
 
 @kernel
-def lane_sum(block, column):
-    """Sum over a column of the block."""
-    total = 0.0
-    for q in range(BLOCK):
-        total += block[column * BLOCK + q]
-    return total
+def press_part(c, moving, dt, w, x, k):
+    """:func:`press_pairs` for the pairs within part c."""
+    part, row = view(k, k, A.part), view(k, k, A.row)
+    press_pairs(row[part[c]], row[part[c + 1]], c, moving, dt, w, x, k)
+
+
+press_parts = shared_among_threads(press_part)
+
+
+@kernel
+def between_discs(dt, moving, w, x, k):
+    """Forces between sand discs, added to ``load``, and what they do to the energy. With ``moving`` the discs go on in time.
+
+    Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
+    velocities half a step before and after it, m v_before v_after / 2. They are nothing without ``moving``.
+    """
+    across, parts = view(k, k, A.across), part_count(k)
+    for entry in (A.tally, A.motion, A.rolling):
+        set_to_zero(view(x, k, entry))
+    press_pairs(across[0], across[across.size - 1], 0, False, dt, w, x, k)
+    press_parts(int(w[V.threads]), parts, moving, dt, w, x, k)
+    add_energies(dt, view(x, k, A.law), view(x, k, A.tally)[:parts * LANES * len(TALLY)], view(x, k, A.rolling), view(x, k, A.sums))
+    return add_motion(dt, w[V.gravity], view(x, k, A.motion)[:parts * MOTION], view(x, k, A.sums))
+
+
+@kernel
+def add_energies(dt, law, tally, rolling, sums):
+    """Add what the parts have added up to the sums, and give it its scale."""
+    sums[SUM.elastic] += 0.5 * (total(TALLY.elastic, tally) + total(TALLY.stretched, tally) * law[LAW.softness])
+    sums[SUM.normal_dashpot] += total(TALLY.normal_dashpot, tally) * dt
+    sums[SUM.tangential_dashpot] += law[LAW.tangential_damping] * total(TALLY.tangential_dashpot, tally) * dt
+    sums[SUM.sliding] += total(TALLY.sliding, tally) * dt + 0.5 * total(TALLY.released, tally) * law[LAW.softness]
+    sums[SUM.plastic] += total(TALLY.plastic, tally)
+    sums[SUM.capillary] += total(TALLY.capillary, tally)
+    for q in range(0, rolling.size, len(ROLL)):
+        sums[SUM.elastic] += rolling[q + ROLL.elastic]
+        sums[SUM.rolling] += rolling[q + ROLL.lost]
+
+
+@kernel
+def total(energy, tally):
+    """One of the energies of TALLY, of all parts: the sum of the lanes in four pairs."""
+    result = 0.0
+    for begin in range(LANES * energy, tally.size, LANES * len(TALLY)):
+        lane = tally[begin:begin + LANES]
+        result += (lane[0] + lane[4]) + (lane[1] + lane[5]) + ((lane[2] + lane[6]) + (lane[3] + lane[7]))
+    return result
+
+
+@kernel
+def add_motion(dt, gravity, motion, sums):
+    """Add the way of the fastest disc to the sums. Returns kinetic and potential energy (J), see :func:`between_discs`."""
+    kinetic, potential, fastest = 0.0, 0.0, 0.0
+    for q in range(0, motion.size, MOTION):
+        kinetic += motion[q + KINETIC] + motion[q + KINETIC + 1] + 0.5 * motion[q + KINETIC + 2]
+        potential += motion[q + POTENTIAL + 1]
+        fastest = max(fastest, motion[q + FASTEST])
+    sums[SUM.travelled] += math.sqrt(fastest) * dt
+    return 2.0 * kinetic, 4.0 * potential * gravity
 
 
 @inlined
@@ -270,7 +305,7 @@ def with_boundaries(dt, w, x, k):
         at, force_at = ROW * i & INDEX, FORCE_ROW * i & INDEX
         nx, ny, gap, vx, vy = touch(i, b, w, body, n, m)
         kind = kind_of(i, b, n, m) * len(LAW) & INDEX
-        tangential = law[kind + LAW.tangential]
+        softness = law[kind + LAW.softness]
         stiffness, share = law[kind + LAW.unloading], law[kind + LAW.yielding]
         yielded = permanent_overlap(plastic[p], -gap, share)
         if yielded > plastic[p]:
@@ -279,7 +314,7 @@ def with_boundaries(dt, w, x, k):
         gap += plastic[p]
         if gap >= 0.0:
             if spring[p] != 0.0:
-                slid += 0.5 * spring[p] * spring[p] / tangential
+                slid += 0.5 * spring[p] * spring[p] * softness
                 spring[p] = 0.0
             roll[p] = 0.0
             continue
@@ -289,9 +324,10 @@ def with_boundaries(dt, w, x, k):
         mass_root = dashpot_root(i, b, w, body, n, m)
         normal = normal_force(-gap, opening, stiffness, law[kind + LAW.damping] * mass_root)
         dashpot = law[kind + LAW.tangential_damping] * mass_root
-        force, kept, taken = tangential_force(spring[p], slip, tangential, dashpot, law[kind + LAW.friction] * normal, dt)
+        limit = law[kind + LAW.friction] * normal
+        force, kept, taken = tangential_force(spring[p], slip, law[kind + LAW.tangential], dashpot, limit, dt)
         spring[p] = kept
-        elastic += stiffness * gap * gap + kept * kept / tangential
+        elastic += stiffness * gap * gap + kept * kept * softness
         dashpot_n += (-stiffness * gap - normal) * opening
         dashpot_t += dashpot * taken * taken
         slid += force * (slip - taken) * dt
@@ -351,12 +387,24 @@ def kind_of(i, b, n, m):
 
 @kernel
 def contact_forces(dt, w, x, k):
-    """All contact forces, into ``load``; contact springs advance by dt (s)."""
-    sums = view(x, k, A.sums)
-    clear(view(x, k, A.load), sums)
-    rolls = w[V.rotation] == FREE and w[V.rolling_resistance] > 0.0
-    lasting = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
-    between_discs(dt, view(k, k, A.row)[disc_count(k)], rolls, lasting, view(x, k, A.body), view(x, k, A.load),
-                  view(k, k, A.first), view(k, k, A.second), view(x, k, A.spring), view(x, k, A.plastic), view(x, k, A.roll),
-                  view(x, k, A.law), view(x, k, A.block), sums)
+    """All contact forces, into ``load``; contact springs advance by dt (s). See :func:`forget_forces`."""
+    clear(0, view(x, k, A.load), view(x, k, A.sums))
     with_boundaries(dt, w, x, k)
+    between_discs(dt, False, w, x, k)
+
+
+@kernel
+def forget_forces(x, k):
+    """Forget the forces on the discs, as :func:`advance_discs` needs it; those on rock and beam stay."""
+    set_to_zero(view(x, k, A.load)[:FORCE_ROW * disc_count(k)])
+
+
+@kernel
+def advance_discs(dt, w, x, k):
+    """All contact forces, and a step dt (s) of the discs with them. Leaves the forces on rock and beam in ``load``.
+
+    Returns kinetic and potential energy (J) at the beginning of the step.
+    """
+    clear(disc_count(k), view(x, k, A.load), view(x, k, A.sums))
+    with_boundaries(dt, w, x, k)
+    return between_discs(dt, True, w, x, k)

@@ -6,7 +6,7 @@ from ..compilation import kernel
 from ..component import OK
 from ..ports import view
 from ..stepping import substep_count, substep_length
-from .contact_search import beam_count, disc_count, forget, is_stale, rebuild
+from .contact_search import beam_count, disc_count, divide, forget, is_stale, rebuild
 from .declarations import (
     ANGLE,
     BEAM_DISCS,
@@ -14,7 +14,6 @@ from .declarations import (
     FORCE_ROW,
     FREE,
     HALF_ROOT,
-    INDEX,
     INVERSE_MASS,
     KIND,
     LAW,
@@ -29,7 +28,7 @@ from .declarations import (
     SPIN,
     SUM,
 )
-from .forces import ROLLING, contact_forces, touch
+from .forces import ROLLING, advance_discs, contact_forces, forget_forces, touch
 from .packing import disc_mass, mean_base, pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -87,6 +86,7 @@ def set_law(kind, stiffness, friction, w, law):
     law[at + LAW.yielding] = 1.0 - 1.0 / ratio
     law[at + LAW.pull] = capillary_strength(w) if kind == KIND.sand else 0.0
     law[at + LAW.bridge] = w[V.cohesion_range]
+    law[at + LAW.softness] = 1.0 / tangential
 
 
 @kernel
@@ -198,7 +198,7 @@ def place(b, px, py, angle, vx, vy, omega, ahead, body, load):
 
 @kernel
 def size_boundaries(w, x, k):
-    """Radii of rock and beam discs, the roots of their masses for the dashpots, and the body that is far away."""
+    """Radii of rock and beam discs, the roots of their masses for the dashpots, and the bodies that are far away."""
     n, m = disc_count(k), beam_count(k)
     body = view(x, k, A.body)
     body[ROW * n + RADIUS] = w[V.rock_radius]
@@ -206,51 +206,18 @@ def size_boundaries(w, x, k):
     for b in range(n + 1, n + m + 1):
         body[ROW * b + RADIUS] = w[V.beam_radius]
         body[ROW * b + HALF_ROOT] = 0.5 * math.sqrt(w[V.beam_disc_mass])
-    body[ROW * (n + m + 1)] = _FAR
+    for b in range(n + m + 1, body.size // ROW):
+        body[ROW * b] = _FAR
 
 
 # --- motion of the discs ---
-
-@kernel
-def move_discs(n, dt, gravity, rotating, body, angle, load, sums):
-    """Semi-implicit Euler: velocity first, then position with the new velocity.
-
-    Returns kinetic and potential energy (J) at the beginning of the step, where the contact forces were computed: with
-    velocities half a step before and after it, m v_before v_after / 2.
-    """
-    kinetic, potential, fastest = 0.0, 0.0, 0.0
-    for i in range(n):
-        at, force = ROW * i & INDEX, FORCE_ROW * i & INDEX
-        inverse, mass = body[at + INVERSE_MASS], 4.0 * body[at + HALF_ROOT] * body[at + HALF_ROOT]
-        vx, vy = body[at + 2], body[at + 3]
-        new_x = vx + load[force] * inverse * dt
-        new_y = vy + (load[force + 1] * inverse - gravity) * dt
-        kinetic += mass * (vx * new_x + vy * new_y)
-        potential += mass * body[at + 1]
-        body[at + 2], body[at + 3] = new_x, new_y
-        body[at] += new_x * dt
-        body[at + 1] += new_y * dt
-        square = new_x * new_x + new_y * new_y
-        if square > fastest:
-            fastest = square
-        if rotating:
-            spin = body[at + SPIN]
-            new = spin + 2.0 * load[force + 2] * inverse * dt  # d(omega r)/dt = torque r / I with I = m r^2 / 2
-            kinetic += 0.5 * mass * spin * new
-            body[at + SPIN] = new
-            angle[i] += new / body[at + RADIUS] * dt
-    sums[SUM.travelled] += math.sqrt(fastest) * dt
-    return 0.5 * kinetic, potential * gravity
-
 
 @kernel
 def advance(dt, w, x, k):
     """One internal step with rock and beam where they are. Returns status, kinetic and potential energy at its beginning."""
     if is_stale(w, x, k) and not rebuild(w, x, k):
         return LIST_FULL, 0.0, 0.0
-    contact_forces(dt, w, x, k)
-    kinetic, potential = move_discs(disc_count(k), dt, w[V.gravity], w[V.rotation] == FREE, view(x, k, A.body),
-                                    view(x, k, A.angle), view(x, k, A.load), view(x, k, A.sums))
+    kinetic, potential = advance_discs(dt, w, x, k)
     return OK, kinetic, potential
 
 
@@ -259,6 +226,7 @@ def advance(dt, w, x, k):
 @kernel
 def unrest(w, x, k):
     """Largest acceleration (in g) and speed (in sqrt(g r)) of any disc, whichever is larger."""
+    contact_forces(_INSTANT * w[V.stable_step], w, x, k)
     body, load = view(x, k, A.body), view(x, k, A.load)
     g = max(w[V.gravity], 1e-12)
     largest = 0.0
@@ -267,6 +235,7 @@ def unrest(w, x, k):
         ax, ay = load[force] * body[at + INVERSE_MASS], load[force + 1] * body[at + INVERSE_MASS] - w[V.gravity]
         v2 = body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3]
         largest = max(largest, math.sqrt(ax * ax + ay * ay) / g, math.sqrt(v2 / (g * w[V.disc_radius])))
+    forget_forces(x, k)
     return largest
 
 
@@ -298,7 +267,6 @@ def come_to_rest(longest, part, rate, rest, w, x, k):
 def settle(w, x, k):
     """Let the discs come to rest and publish how far they are from it."""
     status = come_to_rest(w[V.settling_time], _SETTLING_STEP, _SETTLING_RATE, _AT_REST, w, x, k)
-    contact_forces(_INSTANT * w[V.stable_step], w, x, k)
     w[V.unrest] = unrest(w, x, k)
     slow_down(0.0, w, x, k)
     return status
@@ -359,6 +327,7 @@ def initialise(w, x, k):
         return SMOOTH_BUT_COHESIVE
     for q in range(x.size):
         x[q] = 0.0
+    divide(k)
     set_laws(w, x, k)
     size_boundaries(w, x, k)
     set_boundaries(0.0, w, x, k)
@@ -475,6 +444,7 @@ def evaluate(w, x, k):
     w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
     w[V.energy_residual] = 0.0
     collect_forces(1.0, True, w, x, k)
+    forget_forces(x, k)
     return OK
 
 

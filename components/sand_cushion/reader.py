@@ -14,7 +14,7 @@ from ..compilation import kernel
 from ..component import HEADER, ComponentError, Instance
 from ..ports import view
 from . import COMPONENT
-from .contact_search import base_top, beam_count, disc_count
+from .contact_search import base_top, beam_count, disc_count, first_of, second_of
 from .declarations import ANGLE, BEAM_DISCS, KIND, LAW, LAYOUT, ON_BEAM, RADIUS, ROW, UNBOUNDED
 from .forces import kind_of, touch
 
@@ -119,7 +119,7 @@ def _box(instance: Instance) -> Box:
 
 
 def _contacts(instance: Instance) -> Contacts:
-    table = np.empty((instance.state("second").size + instance.state("edge_partner").size, _COLUMNS))
+    table = np.empty((instance.state("pair").size + instance.state("edge_partner").size, _COLUMNS))
     table = table[:list_contacts(instance.w, instance.x, instance.k, table)]
     bodies = table[:, :2].astype(np.int64)
     return Contacts(bodies[:, 0], bodies[:, 1], *(np.copy(column) for column in table.T[2:]))
@@ -141,32 +141,33 @@ def _base(w, x, k):
 @kernel
 def list_contacts(w, x, k, table):
     """Write a row of ``table`` for each contact that touches; returns their number. The lists of candidates have room for all."""
-    n = disc_count(k)
-    found = _list(0, view(k, k, A.row)[n], view(k, k, A.first), view(k, k, A.second), view(x, k, A.spring), w, x, k, table)
-    return _list(found, view(k, k, A.edge_row)[n + 1], view(k, k, A.edge_body), view(k, k, A.edge_partner),
-                 view(x, k, A.edge_spring), w, x, k, table)
+    found, pair, spring = 0, view(k, k, A.pair), view(x, k, A.spring)
+    for p in range(view(k, k, A.across)[disc_count(k)]):
+        if second_of(pair[p]) < disc_count(k):  # else it fills up a block
+            found = _list(found, first_of(pair[p]), second_of(pair[p]), spring[p], w, x, k, table)
+    owner, partner, spring = view(k, k, A.edge_body), view(k, k, A.edge_partner), view(x, k, A.edge_spring)
+    for p in range(view(k, k, A.edge_row)[disc_count(k) + 1]):
+        found = _list(found, owner[p], partner[p], spring[p], w, x, k, table)
+    return found
 
 
 @kernel
-def _list(found, pairs, first, second, spring, w, x, k, table):
-    """Write those of the pairs that touch behind the rows found before."""
+def _list(found, i, j, tangential, w, x, k, table):
+    """Write a pair behind the rows found before, if it touches. Returns the number of rows."""
     n, m = disc_count(k), beam_count(k)
     body, law = view(x, k, A.body), view(x, k, A.law)
-    for p in range(pairs):
-        i, j = first[p], second[p]
-        nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
-        if gap >= 0.0:
-            continue
-        reach = body[ROW * i + RADIUS] + gap
-        if j <= n + m:
-            reach += body[ROW * j + RADIUS]
-        stiffness = law[(KIND.sand if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
-        table[found, 0], table[found, 1] = i, j
-        table[found, 2], table[found, 3] = body[ROW * i], body[ROW * i + 1]
-        table[found, 4], table[found, 5] = body[ROW * i] + nx * reach, body[ROW * i + 1] + ny * reach
-        table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, spring[p]
-        found += 1
-    return found
+    nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
+    if gap >= 0.0:
+        return found
+    reach = body[ROW * i + RADIUS] + gap
+    if j <= n + m:
+        reach += body[ROW * j + RADIUS]
+    stiffness = law[(KIND.sand if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
+    table[found, 0], table[found, 1] = i, j
+    table[found, 2], table[found, 3] = body[ROW * i], body[ROW * i + 1]
+    table[found, 4], table[found, 5] = body[ROW * i] + nx * reach, body[ROW * i + 1] + ny * reach
+    table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, tangential
+    return found + 1
 
 
 def sizes_of(content: bytes) -> dict[str, int]:

@@ -14,8 +14,11 @@ from components.sand_cushion.declarations import ROW
 
 from .interleave import Contestant
 
-DISC_STEPS = 1_000_000
-"""Discs times steps of one measurement."""
+STEPS = {370: 2_700, 10_000: 100, 100_000: 20}
+"""Steps of one measurement, by the number of discs."""
+
+WARM_UP = 10
+"""Steps before it, as in lammps_peer.py."""
 
 STEP = 1e-5
 """Time step (s), that of the paper."""
@@ -23,8 +26,11 @@ STEP = 1e-5
 THERMAL = 0.01
 """Standard deviation of the discs' velocity components at the start (m/s), so that contacts open, close and slide."""
 
-WIDTHS = {370: 0.37, 10_000: 1.0}
-"""Box widths (m) of a square packing of discs of 1 cm."""
+WIDTHS = {370: 0.37, 10_000: 1.0, 100_000: 4.0}
+"""Box widths (m) of a square packing of discs of 1 cm, by the number of discs."""
+
+THREADED = 100_000
+"""Number of discs that two threads are measured with."""
 
 
 def stirred_cushion(discs: int) -> Instance:
@@ -39,15 +45,17 @@ def stirred_cushion(discs: int) -> Instance:
     return sand
 
 
-def own_kernel(discs: int) -> Contestant:
+def own_kernel(discs: int, threads: int = 1) -> Contestant:
     """The sand cushion's kernel, called directly."""
-    start, steps = stirred_cushion(discs).to_bytes(), DISC_STEPS // discs
+    start = stirred_cushion(discs).to_bytes()
     sand = COMPONENT.instance(discs=discs)
 
     def work() -> float:
         sand.from_bytes(start)
+        sand["threads"] = threads
+        sand.step(0.0, WARM_UP * STEP)
         begin = perf_counter()
-        sand.step(0.0, steps * STEP)
+        sand.step(WARM_UP * STEP, STEPS[discs] * STEP)
         return perf_counter() - begin
 
     return work
@@ -63,7 +71,7 @@ class LammpsPeer:
 
     def contestant(self, discs: int) -> Contestant:
         """Same packing, same number of steps."""
-        return lambda: self._ask(f"{discs} {WIDTHS[discs]} {DISC_STEPS // discs}")
+        return lambda: self._ask(f"{discs} {WIDTHS[discs]} {STEPS[discs]}")
 
     def _ask(self, question: str) -> float:
         assert self._process.stdin is not None
@@ -88,7 +96,7 @@ def lammps_available() -> bool:
 
 def per_disc_and_step(seconds: float, discs: int) -> float:
     """Nanoseconds per disc and step."""
-    return seconds / (DISC_STEPS // discs * discs) * 1e9
+    return seconds / (STEPS[discs] * discs) * 1e9
 
 
 def contestants(peer: LammpsPeer | None) -> Mapping[str, Contestant]:
@@ -98,4 +106,5 @@ def contestants(peer: LammpsPeer | None) -> Mapping[str, Contestant]:
         found[f"ours {discs}"] = own_kernel(discs)
         if peer is not None:
             found[f"lammps {discs}"] = peer.contestant(discs)
+    found[f"two threads {THREADED}"] = own_kernel(THREADED, threads=2)
     return found

@@ -20,9 +20,9 @@ from components.rbsm_beam import COMPONENT as BEAM
 from components.rbsm_beam import kernel as beam_kernel
 from components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
 from components.sand_cushion import COMPONENT as SAND
-from components.sand_cushion import contact_search, forces
+from components.sand_cushion import contact_search
 from components.sand_cushion import kernel as sand_kernel
-from components.sand_cushion.declarations import ANGLE, FORCE_ROW, FREE, RADIUS, ROW, SPIN, SUM
+from components.sand_cushion.declarations import ANGLE, FORCE_ROW, RADIUS, ROW, SPIN, SUM
 from components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
 
 from ..core.system import System
@@ -89,10 +89,9 @@ def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history
     body, load, sums = view(sx, sk, SA.body), view(sx, sk, SA.load), view(sx, sk, SA.sums)
     fx, fy, torque = view(bw, bk, BA.force_x), view(bw, bk, BA.force_y), view(bw, bk, BA.torque)
     for s in range(history.shape[0]):
-        if contact_search.is_stale(sw, sx, sk):
-            contact_search.rebuild(sw, sx, sk)
-        forces.contact_forces(dt, sw, sx, sk)
-        sand_kernel.move_discs(n, dt, sw[SV.gravity], sw[SV.rotation] == FREE, body, view(sx, sk, SA.angle), load, sums)
+        status, _, _ = sand_kernel.advance(dt, sw, sx, sk)
+        if status != 0:
+            return status
         at = FORCE_ROW * n
         history[s, 0], history[s, 1] = sums[SUM.transmitted], load[at + 1]
         rock_y = rw[RV.position_y]

@@ -27,7 +27,8 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at a library o
 
 C_LIBRARY = set(re.findall(r"\w+", """
     acos asin atan atan2 erfc exp expm1 log log1p pow sin sincos sqrt
-    calloc cos fabs free malloc memcmp memcpy memmove memset nextafter snprintf strcmp strcpy strlen strtol tan vsnprintf
+    calloc cos fabs free malloc memcmp memcpy memmove memset nextafter pthread_create pthread_join snprintf
+    strcmp strcpy strlen strtol tan vsnprintf
     __cxa_finalize __gmon_start__ _ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __stack_chk_fail
     __memcpy_chk __snprintf_chk __strcpy_chk __vsnprintf_chk"""))
 MACOS_ONLY = {"__stack_chk_guard", "dyld_stub_binder", "__bzero", "__sincos_stret"}

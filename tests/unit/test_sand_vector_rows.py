@@ -7,39 +7,43 @@ from hypothesis import strategies as st
 
 from components.compilation import kernel
 from components.sand_cushion import vector_rows
+from components.sand_cushion.contact_search import pair_of
 from components.sand_cushion.declarations import BLOCK
 
 BODIES = 40
 
 
 @kernel
-def to_columns(body, first, second, block):
-    for lane in range(0, BLOCK, vector_rows.LANES):
-        vector_rows.pairs_to_columns(body, first, second, lane, block, lane, BLOCK)
+def to_columns(body, pair, block):
+    vector_rows.pairs_to_columns(body, pair, 0, block)
 
 
 @kernel
-def to_rows(load, first, second, block):
-    for lane in range(0, BLOCK, vector_rows.LANES):
-        vector_rows.columns_to_pairs(load, first, second, lane, block, lane, BLOCK)
+def to_rows(load, pair, block):
+    vector_rows.columns_to_pairs(load, pair, 0, block)
+
+
+@kernel
+def to_rows_that_do_not_turn(load, pair, block):
+    vector_rows.forces_to_pairs(load, pair, 0, block)
 
 
 def pairs(seed):
     """A block of pairs of which many share a disc, also next to each other."""
     random = np.random.default_rng(seed)
     first = np.sort(random.integers(0, BODIES - 1, BLOCK))
-    return random, first, random.integers(first + 1, BODIES)
+    second = random.integers(first + 1, BODIES)
+    return random, first, second, np.array([pair_of.py_func(int(i), int(j)) for i, j in zip(first, second)])
 
 
 @settings(deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_columns_are_those_of_the_plain_loop(seed):
-    random, first, second = pairs(seed)
+    random, first, second, pair = pairs(seed)
     body = random.normal(0.0, 1.0, 8 * BODIES)
     vector, plain = np.zeros(7 * BLOCK), np.zeros(7 * BLOCK)
-    to_columns(body, first, second, vector)
-    for lane in range(0, BLOCK, vector_rows.LANES):
-        vector_rows.plain_pairs_to_columns(body, first, second, lane, plain, lane, BLOCK)
+    to_columns(body, pair, vector)
+    vector_rows.plain_pairs_to_columns(body, pair, 0, plain)
     np.testing.assert_array_equal(vector, plain)
     rows = body.reshape(-1, 8)
     assert plain[:BLOCK] == pytest.approx(rows[second, 0] - rows[first, 0])
@@ -50,13 +54,16 @@ def test_columns_are_those_of_the_plain_loop(seed):
 @settings(deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_loads_add_up_in_the_order_of_the_plain_loop(seed):
-    random, first, second = pairs(seed)
+    random, _, _, pair = pairs(seed)
     block, start = random.normal(0.0, 1.0, 4 * BLOCK), random.normal(0.0, 1.0, 4 * BODIES)
     vector, plain = start.copy(), start.copy()
-    to_rows(vector, first, second, block)
-    for lane in range(0, BLOCK, vector_rows.LANES):
-        vector_rows.plain_columns_to_pairs(plain, first, second, lane, block, lane, BLOCK)
+    to_rows(vector, pair, block)
+    vector_rows.plain_columns_to_pairs(plain, pair, 0, block)
     np.testing.assert_array_equal(vector, plain)
+    locked = start.copy()
+    to_rows_that_do_not_turn(locked, pair, block)
+    np.testing.assert_array_equal(locked.reshape(-1, 4)[:, :2], plain.reshape(-1, 4)[:, :2])
+    np.testing.assert_array_equal(locked.reshape(-1, 4)[:, 2:], start.reshape(-1, 4)[:, 2:])
     gained = (plain - start).reshape(-1, 4).sum(axis=0)
     assert gained[:2] == pytest.approx(0.0, abs=1e-12)  # action and reaction
     assert gained[2] == pytest.approx(2.0 * block[2 * BLOCK:3 * BLOCK].sum())
