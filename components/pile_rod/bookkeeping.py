@@ -10,9 +10,10 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @kernel
 def shaft_soil(i, w, x, k):
-    """The soil at node i, the lower end of segment i - 1. The head has none."""
-    stretch, at = view(x, k, A.soil), max(i - 1, 0)
-    resistance = view(w, k, A.shaft_resistance)[at] if i > 0 else 0.0
+    """The soil at node i, the lower end of segment i - 1. The head and the ground below the toe have none."""
+    stretch, n = view(x, k, A.soil), k[A.impedance + 1]
+    at = min(max(i - 1, 0), n - 1)
+    resistance = view(w, k, A.shaft_resistance)[at] if 0 < i <= n else 0.0
     return Soil(stretch[i], view(w, k, A.shaft_quake)[at], resistance, view(w, k, A.shaft_damping)[at], True)
 
 

@@ -7,8 +7,8 @@ time, velocities to half a step later. T(v) + 1/2 D(t) K D(t + dt) is then conse
 from ..compilation import kernel
 from ..ports import view
 from .bookkeeping import book_head, envelope, shaft_soil, toe_soil
-from .declarations import LAYOUT, PORT, RAM, REFLECTION
-from .segments import below_toe, has_tail
+from .declarations import LAYOUT, MATCHED, PORT, RAM, SMITH
+from .segments import below_toe
 from .soil import drag, static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -85,11 +85,9 @@ def _strike(time, dt, force, below, w, x, k):
 def _push(i, net, dt, toe_force, w, x, k):
     """Change the velocity of node i under the springs' net force (N, downwards). Returns the work on the static soil (J)."""
     rate, mass, n, last = view(x, k, A.rate), view(x, k, A.mass), k[A.impedance + 1], view(k, k, A.free)[2]
-    shaft, toe, was = shaft_soil(i, w, x, k) if i <= n else shaft_soil(0, w, x, k), toe_soil(i == n, w, x, k), rate[i]
+    shaft, toe, was = shaft_soil(i, w, x, k), toe_soil(i == n, w, x, k), rate[i]
     on_shaft, under_toe = static(shaft, shaft.stretch), static(toe, toe.stretch)
-    in_soil, standing = drag(shaft, on_shaft) + drag(toe, under_toe), 0.0
-    if i == last and has_tail(w):
-        standing = below_toe(w, x, k) if w[V.toe_condition] == REFLECTION else view(x, k, A.impedance)[n - 1]
+    in_soil, standing = drag(shaft, on_shaft) + drag(toe, under_toe), _dashpot(w, x, k) if i == last else 0.0
     load = mass[i] * w[V.gravity] if i <= n else 0.0
     pushed = toe_force if i == n and w[V.toe_condition] == PORT else 0.0
     half = 0.5 * dt / mass[i]
@@ -103,9 +101,17 @@ def _push(i, net, dt, toe_force, w, x, k):
     if i == 1 and w[V.ram_mass] > 0.0:
         w[V.energy_contact] -= spring_force(0, w, x, k) * mean * dt
     if i == n:
-        below = spring_force(n, w, x, k)
-        w[V.toe_contact_force] = under_toe + drag(toe, under_toe) * mean + pushed + below + (standing * mean if i == last else 0.0)
+        w[V.toe_contact_force] = (under_toe + pushed + (drag(toe, under_toe) + standing) * mean
+                                  + spring_force(n, w, x, k))
     return (on_shaft + under_toe) * mean * dt
+
+
+@kernel
+def _dashpot(w, x, k):
+    """Impedance (N s/m) of the dashpot under the last node: a matched toe, or the ground going on below its last segment; or 0."""
+    if w[V.toe_condition] == MATCHED:
+        return view(x, k, A.impedance)[k[A.impedance + 1] - 1]
+    return below_toe(w, x, k) if w[V.scheme] != SMITH else 0.0
 
 
 @kernel

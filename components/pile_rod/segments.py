@@ -9,8 +9,6 @@ from .declarations import (
     DOWN,
     FIXED,
     LAYOUT,
-    MATCHED,
-    MODIFIED_SMITH,
     PORT,
     REFLECTION,
     REPAIRED,
@@ -201,12 +199,6 @@ def plain_limit(impedance, stiffness, mass):
 def head_sign(w):
     """1 where the head's port counts downwards, -1 where upwards."""
     return 1.0 if w[V.head_direction] == DOWN else -1.0
-
-
-@kernel
-def has_tail(w):
-    """Whether the last node of the chain stands on a dashpot: a matched toe, or the ground going on below the last segment."""
-    return w[V.toe_condition] == MATCHED or (w[V.toe_condition] == REFLECTION and w[V.scheme] >= MODIFIED_SMITH)
 
 
 @kernel

@@ -133,7 +133,7 @@ def _stability(plan: Plan, slave: Slave) -> list[Problem]:
     if "stable_step" not in ports or "internal_step" not in ports:
         return found
     stable, internal = _value(slave, ports["stable_step"]), _value(slave, ports["internal_step"])
-    longest = min(internal, communication)
+    longest = _value(slave, ports["time_step"]) if "time_step" in ports else min(internal, communication)
     if longest <= stable:
         return found
     return [*found, Problem(f"{slave.name}.internal_step", f"steps of {longest:.6g} s (internal_step {internal:.6g} s, "

@@ -288,7 +288,7 @@ REFUSED = [
      ["steps of 1e-12 s are 1e+07 in each communication step of 1e-05 s", "raise it to 1e-10 s"]),
     (["lab-impact", "--stop-time", "1e9"], ["stop_time: 1e+09 s is beyond the longest time, 4.61e+06 s", "make it shorter"]),
     (["lab-impact", "--stop-time", "1e6"],
-     ["output_interval: 10,000,000,001 rows of 305 columns are 3.1e+12 values", "5 s or more will do",
+     ["output_interval: 10,000,000,001 rows of 307 columns are 3.1e+12 values", "5 s or more will do",
       "state_interval: 2,000,000,001 states would be recorded", "100 s or more will do"]),
     (["lab-impact", "--stop-time", "-1"], ["stop_time", "is not after start_time"]),
     (["lab-impact", "--stop-time", "nan"], ["stop_time", "finite"]),

@@ -89,3 +89,14 @@ def test_waves_refuse_a_step_beyond_the_travel_time(tmp_path):
         blow(tmp_path, 288)
     with pytest.raises(InputRefused, match=r"exceeds step_limit = 0\.001 s"):
         blow(tmp_path, 144, "jacobi")
+
+
+def test_an_unstable_chain_is_refused_however_short_the_exchange(tmp_path):
+    """Smith's spring five times as stiff as the rod's, in segments whose own step is longer than the exchange."""
+    rod = {"scheme": "smith", "ram.mass": 63.5, "toe.condition": "reflection", "toe.reflection": -2.0 / 3.0,
+           "section.length[1]": 50.0}
+    system = system_from({"name": "rod", "stop_time": 1e-3, "exchange_step": 1e-5, "components": {
+        "rod": {"fmu": str(build_if_needed("PileRod", {"segments": SEGMENTS})), "parameters": rod}}}, "rod")
+    with pytest.raises(InputRefused, match=r"rod\.internal_step: steps of 3\.81.*e-05 s .* exceed stable_step = 2\.88.*e-05 s"):
+        simulate(system, tmp_path / "run")
+    assert simulate(system, tmp_path / "run", allow_unstable=True).status == "complete"

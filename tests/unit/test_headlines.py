@@ -251,7 +251,7 @@ def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
 
 
 def test_every_test_of_the_paper_is_a_case_and_finds_its_references_again():
-    assert len(cases()) == 24
+    assert len(cases()) == 26
     assert next(iter(cases())) == "lab-impact"
     assert references_of({"case": "lab-impact-10"}).known[h.PEAK_TRANSMITTED].experiment.value == pytest.approx(673.2 * KGF)
     assert references_of({}).known == {}

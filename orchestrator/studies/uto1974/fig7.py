@@ -12,8 +12,8 @@ from ..study import Outcomes, Row, Study
 from .struck_rod import QUAKE, SOURCE, Traces, closed_form, strike
 
 LENGTH, GAUGE, BLOWS = 33.94, 2.58, 50
-SEGMENTS = 3394
-"""Segments of 1 cm, so that the gauge lies between two of them."""
+SEGMENTS = 1697
+"""Segments of 2 cm, so that the gauge lies between two of them."""
 OUTPUTS = ("gauge.stress", "toe.set", "ram.touching")
 DAMPING = 0.5
 """Smith's damping under the toe (s/m), his 0.15 s/ft."""

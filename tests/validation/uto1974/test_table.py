@@ -49,8 +49,8 @@ def test_a_claim_has_its_verdict_and_its_number(made, beginning):
 
 
 def test_the_measured_rod_has_its_times_and_says_what_is_assumed(made):
-    assert row(made, "fig. 7: the front passes").computed == pytest.approx(2.58 / 5.12, abs=0.003)
-    assert row(made, "fig. 7: it comes back").computed == pytest.approx((2.58 + 2.0 * 31.36) / 5.12, abs=0.003)
+    assert row(made, "fig. 7: the front passes").computed == pytest.approx(2.58 / 5.12, abs=0.005)
+    assert row(made, "fig. 7: it comes back").computed == pytest.approx((2.58 + 2.0 * 31.36) / 5.12, abs=0.005)
     assert row(made, "fig. 7: largest stress").computed == pytest.approx(7850 * 5120 * (2 * 9.80665 * 0.75) ** 0.5 / 1e6, rel=0.002)
     assert "assumed" in row(made, "fig. 7: ultimate resistance").note
 
