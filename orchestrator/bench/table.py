@@ -115,10 +115,20 @@ def start_rows(rounds: int) -> Iterator[Row]:
 
 
 def rockfall_rows(rounds: int) -> Iterator[Row]:
-    """CPU time of a trial on one core."""
-    times = interleave({"ours": rockfall.own_kernel()}, rounds)
+    """CPU time of a trial on one core, and of one of pyrockfall where it is installed."""
+    peer = rockfall.PyrockfallPeer() if rockfall.pyrockfall_available() else None
+    try:
+        times = interleave({"ours": rockfall.own_kernel()} | ({"pyrockfall": peer.contestant()} if peer else {}), rounds)
+    finally:
+        if peer is not None:
+            peer.close()
     took = times.median("ours") / rockfall.TRIALS
     yield Row("rockfall trial, 15 cells and 3 search lines", took * 1e6, "us of one core", goal=10.0)
+    if peer is not None:
+        theirs = times.median("pyrockfall") / rockfall.PEER_TRIALS
+        yield Row("pyrockfall, the same profile", theirs * 1e6, "us of one core")
+        share = times.ratio("ours", "pyrockfall") * rockfall.PEER_TRIALS / rockfall.TRIALS
+        yield Row("rockfall trial, 15 cells and 3 search lines", share, "ratio", "pyrockfall")
 
 
 def cluster_rows(rounds: int) -> Iterator[Row]:

@@ -171,7 +171,7 @@ def _panel(run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[flo
     axes.axhline(state.box.base / cm, color=GREY, linewidth=0.5, zorder=2)
     _axis_of_beam(run, frame, axes)
     axes.set_title(f"{frame.time / ms:g} ms")
-    axes.set_title(_words(run, frame), loc="right", fontsize=7.5, color=GREY)
+    axes.set_title(_words(run, frame), loc="right", fontsize=6.5, color=GREY)
 
 
 def _walls(axes: Axes, box: Box, top: float) -> None:

@@ -159,7 +159,7 @@ def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a terminal's Ctrl-C is a signal to a group of processes")
 def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_nothing(tmp_path):
-    command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "1000000", "--scheduler", "local",
+    command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "400000", "--scheduler", "local",
                "--workers", "1", "--output-dir", str(tmp_path / "out")]
     run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True,
                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
