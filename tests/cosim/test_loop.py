@@ -156,4 +156,4 @@ def test_native_fmus_give_the_same_bits(tmp_path):
         "watch": ["a.y[7]"]})
     found = assert_the_same(system, lambda: sources_of(system))
     levels = found["rows"][:, 0]
-    assert levels[0] < levels[1] < levels[10] < levels[-1] == 2.0  # each is half of the other one and one
+    assert levels[0] < levels[12] < levels[-1] == 2.0  # each is half of the other one and one
