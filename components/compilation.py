@@ -13,7 +13,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
-from functools import cache, update_wrapper
+from functools import cache, cached_property, update_wrapper
 from importlib import import_module
 from pathlib import Path
 from threading import RLock
@@ -66,16 +66,15 @@ class Deferred:
         update_wrapper(self, function)
         self._function, self._make = function, make
 
-    @property
+    @cached_property
     def made(self) -> Any:
         """What ``make`` gives."""
-        if "_made" not in vars(self):
-            from . import numba_bridge  # noqa: F401 (tells numba what a Deferred is)
+        from . import numba_bridge  # noqa: F401 (tells numba what a Deferred is)
 
-            with _making:  # two threads that come first get the same
-                if "_made" not in vars(self):
-                    self._made = self._make(self._function)
-        return self._made
+        with _making:  # two threads that come first get the same
+            if "made" not in vars(self):
+                vars(self)["made"] = self._make(self._function)
+            return vars(self)["made"]
 
     def __call__(self, *arguments: Any) -> Any:
         """Call what ``make`` gives."""

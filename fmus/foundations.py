@@ -3,8 +3,8 @@
 from pythonfmu.enums import Fmi2Status
 from pythonfmu.fmi2slave import Fmi2Slave
 
-from components.component import Component, ComponentError, Instance, value_problems
+from components.component import OK, Component, ComponentError, Instance, value_problems
 from components.ports import Causality, Kind, Variable
 
-__all__ = ["Causality", "Component", "ComponentError", "Fmi2Slave", "Fmi2Status", "Instance", "Kind", "Variable",
+__all__ = ["OK", "Causality", "Component", "ComponentError", "Fmi2Slave", "Fmi2Status", "Instance", "Kind", "Variable",
            "value_problems"]

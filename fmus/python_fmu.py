@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from .foundations import Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
+from .foundations import OK, Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
 from .interpreter import let_go_of_interpreter
 from .isolation import ForeignFoldersHidden
 
@@ -100,6 +100,7 @@ class ComponentSlave(Fmi2Slave):
         self._instance = instance = Instance(self.component, self.sizes)
         self._phase, self._stale, self._previewed = _Phase.INSTANTIATED, _Stale.STATE, False
         self._time, self._stop_time, self._compiled = math.nan, math.inf, False
+        self._advance: Callable[..., int] = self.component.step
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
         self._table = [(name, variable) for variable in self.component.layout.ordered
                        for name in variable.element_names(self.sizes)]
@@ -149,7 +150,10 @@ class ComponentSlave(Fmi2Slave):
             if not due and (reason := self._why_not(current_time, step_size)):
                 self._log(f"the step of {step_size:.6g} s from t = {current_time:.9g} s is refused: {reason}", Fmi2Status.error)
                 return False
-            self._instance.step(current_time, step_size)
+            instance = self._instance
+            status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
+            if status != OK:
+                raise ComponentError(self.component.name, [f"at t = {current_time:.9g} s {instance.message(status)}"])
             self._time = current_time + step_size
             return True
         except BaseException as error:
@@ -191,7 +195,7 @@ class ComponentSlave(Fmi2Slave):
                 from numba import typeof
 
                 compiler(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
-        self._compiled = True
+        self._advance, self._compiled = getattr(self.component.step, "made", self.component.step), True
 
     def _warn_of_unstable_step(self) -> None:
         if {"internal_step", "stable_step"} <= self._instance.references.keys():

@@ -200,6 +200,7 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         from . import comparison
         from .building import is_cold
         from .core.errors import RunFailed
+        from .core.journal import reported
         from .core.reading import add_figures, read_run
         from .core.run import simulate
         from .job import prepare
@@ -212,13 +213,29 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         if is_cold(job.components):
             progress.describe(COLD_START)
         try:
-            done = simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress,
-                            facts=job.facts)
+            with reported([sys.executable, "-m", f"{__package__}.cli", "crashed", str(folder.absolute())]):
+                done = simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress,
+                                facts=job.facts)
         except RunFailed:
             done = read_run(folder)  # status and reason are in it
     figures = comparison.figures(done, comparison.known_of(done))
     add_figures(folder, figures)
     return replace(done, summary=[*done.summary, *figures])
+
+
+@app.command(hidden=True)
+def crashed(folder: Path, signal: int) -> None:
+    """What `rockshed run` becomes when the code of an FMU crashes: tell which, and keep what was computed."""
+    from .core.journal import last_entry
+    from .core.results import keep_crashed, running_folder
+    from .screen import RUN_FAILED
+
+    with _screen() as screen:
+        error = last_entry(running_folder(folder), signal)
+        kept = keep_crashed(folder, error, warnings=[])
+        screen.fail(error)
+        screen.say(f"results in {folder}" if kept else "nothing was computed")
+    raise typer.Exit(RUN_FAILED)
 
 
 def _finish(done: "Run", screen: "Screen", with_figures: bool) -> bool:

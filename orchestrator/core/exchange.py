@@ -13,7 +13,7 @@ from .plan import End, Plan
 from .schedule import Action, Operation
 from .slave import REAL, WARNING, Slave
 from .snapshots import Snapshots
-from .tables import CHANNEL, MOVE, NOT_FINITE, NUMBERS, OPERATION, WATCHED, Records, Tables, head
+from .tables import CHANNEL, MOVE, NOT_FINITE, NUMBERS, OPERATION, WATCHED, Integers, Records, Tables, head
 
 
 class Fault(NamedTuple):
@@ -42,12 +42,14 @@ def make_watched(plan: Plan) -> Records:
 class State:
     """What a run carries from exchange to exchange: both buses, the accounts of the bonds, what is watched, what is recorded."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, journal: Integers | None = None) -> None:
         self.plan = plan
         self.inputs, self.outputs = np.zeros(len(plan.inputs)), np.zeros(len(plan.outputs))
         self.setters, self.getters = make_blocks(plan.inputs), make_blocks(plan.outputs)
         self.channels, self.watched = make_channels(plan), make_watched(plan)
         self.snapshots = Snapshots(plan)
+        self.journal = np.full(2, -1, np.int64) if journal is None else journal
+        """Exchange and operation under way; see :mod:`orchestrator.core.journal`."""
 
     @cached_property
     def needs(self) -> dict[str, set[int]]:
@@ -60,6 +62,12 @@ class State:
         """Places of each component's outputs."""
         return {name: {place for block in self.getters.get(name, []) for place in range(block.places.start, block.places.stop)}
                 for name in self.plan.order}
+
+    @cached_property
+    def operations(self) -> list[Operation]:
+        """All operations of a period, and behind them those that read what is recorded."""
+        return [*(operation for exchange in self.plan.schedule.operations for operation in exchange),
+                *(Operation(Action.RECORD, name) for name in self.snapshots.blocks)]
 
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values. Returns the worst status."""
@@ -118,13 +126,15 @@ class State:
         row = snapshots.rows[number]
         row[:snapshots.exchanged] = self.outputs
         row[snapshots.taken], row[snapshots.given_back] = self.channels["taken"], self.channels["given_back"]
-        for name, blocks in snapshots.blocks.items():
+        for turn, (name, blocks) in enumerate(snapshots.blocks.items()):
+            self.journal[1] = len(self.operations) - len(snapshots.blocks) + turn
             for block in blocks:
                 status = slaves[name].get(block.references, row[block.places], block.kind)
                 if status > WARNING:
                     return name, status
                 if not np.isfinite(row[block.places]).all():
                     return name, NOT_FINITE
+        self.journal[1] = -1
         return None
 
 
@@ -141,16 +151,19 @@ class PlainDriver:
 
     def __init__(self, state: State, slaves: Mapping[str, Slave]) -> None:
         self._state, self._slaves = state, slaves
+        self._first = np.cumsum([0, *map(len, state.plan.schedule.operations)])
 
     def advance(self, first: int, count: int) -> Fault | None:
         """See :class:`Driver`."""
         state, schedule, timing = self._state, self._state.plan.schedule, self._state.plan.timing
         for n in range(first, first + count):
             origin = timing.start + n // schedule.period * schedule.period * schedule.exchange
-            for operation in schedule.operations[n % schedule.period]:
+            for number, operation in enumerate(schedule.operations[n % schedule.period], self._first[n % schedule.period]):
+                state.journal[:] = n, number
                 status = self._operate(operation, origin)
                 if status > WARNING or status == NOT_FINITE:
                     return Fault(n, operation, status)
+            state.journal[1] = -1
             state.post()
             state.watch(n + 1)
             if (n + 1) % state.snapshots.every == 0:
@@ -174,14 +187,14 @@ class CompiledDriver:
 
     def __init__(self, state: State, slaves: Mapping[str, Slave]) -> None:
         plan, snapshots = state.plan, state.snapshots
-        self._operations = [operation for exchange in plan.schedule.operations for operation in exchange]
-        self._operations += [Operation(Action.RECORD, name) for name in snapshots.blocks]
+        self._operations = state.operations
         operations, moves = _calls(self._operations, state, slaves)
         self._tables = Tables(
             plan.timing.start, plan.schedule.exchange, snapshots.every, snapshots.rows.shape[1], 0,
             np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
             operations, moves, state.inputs, state.outputs, plan.source.astype(np.uint64),
-            np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32), state.channels, state.watched, snapshots.rows.ravel())
+            np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32), state.channels, state.watched, snapshots.rows.ravel(),
+            state.journal)
         self._waiting, self._head, self._loop = snapshots.waiting, head(self._tables), advance()
 
     def advance(self, first: int, count: int) -> Fault | None:

@@ -14,7 +14,11 @@ _ROUNDS = 20
 """How often outputs are passed on at the start; a chain of components needs one round for each of them."""
 
 
-def instantiate(plan: Plan, sources: Mapping[str, Source]) -> dict[str, Slave]:
+Told = Callable[[str], None]
+"""Called with the name of a component before it is called."""
+
+
+def instantiate(plan: Plan, sources: Mapping[str, Source], told: Told = lambda name: None) -> dict[str, Slave]:
     """One slave for each component.
 
     Raises:
@@ -23,6 +27,7 @@ def instantiate(plan: Plan, sources: Mapping[str, Source]) -> dict[str, Slave]:
     slaves: dict[str, Slave] = {}
     problems: list[Problem] = []
     for name in plan.order:
+        told(name)
         try:
             slaves[name] = sources[name].instantiate(name)
         except InputRefused as refusal:
@@ -39,17 +44,18 @@ def free(slaves: Iterable[Slave]) -> None:
         slave.free()
 
 
-def initialise(plan: Plan, slaves: Mapping[str, Slave], state: State, allow_unstable: bool = False) -> list[str]:
+def initialise(plan: Plan, slaves: Mapping[str, Slave], state: State, allow_unstable: bool = False,
+               told: Told = lambda name: None) -> list[str]:
     """Set parameters, pass outputs on to inputs in the initialisation mode and after it, check the steps. Returns warnings.
 
     Raises:
         InputRefused: a slave refuses its parameters or inputs, or would be unstable.
     """
     timing = plan.timing
-    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)))
-    before = _settle(state, slaves)
-    _phase(slaves, lambda slave: slave.exit_initialisation())
-    unsettled = _settle(state, slaves) or before
+    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)), told)
+    before = _settle(state, slaves, told)
+    _phase(slaves, lambda slave: slave.exit_initialisation(), told)
+    unsettled = _settle(state, slaves, told) or before
     if bad := [end for name in plan.order if (end := state.not_finite(name)) is not None]:
         raise InputRefused([Problem(e.name, "is no finite number after the initialisation", "check the parameters") for e in bad])
     warnings = [f"{name}: {without_name(name, text)}" for name, slave in slaves.items()
@@ -72,9 +78,12 @@ def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, s
     return max(worst, slave.setup_experiment(start, stop), slave.enter_initialisation())
 
 
-def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int]) -> None:
+def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], told: Told) -> None:
     """Do the same with all slaves, then see whether any of them refused."""
-    problems = [problem for slave in slaves.values() for problem in _refusals(slave, call(slave))]
+    problems = []
+    for slave in slaves.values():
+        told(slave.name)
+        problems += _refusals(slave, call(slave))
     if problems:
         raise InputRefused(problems)
 
@@ -88,7 +97,7 @@ def _refusals(slave: Slave, status: int) -> list[Problem]:
     return [Problem(slave.name, without_name(slave.name, text)) for text in dict.fromkeys(texts)]
 
 
-def _settle(state: State, slaves: Mapping[str, Slave]) -> str:
+def _settle(state: State, slaves: Mapping[str, Slave], told: Told) -> str:
     """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing.
 
     Those with the fewest inputs come first: what they show is then there for those that need much and may take long to compute what
@@ -101,6 +110,7 @@ def _settle(state: State, slaves: Mapping[str, Slave]) -> str:
     for _ in range(_ROUNDS):
         problems: list[Problem] = []
         for slave in turns:
+            told(slave.name)
             if needs[slave.name] <= taken:
                 if slave.name in said and needs[slave.name]:
                     _forget_warnings(slave, said[slave.name])

@@ -16,7 +16,7 @@ from numba.extending import intrinsic
 from .clock import TICKS_PER_SECOND
 from .schedule import Action
 from .slave import WARNING
-from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
+from .tables import CRASHED, ENTRY, KINDS, NOT_FINITE, NUMBERS, REPORTER, REPORTER_LENGTH, Tables
 
 _SET, _STEP = int(Action.SET), int(Action.STEP)
 _WARNING = WARNING
@@ -162,6 +162,7 @@ def _record(tables, base):  # type: ignore[no-untyped-def]
         tables.snapshots[works + i] = tables.channels[i]["taken"]
         tables.snapshots[works + tables.channels.size + i] = tables.channels[i]["given_back"]
     for o in range(tables.first[tables.first.size - 1], tables.operations.size):
+        tables.journal[1] = o
         for m in range(tables.operations[o]["first_move"], tables.operations[o]["end_move"]):
             status = _take(tables, tables.moves[m], tables.snapshots, base)
             if _is_bad(status):
@@ -179,7 +180,9 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
     period = tables.first.size - 1
     for n in range(first, first + count):
         origin = tables.start + n // period * period * tables.exchange
+        tables.journal[0] = n
         for o in range(tables.first[n % period], tables.first[n % period + 1]):
+            tables.journal[1] = o
             status = _operate(tables, tables.operations[o], origin)
             if _is_bad(status):
                 return n - first, o, status
@@ -190,6 +193,7 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
             o, status = _record(tables, row * tables.width)
             if status != 0:
                 return n - first, o, status
+        tables.journal[1] = -1
     return count, 0, 0
 
 
@@ -202,9 +206,10 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     advance.compile(signature)
     compiled = advance.overloads[signature]
     whole = llvm.parse_assembly(compiled.library.get_llvm_str())
-    whole.link_in(llvm.parse_assembly(str(_entry(compiled))))
+    for module in (_entry(compiled), _handler()):
+        whole.link_in(llvm.parse_assembly(str(module)))
     for function in whole.functions:
-        if not function.is_declaration and function.name != ENTRY:
+        if not function.is_declaration and function.name not in (ENTRY, CRASHED):
             function.linkage = "internal"
     passes = llvm.create_new_module_pass_manager()
     passes.add_global_dead_code_eliminate_pass()
@@ -242,4 +247,21 @@ def _entry(compiled: Any) -> ir.Module:
     for place in range(3):
         builder.store(builder.extract_value(found, place), number(outcome, place))
     builder.ret(integer(0))
+    return module
+
+
+def _handler() -> ir.Module:
+    """The handler of signals: ``void rockshed_crashed(int signal)``. It calls nothing that a handler may not call."""
+    module, integer, short = ir.Module(), ir.IntType(64), ir.IntType(32)
+    table = ir.GlobalVariable(module, ir.ArrayType(integer, REPORTER_LENGTH), REPORTER)
+    table.initializer = ir.Constant(table.value_type, [0] * REPORTER_LENGTH)
+    handler = ir.Function(module, ir.FunctionType(ir.VoidType(), [short]), CRASHED)
+    builder = ir.IRBuilder(handler.append_basic_block())
+    execve, *arguments, digits, leave = (builder.load(builder.gep(table, [short(0), short(i)])) for i in range(REPORTER_LENGTH))
+    for place, digit in enumerate((builder.sdiv(handler.args[0], short(10)), builder.srem(handler.args[0], short(10)))):
+        text = builder.inttoptr(digits, ir.IntType(8).as_pointer())
+        builder.store(builder.trunc(builder.add(digit, short(ord("0"))), ir.IntType(8)), builder.gep(text, [short(place)]))
+    builder.call(builder.inttoptr(execve, ir.FunctionType(short, [integer] * 3).as_pointer()), arguments)
+    builder.call(builder.inttoptr(leave, ir.FunctionType(ir.VoidType(), [short]).as_pointer()), [short(1)])
+    builder.ret_void()
     return module

@@ -3,7 +3,7 @@
 import ctypes
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
@@ -12,7 +12,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
-from .tables import ENTRY, Integers
+from .tables import CRASHED, ENTRY, REPORTER, REPORTER_LENGTH, Integers
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
 """Environment variable that moves the folder in which machine code is kept, by default ``~/.cache/rockshed``."""
@@ -23,15 +23,11 @@ Advance = Callable[[Integers, int, int], tuple[int, int, int]]
 _HERE = Path(__file__).parent
 _SOURCES = ("clock.py", "loop.py", "machine_code.py", "schedule.py", "slave.py", "tables.py")
 """Files that the machine code follows from."""
-_ENTRY = "rockshed_advance"
-
-_held: list[Any] = []
-"""What has to live as long as the process: the engine that owns the loaded code."""
 
 
 @cache
-def advance() -> Advance:
-    """The loop, ready to be called. The global interpreter lock is kept during the call."""
+def _engine() -> Any:
+    """The machine code in memory."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     target = llvm.Target.from_default_triple().create_target_machine(
@@ -39,9 +35,14 @@ def advance() -> Advance:
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target)
     engine.add_object_file(llvm.ObjectFileRef.from_data(_code(target)))
     engine.finalize_object()
-    _held.append(engine)
+    return engine
+
+
+@cache
+def advance() -> Advance:
+    """The loop, ready to be called. The global interpreter lock is kept during the call."""
     integer = ctypes.c_int64
-    function = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)(engine.get_function_address(ENTRY))
+    function = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)(_engine().get_function_address(ENTRY))
 
     def call(head: Integers, first: int, count: int) -> tuple[int, int, int]:
         outcome = (integer * 3)()
@@ -49,6 +50,24 @@ def advance() -> Advance:
         return outcome[0], outcome[1], outcome[2]
 
     return call
+
+
+def crash_handler(command: Sequence[str]) -> int:
+    """Address of a handler of signals by which the process becomes this command, with the number of the signal as one argument
+    more. There is one in a process: the newest command counts."""
+    libc, digits = ctypes.CDLL(None), ctypes.create_string_buffer(b"00")
+    texts = [ctypes.create_string_buffer(os.fsencode(part)) for part in command]
+    arguments = (ctypes.c_void_p * (len(command) + 2))(*map(ctypes.addressof, [*texts, digits]), None)
+    table = (ctypes.c_int64 * REPORTER_LENGTH).from_address(_engine().get_global_value_address(REPORTER))
+    execve, leave = (ctypes.cast(function, ctypes.c_void_p).value or 0 for function in (libc.execve, libc._exit))
+    environment = ctypes.c_void_p.in_dll(libc, "environ").value or 0
+    table[:] = [execve, arguments[0] or 0, ctypes.addressof(arguments), environment, ctypes.addressof(digits), leave]
+    _held[:] = [libc, digits, texts, arguments]
+    return int(_engine().get_function_address(CRASHED))
+
+
+_held: list[Any] = []
+"""What the handler points to."""
 
 
 def _features() -> str:

@@ -94,6 +94,7 @@ class Master:
 
     def _record(self) -> None:
         """Write a row now."""
+        self._state.journal[:] = self.exchanges - 1, -1
         lost = self._state.record(self._slaves, len(self._snapshots.waiting))
         if lost is not None:
             raise self._failure(Fault(self.exchanges - 1, Operation(Action.RECORD, lost[0]), lost[1]))

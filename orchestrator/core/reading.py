@@ -1,6 +1,5 @@
 """Reading the results of a run, finished or not. The files: :mod:`orchestrator.core.results`."""
 
-import csv
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,6 +22,7 @@ from .results import (
     Column,
     Figure,
     batches,
+    read_columns,
     running_folder,
     schema,
     streamed_frames,
@@ -86,8 +86,8 @@ def read_run(folder: Path) -> Run:
     if not (found / COLUMNS).is_file() and "kind" in provenance:
         raise InputRefused([Problem(str(folder), f"is a {provenance['kind']} campaign, which has no time series",
                                     "give the folder of a run; the campaign's pictures are in its folder figures")])
-    with _undamaged(found / COLUMNS), (found / COLUMNS).open(encoding="utf-8", newline="") as file:
-        columns = [Column(**entry) for entry in csv.DictReader(file)]
+    with _undamaged(found / COLUMNS):
+        columns = read_columns(found / COLUMNS)
     with _undamaged(found / SUMMARY):
         summary = [Figure.from_entry(entry) for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
                    ] if (found / SUMMARY).is_file() else []

@@ -94,6 +94,7 @@ class RunFolder:
         self._old = self.folder.parent / f".{self.folder.name}.old"
         self._made = [parent for parent in (self.folder.parent, *self.folder.parent.parents) if not parent.exists()]
         self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
+        self.columns: list[Column] = []
         self._rows: _Stream | None = None
         self._states: _Stream | None = None
 
@@ -175,8 +176,12 @@ class RunFolder:
         """Write the final files and put them in the place of the folder. ``facts`` are added to the provenance."""
         for stream in filter(None, (self._rows, self._states)):
             stream.close()
+        self.complete(status, figures, **facts)
+
+    def complete(self, status: str, figures: Sequence[Figure], **facts: Any) -> None:
+        """Turn streams, which may have been cut off, into the final files, and put them in the place of the folder."""
         write_json(self.running / SUMMARY, [figure.as_entry() for figure in figures])
-        _convert_rows(self.running)
+        _convert_rows(self.running, self.columns)
         _convert_states(self.running)
         self.write_provenance({**self.provenance, "status": status, **facts})
         self.swap()
@@ -213,6 +218,21 @@ class _Stream:
         self._file.close()
 
 
+def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:
+    """Make what a run has left that crashed the results of a run that failed. False if it had not begun; then nothing is left."""
+    results = RunFolder(folder)
+    (results.folder.parent / f".{results.folder.name}.lock").unlink(missing_ok=True)
+    for left in results.running.glob("journal.*"):
+        left.unlink()
+    if not (results.running / ROWS_STREAM).is_file():
+        shutil.rmtree(results.running, ignore_errors=True)
+        return False
+    results.provenance = json.loads((results.running / RUN).read_text(encoding="utf-8"))
+    results.columns = read_columns(results.running / COLUMNS)
+    results.complete("failed", [], error=error, **facts)
+    return True
+
+
 def running_folder(folder: Path) -> Path:
     """Where a run writes before it has ended."""
     return folder.parent / f"{folder.name}.running"
@@ -220,6 +240,12 @@ def running_folder(folder: Path) -> Path:
 
 def _is_run_or_empty(folder: Path) -> bool:
     return folder.is_dir() and ((folder / RUN).is_file() or not any(folder.iterdir()))
+
+
+def read_columns(path: Path) -> list[Column]:
+    """The columns in a ``columns.csv``."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return [Column(**entry) for entry in csv.DictReader(file)]
 
 
 def schema(columns: Sequence[Column]) -> Any:
@@ -255,13 +281,12 @@ def streamed_frames(folder: Path) -> Iterator[tuple[str, float, bytes]]:
         yield from zip(*(column.to_pylist() for column in batch.columns), strict=True)
 
 
-def _convert_rows(folder: Path) -> None:
+def _convert_rows(folder: Path, columns: Sequence[Column]) -> None:
     import pyarrow as pa
     import pyarrow.csv
     import pyarrow.parquet
 
-    with (folder / ROWS_STREAM).open("rb") as file:
-        table = pa.ipc.open_stream(file).read_all()
+    table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
     pyarrow.parquet.write_table(table, folder / PARQUET, compression="zstd")
     pyarrow.csv.write_csv(table, folder / CSV)
     (folder / ROWS_STREAM).unlink()

@@ -12,6 +12,7 @@ from .errors import RunFailed
 from .exchange import State, make_driver
 from .fmu_slave import FmuFile
 from .initialisation import free, initialise, instantiate
+from .journal import Journal
 from .ledger import Accounts
 from .master import Interruption, Master, Progress
 from .plan import Plan, make_plan
@@ -66,14 +67,16 @@ class _Session:
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         """Make and initialise the slaves, then open the results."""
         began = time.perf_counter()
-        self.slaves = instantiate(self.plan, self.sources)
-        state = State(self.plan)
-        self.warnings = [*self.plan.warnings, *initialise(self.plan, self.slaves, state, allow_unstable)]
+        self.journal = Journal(self.results.running, self.plan.order)
+        self.slaves = instantiate(self.plan, self.sources, self.journal.prepares)
+        state = State(self.plan, self.journal.entries)
+        self.warnings = [*self.plan.warnings, *initialise(self.plan, self.slaves, state, allow_unstable, self.journal.prepares)]
         self.initialised = True
         self.accounts = Accounts(self.plan, self.slaves, state)
         recorder = Recorder(self.plan, self.slaves, state.snapshots, self.accounts, self.results)
         self.watched = state.watched
         self.master = Master(self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder)
+        self.journal.legend(state.operations, self.plan.timing.start, self.plan.timing.exchange, self.plan.schedule.period)
         self.preparation = time.perf_counter() - began
         self.results.begin(recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts})
 
@@ -84,6 +87,7 @@ class _Session:
             status = "complete" if self.master.run(interruption, progress) else "interrupted"
         except RunFailed as error:
             status, failure = "failed", error
+        self.journal.close()
         self.results.finish(status, self._figures(), error=str(failure) if failure else None, ended=datetime.now(UTC).isoformat(),
                             warnings=self.warnings + self.accounts.warnings,
                             wall_time={"preparation": self.preparation, "exchanges": self.master.wall_time,

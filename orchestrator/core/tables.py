@@ -43,7 +43,7 @@ class Tables(NamedTuple):
     look whether it counts from the end.
     integers: buffer for values on their way as integers, as long as any row of them.
     snapshots: rows of :class:`orchestrator.core.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges, the
-    next one in ``row``.
+    next one in ``row``. journal: exchange and operation under way, -1 while none is.
     """
 
     start: int
@@ -61,6 +61,7 @@ class Tables(NamedTuple):
     channels: Records
     watched: Records
     snapshots: Floats
+    journal: Integers
 
 
 NUMBERS = ("start", "exchange", "every", "width", "row")
@@ -68,11 +69,13 @@ NUMBERS = ("start", "exchange", "every", "width", "row")
 
 KINDS = {"first": np.dtype(np.int64), "operations": OPERATION, "moves": MOVE, "inputs": np.dtype(np.float64),
          "outputs": np.dtype(np.float64), "source": np.dtype(np.uint64), "integers": np.dtype(np.int32), "channels": CHANNEL,
-         "watched": WATCHED, "snapshots": np.dtype(np.float64)}
+         "watched": WATCHED, "snapshots": np.dtype(np.float64), "journal": np.dtype(np.int64)}
 """Types of the arrays among the :class:`Tables`, in their order."""
 
-ENTRY = "rockshed_advance"
-"""Name of the loop as a C function."""
+ENTRY, CRASHED, REPORTER = "rockshed_advance", "rockshed_crashed", "rockshed_reporter"
+"""Names in the object code: the loop as a C function; a handler of signals, which makes the process another one; the addresses that
+the handler needs: execve, its three arguments, two digits for the number of the signal, and _exit."""
+REPORTER_LENGTH = 6
 
 
 def head(tables: Tables) -> Integers:
