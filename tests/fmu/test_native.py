@@ -12,7 +12,8 @@ from fmpy.fmi2 import fmi2ModelExchange
 from fmpy.validation import validate_fmu
 
 from components.catalogue import NAMES
-from fmus.build import Runtime, build_if_needed
+from components.sand_cushion.declarations import PART
+from fmus.build import Runtime, build, build_if_needed
 from fmus.native_fmu import compiler
 from orchestrator.cases.sonoda1993 import lab_system
 from orchestrator.cases.sonoda1993 import tests as laboratory_tests
@@ -57,6 +58,19 @@ def test_outputs_and_state_have_the_same_bits_as_with_python(python_fmus, native
             host.start(**dict([DRIVE[name]])).steps(STEPS, step)
         assert other.outputs() == one.outputs()
         assert other.state() == one.state()
+
+
+def test_threads_change_no_bit(native_fmus, tmp_path):
+    """Of a cushion that is large enough to be divided, and in motion."""
+    file, outputs = build("SandCushion", {"discs": 2 * PART}, tmp_path, Runtime.NATIVE), []
+    for threads in (1, 2):
+        with Host(file) as host:
+            host.start(**{"box.width": 2.0, "box.left": 0.0, "base": 1, "lattice_shift": 0.02, "settling.time": 1e-3,
+                          "rock.position.x": 1.0, "rock.position.y": 50.0, "threads": threads}).steps(10, 1e-4)
+            outputs.append(host.outputs())
+    assert outputs[0]["energy.sliding"] > 0.0
+    assert outputs[0].pop("threads") != outputs[1].pop("threads")
+    assert outputs[0] == outputs[1]
 
 
 def test_a_state_goes_from_one_runtime_to_the_other(python_fmus, native_fmus):
