@@ -37,7 +37,7 @@ Set = Annotated[list[str] | None, typer.Option("--set", metavar="COMPONENT.PARAM
                                                help="Another value of a parameter or of a shared value. May be repeated.")]
 RunSize = Annotated[list[str] | None, typer.Option("--size", metavar="COMPONENT.SIZE=NUMBER",
                                                    help="Build a component in another size. May be repeated.")]
-Coupling = Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi|...", help="Scheme of exchange of a case, by default "
+Coupling = Annotated[str | None, typer.Option(metavar="paper|impulse|jacobi", help="Scheme of exchange of a case, by default "
                                               "its first; waves or plain for spt.")]
 Model = Annotated[str | None, typer.Option(metavar="calibrated|literal|one-law", help="Model of the sand of a case; default "
                                            "calibrated.")]

@@ -171,7 +171,7 @@ def _shed_on_piles() -> Case:
         return shed_on_piles.shed_system(fmus, sizes["sand"]["discs"], sizes["sand"]["elements"], sizes["rod_left"]["segments"])
 
     def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
-        with suppress(ValueError):  # a value that is no number: its FMU says so
+        with suppress(ValueError, ZeroDivisionError):  # a value that is no number, or 0: its FMU says so
             return shed_on_piles.derived(system, sizes["sand"]["discs"], sizes["beam"]["elements"])
         return {}
 
@@ -193,13 +193,18 @@ def _spt() -> Case:
     def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
         return spt.spt_system(fmus, coupling)
 
+    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+        with suppress(ValueError, ZeroDivisionError):  # a value that is no number, or 0: its FMU says so
+            return spt.partner_stiffness(system)
+        return {}
+
     return Case(
         spt.NAME, "Uto et al., table 1: standard penetration test, hammer, rod and ground",
         models={"hammer": "Hammer", "rod": "PileRod", "ground": "ImpulsiveGround"},
         sizes={"rod": {"segments": spt.SEGMENTS}},
         couplings={"waves": "rod last, waves at head and toe, exchange every 0.1 ms",
                    "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms"},
-        make=make, derived=lambda system, sizes: spt.partner_stiffness(system))
+        make=make, derived=derived)
 
 
 _FULL_SCALE_COUPLINGS = {"paper": "sand first, inputs held, exchange every 0.05 ms",

@@ -5,7 +5,7 @@ step: its force is then constant in it, and the coupling loses no energy.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,24 +59,24 @@ def drive(made: Prepared, done: Done = lambda i, n: None) -> list[Blow]:
     """The blows of a site, one after the other: the rod keeps what is in it, and the soil too."""
     rod, found = made.rod(), []
     for number in range(made.site.blows):
-        found.append(strike(made, rod, number * _steps(made), made.resistance))
+        found.append(strike(made, rod, number * made.steps, made.resistance))
         done(number + 1, made.site.blows)
     return found
 
 
 def bearing_graph(made: Prepared, done: Done = lambda i, n: None) -> list[Blow]:
-    """A first blow for each ultimate resistance of the bearing graph, in rising order."""
+    """A first blow for each ultimate resistance of the bearing graph, in rising order, without traces."""
     resistances = sorted(made.site.bearing.resistances) if made.site.bearing else []
     found = []
     for number, resistance in enumerate(resistances):
-        found.append(strike(made, made.rod(resistance), 0, resistance))
+        found.append(replace(strike(made, made.rod(resistance), 0, resistance), traces={}))
         done(number + 1, len(resistances))
     return found
 
 
 def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow:
     """One blow, from the step number ``begun`` on. The rod is left as it is at its end."""
-    hammer, steps, step = made.hammer(), _steps(made), made.step
+    hammer, steps, step = made.hammer(), made.steps, made.step
     rod["stress.compression"][:], rod["stress.tension"][:] = 0.0, 0.0
     before = {name: rod[name] for name in ("toe.set", "toe.position", "energy.head", "energy.residual", "energy.work.head")}
     wave, impedance, force = rod.references["head.wave"], rod.references["head.impedance"], rod.references["head.force"]
@@ -85,7 +85,7 @@ def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow
     hammer.initialise()
     to_wave, of_force, work = hammer.references["head.wave"], hammer.references["force"], rod.references["energy.head"]
     rows, residual, most = np.empty((steps, len(TRACES))), np.zeros(made.site.segments), 0.0
-    tail = round((1.0 - _TAIL) * steps)
+    tail = min(round((1.0 - _TAIL) * steps), steps - 1)
     for number in range(steps):
         time = (begun + number) * step
         hammer.w[to_wave] = rod.w[wave]
@@ -103,10 +103,6 @@ def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow
     return Blow(resistance, rod["toe.set"] - before["toe.set"], float(traces["toe.position"].max()) - before["toe.position"],
                 float(traces["head.contact_force"].max()), rod["stress.compression"].copy(), rod["stress.tension"].copy(),
                 residual / (steps - tail), most, hammer["energy.start"], unbalanced, rod["energy.kinetic"], traces)
-
-
-def _steps(made: Prepared) -> int:
-    return max(1, round(made.time / made.step))
 
 
 def blow_figures(made: Prepared, blow: Blow) -> Sequence[tuple[str, float | None, str]]:

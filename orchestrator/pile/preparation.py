@@ -19,6 +19,8 @@ from ..input_files.places import Places
 from ..input_files.setting import setter
 from .site import PileSite, Section, Shaft
 
+MOST_ROWS = 20_000_000
+"""Of the traces of all blows: a GiB and a half."""
 SHORTEST, TRAVELS = 0.1, 20.0
 """Time of a blow where none is given: so many seconds, or so many travel times of a wave."""
 
@@ -59,6 +61,11 @@ class Prepared:
     def time(self) -> float:
         """Of a blow (s)."""
         return self.site.time or max(SHORTEST, TRAVELS * self.travel_time)
+
+    @property
+    def steps(self) -> int:
+        """Exchanges in a blow."""
+        return max(1, round(self.time / self.step))
 
     @cached_property
     def depths(self) -> NDArray[np.float64]:
@@ -115,6 +122,11 @@ def prepare(file: Path, blows: int | None = None) -> Prepared:
         raise InputRefused(first(problems))
     problems += [*_value_problems(site, where), *_depth_problems(site, where), *_weight_problems(site, where)]
     made = Prepared(file, site)
+    rows = site.blows * made.time / made.step
+    if rows > MOST_ROWS:
+        problems.append(Problem(where.of(("time",)), f"{site.blows} blows of {made.time:g} s in steps of {made.step:.3g} s are "
+                                f"{rows:.2g} rows, and at most {MOST_ROWS:.2g} are kept",
+                                "shorten time, or give fewer blows or segments"))
     if not problems:
         try:
             made.rod()

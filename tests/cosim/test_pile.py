@@ -105,6 +105,12 @@ def test_the_command_writes_tables_files_and_pictures(tmp_path, monkeypatch):
     assert figures["blow.1.energy_ratio"] == pytest.approx(1.0, abs=0.03)
 
 
+def test_a_blow_may_be_as_short_as_a_step(site):
+    blow, = drive(site(SPT, ("gravity = 9.80665", "time = 1e-6")))
+    assert blow.set == 0.0
+    assert blow.count is None
+
+
 # --- refusals ---
 
 SHAFT = "damping = 0.5\n[[shaft]]\nfrom = 5\nto = {to}\nresistance = 1e3"
@@ -121,6 +127,7 @@ SHAFT = "damping = 0.5\n[[shaft]]\nfrom = 5\nto = {to}\nresistance = 1e3"
     (("drop = 0.75", "dropp = 0.75"), "dropp", "there is no such key"),
     (("damping = 0.5", SHAFT.format(to=11)), "to = 11", "below the toe, at 10.24 m"),
     (("damping = 0.5", SHAFT.format(to=4)), "[[shaft]]", "let it end below its beginning"),
+    (("gravity = 9.80665", "time = 1e6"), "time = 1e6", "rows, and at most 2e+07 are kept"),
     (("gravity = 9.80665", "gauge = 11"), "gauge = 11", "the gauge at 11 m is below the toe"),
     (("damping = 0.5", "damping = 0.5\n[cushion]\nstiffness = 1e8\nrestitution = 0.001"), "restitution", "cushion.restitution"),
 ])

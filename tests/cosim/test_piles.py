@@ -54,6 +54,17 @@ def test_waves_refuse_a_step_longer_than_the_rod(tmp_path):
         run(tmp_path / "run", "spt", exchange_step=2.5e-3, output_interval=5e-3)
 
 
+@pytest.mark.parametrize(("setting", "words"), [
+    ("ground.quake=0", "ground.quake: 0: allowed is"), ("ground.quake=nan", "ground.quake: nan: must be a finite number"),
+    ("ground.ultimate_resistance=-1", "ground.ultimate_resistance: -1: allowed is"),
+    ("rod.section.area[1]=0", "rod.section.area[1]: 0: allowed is"), ("hammer.mass=-1", "hammer.mass: -1: allowed is"),
+])
+def test_values_that_are_none_are_refused(tmp_path, setting, words):
+    with pytest.raises(InputRefused) as refusal:
+        run(tmp_path / "run", "spt", setting)
+    assert any(words in str(problem) for problem in refusal.value.problems), refusal.value.problems
+
+
 @pytest.fixture(scope="module")
 def shed(tmp_path_factory):
     """Until the rods are loaded and the ground slides."""
