@@ -23,8 +23,12 @@ if TYPE_CHECKING:
 
 LOCAL = "local"
 """The scheduler that is started with its workers, and ends with the campaign."""
-BLOCK = 5000
-"""Trials in a task: about 0.1 s, a hundred times what Dask needs for a task."""
+FEWEST, MOST = 1000, 20_000
+"""Trials in a task: at most some 0.2 s, against the millisecond or so that Dask needs for a task."""
+MOST_BYTES = 64 << 20
+"""Of the records of a task."""
+TASKS = 8
+"""For each worker, so that all end at about the same time, as long as that makes no task too small."""
 RETRIES = 2
 """Times that a block is computed again after an error of its worker. Death of a worker does not count."""
 CONNECT_TIMEOUT = 5.0
@@ -121,15 +125,21 @@ def _run(client: "Client", given: Campaign, done: Done) -> Records:
     made = empty_records(given, given.trials)
     # a task that gives the campaign, and no scattered data: where all workers that have it die, it is made again
     common = client.submit(_itself, given, pure=False)
-    starts = range(0, given.trials, BLOCK)
-    first = {client.submit(_block, common, start, min(BLOCK, given.trials - start), source_stamp(_COMPONENT), pure=False,
-                           retries=RETRIES): start for start in starts}
+    size = _block_size(given, sum(client.nthreads().values()))
+    first = {client.submit(_block, common, start, min(size, given.trials - start), source_stamp(_COMPONENT), pure=False,
+                           retries=RETRIES): start for start in range(0, given.trials, size)}
     finished = 0
     for block in as_completed(list(first)):
         finished += fill(made, first.pop(block), _result(block))
         block.release()
         done(finished, given.trials)
     return made
+
+
+def _block_size(given: Campaign, workers: int) -> int:
+    """Trials in a task of a campaign on so many workers. No result depends on it."""
+    even = min(MOST, max(FEWEST, given.trials // (TASKS * max(1, workers))))
+    return max(1, min(even, MOST_BYTES // given.bytes_per_trial))
 
 
 def _itself(given: Campaign) -> Campaign:

@@ -1,5 +1,6 @@
 """``rockshed rockfall --scheduler``: the same bits from the workers of a Dask scheduler, however many and whoever dies."""
 
+import dataclasses
 import json
 import os
 import signal
@@ -71,7 +72,7 @@ class Killer:
 
 def test_an_only_worker_that_is_killed_loses_nothing(client, made, records, monkeypatch):
     """Another one is started, and computes again what the dead one has not handed over."""
-    monkeypatch.setattr(cluster, "BLOCK", 200)
+    monkeypatch.setattr(cluster, "_block_size", lambda given, workers: 200)
     killer = Killer(client)
     assert_same(cluster._run(client, made, killer), records)
     assert killer.killed is not None
@@ -80,7 +81,7 @@ def test_an_only_worker_that_is_killed_loses_nothing(client, made, records, monk
 
 @pytest.mark.parametrize("workers", [1, 2, 3, 4])
 def test_any_number_of_workers_gives_the_same_bits(client, made, records, monkeypatch, workers):
-    monkeypatch.setattr(cluster, "BLOCK", 300)  # the last is shorter
+    monkeypatch.setattr(cluster, "_block_size", lambda given, workers: 300)  # the last is shorter
     client.cluster.scale(workers)
     client.wait_for_workers(workers)
     told = []
@@ -93,11 +94,22 @@ def test_any_number_of_workers_gives_the_same_bits(client, made, records, monkey
 
 
 def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch):
-    monkeypatch.setattr(cluster, "BLOCK", 1000)
+    monkeypatch.setattr(cluster, "_block_size", lambda given, workers: 1000)
     given = prepare(EXAMPLE, trials=30_000).campaign
     killer = Killer(client)
     assert_same(cluster._run(client, given, killer), campaign.run(given, 1))
     assert not psutil.pid_exists(killer.killed)
+
+
+@pytest.mark.parametrize(("trials", "workers", "size"), [
+    (1_000_000, 2, 20_000), (10_000, 2, 1000), (100_000, 4, 3125), (50, 4, 1000)])
+def test_tasks_are_neither_too_small_nor_too_few(made, trials, workers, size):
+    assert cluster._block_size(dataclasses.replace(made, trials=trials), workers) == size
+
+
+def test_tasks_with_large_records_have_few_trials(made):
+    many = dataclasses.replace(made, trials=1_000_000, stations=np.linspace(0.0, 140.0, 20_000))
+    assert 200 < cluster._block_size(many, 2) < 300
 
 
 def test_workers_with_another_version_are_refused(client, made, monkeypatch):
