@@ -55,7 +55,7 @@ def disc_rows(rounds: int) -> Iterator[Row]:
 
 
 def coupling_rows(rounds: int) -> Iterator[Row]:
-    """Wall time of the co-simulated laboratory impact against the one program."""
+    """Processor time of the co-simulated laboratory impact against the one program."""
     contestants = coupling.contestants()
     times = interleave(contestants, rounds)
     yield Row("one program, 20 ms of the laboratory impact", times.median("one program") * 1e3, "ms")
