@@ -47,6 +47,13 @@ def cache_directory() -> Path | None:
     return folder
 
 
+def component_of(module: str) -> str | None:
+    """The component that a module belongs to: ``sand_cushion`` of ``components.sand_cushion.forces``; None for any other module."""
+    package, _, rest = module.partition(f"{__package__}.")
+    folder = rest.partition(".")[0]
+    return folder if not package and (_PACKAGE / folder).is_dir() else None
+
+
 def has_kernels(component: str) -> bool:
     """Whether kernels of the component in the folder of this name have been compiled and kept."""
     folder = cache_directory()
@@ -133,6 +140,8 @@ def intrinsic(function: Callable[..., Any]) -> Any:
 
 
 def _compiled(function: Callable[..., Any], inline: str, nogil: bool = False) -> Deferred:
+    source_stamp(component_of(function.__module__))  # now: the folder that an FMU was unpacked to may be gone when it is needed
+
     def make(function: Callable[..., Any]) -> Any:
         from numba import njit
 

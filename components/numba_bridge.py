@@ -9,9 +9,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.registry import cpu_target
 from numba.extending import typeof_impl
 
-from .compilation import Deferred, cache_directory, source_stamp
-
-_PACKAGE = Path(__file__).parent
+from .compilation import Deferred, cache_directory, component_of, source_stamp
 
 
 @typeof_impl.register(Deferred)
@@ -20,19 +18,12 @@ def _type_of_deferred(value: Deferred, _context: Any) -> Any:
     return cpu_target.typing_context.resolve_value_type(value.made)
 
 
-def _component_of(module: str) -> str | None:
-    """The component that a module belongs to: ``sand_cushion`` of ``components.sand_cushion.forces``; None for any other module."""
-    package, _, rest = module.partition(f"{__package__}.")
-    folder = rest.partition(".")[0]
-    return folder if not package and (_PACKAGE / folder).is_dir() else None
-
-
 class _PackageLocator:
     """Numba's protocol of a cache locator: where a function's cache lies and when it is stale."""
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         self._function = function
-        self._stamp = source_stamp(_component_of(function.__module__))
+        self._stamp = source_stamp(component_of(function.__module__))
         self._folder = folder / self._stamp[:16]
 
     @classmethod

@@ -211,9 +211,9 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     for function in whole.functions:
         if not function.is_declaration and function.name not in (ENTRY, CRASHED):
             function.linkage = "internal"
-    passes = llvm.create_new_module_pass_manager()
-    passes.add_global_dead_code_eliminate_pass()
-    passes.run(whole, llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options()))
+            function.add_function_attribute("alwaysinline")  # a call would pass all tables on, field by field
+    builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(whole, builder)
     foreign = [f.name for f in whole.functions if f.is_declaration and not f.name.startswith("llvm.")]
     assert not foreign, f"the loop needs {', '.join(foreign)}"
     code = target.emit_object(whole)

@@ -54,14 +54,15 @@ class Interruption:
 class Master:
     """Drives slaves that are initialised through a run.
 
-    exchanges: number of exchanges carried out. wall_time: time (s) that they took, snapshots included. recording_time: time (s)
-    from snapshots to files, and for states.
+    exchanges: number of exchanges carried out. wall_time: time (s) that they took, snapshots included. cpu_time: that of the
+    processor (s). recording_time: time (s) from snapshots to files, and for states.
     """
 
     def __init__(self, plan: Plan, slaves: Mapping[str, Slave], state: State, driver: Driver, recorder: Recorder) -> None:
         self._plan, self._slaves, self._state, self._driver, self._recorder = plan, slaves, state, driver, recorder
         self._snapshots = state.snapshots
-        self.exchanges, self.wall_time, self.recording_time, self._at_once = 0, 0.0, 0.0, 1
+        self.exchanges, self._at_once = 0, 1
+        self.wall_time, self.cpu_time, self.recording_time = 0.0, 0.0, 0.0
 
     def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
         """Carry out all exchanges. False if Ctrl-C has ended the run before; rows up to the end are recorded in any case.
@@ -102,10 +103,11 @@ class Master:
         self._recorder.look()
 
     def _advance(self, count: int) -> None:
-        began = time.perf_counter()
+        began, began_of_thread = time.perf_counter(), time.thread_time()
         fault = self._driver.advance(self.exchanges, count)
         took = time.perf_counter() - began
         self.wall_time += took
+        self.cpu_time += time.thread_time() - began_of_thread
         first, self.exchanges = self.exchanges, self.exchanges + count
         if fault is not None:
             recording = fault.operation.action is Action.RECORD

@@ -91,7 +91,8 @@ class _Session:
         self.results.finish(status, self._figures(), error=str(failure) if failure else None, ended=datetime.now(UTC).isoformat(),
                             warnings=self.warnings + self.accounts.warnings,
                             wall_time={"preparation": self.preparation, "exchanges": self.master.wall_time,
-                                       "recording": self.master.recording_time})
+                                       "recording": self.master.recording_time},
+                            cpu_time={"exchanges": self.master.cpu_time})
         if failure is not None:
             raise failure
 

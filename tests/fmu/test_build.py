@@ -10,7 +10,6 @@ import zipfile
 
 import pytest
 
-import fmus.build as build_module
 from components.catalogue import NAMES, component
 from components.component import ComponentError
 from fmus.build import BuildError, build, build_component, build_if_needed, file_name, fmu_files
@@ -116,7 +115,7 @@ def test_nothing_half_written_is_left_when_a_build_is_interrupted(monkeypatch, t
 
     file = build("FallingRock", destination=tmp_path)
     before = file.read_bytes()
-    monkeypatch.setattr(build_module.os, "replace", interrupt)
+    monkeypatch.setattr("fmus.parts.os.replace", interrupt)
     with pytest.raises(KeyboardInterrupt):
         build("FallingRock", destination=tmp_path)
     assert file.read_bytes() == before

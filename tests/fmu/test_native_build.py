@@ -203,7 +203,7 @@ def test_a_native_fmu_that_is_up_to_date_is_left_alone_and_any_other_is_replaced
     assert build_if_needed("FallingRock", destination=tmp_path, runtime=Runtime.NATIVE).stat().st_mtime_ns == stamp
     with monkeypatch.context() as context:
         context.setattr(native_fmu, "CPU", dataclasses.replace(CPU, leaf_1=CPU.leaf_1 | 1))
-        context.setattr(native_fmu, "_versions", lambda: ["another numba"])
+        context.setattr(native_fmu, "_versions", lambda *packages: ["another numba"])
         assert not native_is_fresh(rock, {}, tmp_path)
     file.write_bytes(file.read_bytes()[:-100])
     assert not native_is_fresh(rock, {}, tmp_path)
