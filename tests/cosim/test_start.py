@@ -12,7 +12,7 @@ from fmus.native_fmu import compiler, own_platform
 RUN = """
 import sys
 from orchestrator.cli import app
-sys.argv = ["rockshed", "run", "lab-impact", "--stop-time", "0.001", "--no-figures", "--load-cell", "500",
+sys.argv = ["rockshed", "run", "lab-impact", "--stop-time", "0.001", "--no-figures",
             "--output-dir", sys.argv[1]]
 try:
     app(prog_name="rockshed")
