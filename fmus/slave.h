@@ -6,6 +6,7 @@
 #include <cpuid.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,9 +27,11 @@ typedef struct { int64_t status; Text text; } Fault; /* {5} in the text: the val
 #include "model.h"
 enum { TIME = NW + NC }; /* value reference of the time, behind those of the sizes */
 
-typedef struct { uint64_t mark; uint32_t phase; double start, time, w[NW], x[NX + 1]; int64_t k[NK + 1]; } State;
+enum { LINE = 64 }; /* bytes of a cache line. x begins with one in a slave, because its rows are read faster so */
+typedef struct { uint64_t mark; uint32_t phase; double start, time, unused[4], x[NX + 1], w[NW]; int64_t k[NK + 1]; } State;
+_Static_assert(offsetof(State, x) == LINE, "x does not begin with a cache line");
 typedef struct { void (*logger)(void); void *environment; int takes_early_return; } Host; /* what the importer gave to an instance */
-typedef struct { State s; Host host; char *name; double stop; int stale, previewed, told[ERROR + 1];
+typedef struct { State s; Host host; void *block; char *name; double stop; int stale, previewed, told[ERROR + 1];
                  size_t length; char text[16384]; } Slave;
 
 extern int64_t rockshed_initialise(double *w, double *x, int64_t *k);
@@ -201,11 +204,13 @@ static int compute(Slave *m) { /* outputs at the start; the state, which may be 
   return 1;
 }
 
-static void free_slave(Slave *m) { if (m) { free(m->name); free(m); } }
+static void free_slave(Slave *m) { if (m) { free(m->name); free(m->block); } }
 
 static Slave *new_slave(Text name, Host host) { /* why it cannot be used is told in any case */
-  Slave *m = calloc(1, sizeof *m);
-  if (!m || !name || !(m->name = malloc(strlen(name) + 1))) { free(m); return NULL; }
+  void *block = calloc(1, sizeof(Slave) + LINE);
+  Slave *m = (Slave *)(((uintptr_t)block + LINE - 1) / LINE * LINE);
+  if (!block || !name || !(m->name = malloc(strlen(name) + 1))) { free(block); return NULL; }
+  m->block = block;
   strcpy(m->name, name);
   m->host = host;
   m->told[WARNING] = m->told[ERROR] = 1;
