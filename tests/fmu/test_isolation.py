@@ -108,6 +108,7 @@ def heavier_rock(tmp_path_factory):
     return build_component(dataclasses.replace(rock, folder=folder), destination=tmp_path_factory.mktemp("other"))
 
 
+@pytest.mark.slow
 def test_ours_and_a_foreign_fmu_with_modules_of_any_name_give_what_they_give_alone(fmus, python, foreign, heavier_rock):
     other, rock, probe, heavier = foreign(python), fmus["FallingRock"], fmus["Probe"], heavier_rock
     alone = {}

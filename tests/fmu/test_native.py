@@ -60,6 +60,7 @@ def test_outputs_and_state_have_the_same_bits_as_with_python(python_fmus, native
         assert other.state() == one.state()
 
 
+@pytest.mark.slow
 def test_threads_change_no_bit(native_fmus, tmp_path):
     """Of a cushion that is large enough to be divided, and in motion."""
     file, outputs = build("SandCushion", {"discs": 2 * PART}, tmp_path, Runtime.NATIVE), []

@@ -135,6 +135,7 @@ def test_a_library_offers_fmi_and_needs_the_c_library_only(native_fmus, fmi3_fmu
         assert b"python" not in content.lower().replace(b"runs in python", b"")
 
 
+@pytest.mark.slow
 @needs_zig
 @pytest.mark.parametrize(("fmi", "names", "linux64", "win64", "darwin64"), [
     (Fmi.TWO, NAMES, "linux64", "win64", "darwin64"),
