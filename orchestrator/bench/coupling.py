@@ -9,12 +9,14 @@ from pathlib import Path
 from time import thread_time
 
 from fmus.build import BuildError, Runtime, build_if_needed
+from fmus.native_fmu import CPU
 
 from ..cases.sonoda1993 import Coupling, lab_system, tests
 from ..core.run import simulate
 from ..core.system import System
 from .interleave import Contestant
 from .monolithic import from_system
+from .peer import Peer
 
 END = 0.02
 """Simulated time (s)."""
@@ -54,12 +56,18 @@ def co_simulation(coupling: Coupling, plain: bool = False, runtime: Runtime = Ru
     return work
 
 
-def contestants() -> Mapping[str, Contestant]:
+BASELINE = ("-m", f"{__package__}.monolithic_peer")
+AS_NATIVE = {"NUMBA_CPU_NAME": CPU.name, "NUMBA_CPU_FEATURES": ""}
+"""The one program as a :class:`~.peer.Peer`, compiled for the processor that native FMUs are compiled for."""
+
+
+def contestants(baseline: Peer) -> Mapping[str, Contestant]:
     """The one program, and the co-simulation with both exchange steps, drivers and runtimes; native only with a compiler."""
     common = {"one program": one_program(), "paper": co_simulation("paper"), "impulse": co_simulation("impulse"),
               "paper, plain calls": co_simulation("paper", plain=True)}
     try:
-        return {**common, "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
+        return {**common, "one program, baseline": baseline.contestant(""),
+                "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
                 "impulse, native": co_simulation("impulse", runtime=Runtime.NATIVE),
                 "paper, native, plain calls": co_simulation("paper", plain=True, runtime=Runtime.NATIVE)}
     except BuildError:

@@ -1,10 +1,8 @@
 """Price of the distinct elements: time per disc and step, beside LAMMPS on the same packing and the same kind of law."""
 
-import subprocess
-import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numpy as np
 
@@ -13,6 +11,7 @@ from components.sand_cushion import COMPONENT
 from components.sand_cushion.declarations import ROW
 
 from .interleave import Contestant
+from .peer import Peer
 
 STEPS = {370: 2_700, 10_000: 100, 100_000: 20}
 """Steps of one measurement, by the number of discs."""
@@ -45,8 +44,8 @@ def stirred_cushion(discs: int) -> Instance:
     return sand
 
 
-def own_kernel(discs: int, threads: int = 1) -> Contestant:
-    """The sand cushion's kernel, called directly."""
+def own_kernel(discs: int, threads: int = 1, clock: Callable[[], float] = process_time) -> Contestant:
+    """The sand cushion's kernel, called directly; the time that it takes by a clock, of the processor unless another is given."""
     start = stirred_cushion(discs).to_bytes()
     sand = COMPONENT.instance(discs=discs)
 
@@ -54,44 +53,15 @@ def own_kernel(discs: int, threads: int = 1) -> Contestant:
         sand.from_bytes(start)
         sand["threads"] = threads
         sand.step(0.0, WARM_UP * STEP)
-        begin = perf_counter()
+        begin = clock()
         sand.step(WARM_UP * STEP, STEPS[discs] * STEP)
-        return perf_counter() - begin
+        return clock() - begin
 
     return work
 
 
-class LammpsPeer:
-    """LAMMPS in a process of its own, which times itself; one MPI rank, one thread."""
-
-    def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, str(Path(__file__).with_name("lammps_peer.py"))], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL, text=True)
-
-    def contestant(self, discs: int) -> Contestant:
-        """Same packing, same number of steps."""
-        return lambda: self._ask(f"{discs} {WIDTHS[discs]} {STEPS[discs]}")
-
-    def _ask(self, question: str) -> float:
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._process.stdin.write(question + "\n")
-        self._process.stdin.flush()
-        return float(self._process.stdout.readline())
-
-    def close(self) -> None:
-        """End the process."""
-        assert self._process.stdin is not None
-        self._process.stdin.close()
-        self._process.wait(10.0)
-
-
-def lammps_available() -> bool:
-    """Whether LAMMPS (extra ``peers``) runs here."""
-    command = [sys.executable, str(Path(__file__).with_name("lammps_peer.py")), "probe"]
-    probe = subprocess.run(command, capture_output=True, check=False)
-    return probe.returncode == 0
+LAMMPS = (str(Path(__file__).with_name("lammps_peer.py")),)
+"""LAMMPS as a :class:`~.peer.Peer`; one MPI rank, one thread."""
 
 
 def per_disc_and_step(seconds: float, discs: int) -> float:
@@ -99,12 +69,13 @@ def per_disc_and_step(seconds: float, discs: int) -> float:
     return seconds / (STEPS[discs] * discs) * 1e9
 
 
-def contestants(peer: LammpsPeer | None) -> Mapping[str, Contestant]:
+def contestants(peer: Peer | None) -> Mapping[str, Contestant]:
     """Ours at every size, and LAMMPS' where it is there."""
     found: dict[str, Contestant] = {}
     for discs in WIDTHS:
         found[f"ours {discs}"] = own_kernel(discs)
         if peer is not None:
-            found[f"lammps {discs}"] = peer.contestant(discs)
-    found[f"two threads {THREADED}"] = own_kernel(THREADED, threads=2)
+            found[f"lammps {discs}"] = peer.contestant(f"{discs} {WIDTHS[discs]} {STEPS[discs]}")
+    for threads in (1, 2):
+        found[f"{threads} threads"] = own_kernel(THREADED, threads, perf_counter)
     return found

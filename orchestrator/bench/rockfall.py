@@ -1,7 +1,5 @@
 """Price of a rockfall trial on one core: a slope of 15 cells and 100 m height with three search lines; and a campaign on Dask."""
 
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -17,7 +15,8 @@ SITE = Path(__file__).with_name("slope15.toml")
 TRIALS = 20_000
 """In one measurement."""
 PEER_TRIALS = 1_000
-_PEER = Path(__file__).with_name("pyrockfall_peer.py")
+PYROCKFALL = (str(Path(__file__).with_name("pyrockfall_peer.py")),)
+"""pyrockfall as a :class:`~.peer.Peer`, which takes its CPU time for so many trials of its own model on the same profile."""
 CAMPAIGN = 1_000_000
 """Trials of the campaign on Dask."""
 
@@ -32,36 +31,6 @@ def own_kernel() -> Contestant:
         return thread_time() - began
 
     return work
-
-
-class PyrockfallPeer:
-    """pyrockfall in a process of its own, which takes its CPU time."""
-
-    def __init__(self) -> None:
-        self._process = subprocess.Popen([sys.executable, str(_PEER)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                         stderr=subprocess.DEVNULL, text=True)
-
-    def contestant(self) -> Contestant:
-        """So many trials of its own model on the same profile."""
-        def work() -> float:
-            assert self._process.stdin is not None
-            assert self._process.stdout is not None
-            self._process.stdin.write(f"{PEER_TRIALS}\n")
-            self._process.stdin.flush()
-            return float(self._process.stdout.readline())
-
-        return work
-
-    def close(self) -> None:
-        """End the process."""
-        assert self._process.stdin is not None
-        self._process.stdin.close()
-        self._process.wait(10.0)
-
-
-def pyrockfall_available() -> bool:
-    """Whether pyrockfall runs here."""
-    return subprocess.run([sys.executable, str(_PEER), "probe"], capture_output=True, check=False).returncode == 0
 
 
 def dask_available() -> bool:
