@@ -20,8 +20,8 @@ Done = Callable[[int, int], None]
 
 FOOT = 0.3
 """Penetration (m) that blows are counted for."""
-_TAIL = 0.1
-"""Last part of a blow's time whose mean is the residual force: waves that still travel cancel in it."""
+_LONGEST_REST, _AT_REST = 100, 1e-12
+"""Travel times that a rod may take to come to rest, and the part of the impact energy that moves it then."""
 TRACES = {"head.contact_force": "N", "head.zv": "N", "toe.contact_force": "N", "gauge.force": "N", "gauge.zv": "N",
           "head.position": "m", "toe.position": "m", "toe.set": "m"}
 """Outputs of the rod that are kept over time, and their units."""
@@ -32,8 +32,8 @@ class Blow:
     """What a blow did. SI; compression positive, tension too.
 
     set: penetration that stays (m). compression, tension: largest stresses (Pa) in the segments in this blow. residual: force (N)
-    in the segments at its end. transferred: largest work on the head (J). unbalanced: error of the energy balance (J). moving:
-    kinetic energy of the rod at the end (J).
+    in the segments when the rod has come to rest. transferred: largest work on the head (J). unbalanced: error of the energy
+    balance (J). moving: kinetic energy of the rod at the end of the blow's time (J).
     """
 
     resistance: float
@@ -75,7 +75,7 @@ def bearing_graph(made: Prepared, done: Done = lambda i, n: None) -> list[Blow]:
 
 
 def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow:
-    """One blow, from the step number ``begun`` on. The rod is left as it is at its end."""
+    """One blow, from the step number ``begun`` on. The rod is left at rest, as the next blow finds it seconds later."""
     hammer, steps, step = made.hammer(), made.steps, made.step
     rod["stress.compression"][:], rod["stress.tension"][:] = 0.0, 0.0
     before = {name: rod[name] for name in ("toe.set", "toe.position", "energy.head", "energy.residual", "energy.work.head")}
@@ -84,8 +84,7 @@ def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow
     hammer.w[hammer.references["head.impedance"]] = rod.w[impedance]
     hammer.initialise()
     to_wave, of_force, work = hammer.references["head.wave"], hammer.references["force"], rod.references["energy.head"]
-    rows, residual, most = np.empty((steps, len(TRACES))), np.zeros(made.site.segments), 0.0
-    tail = min(round((1.0 - _TAIL) * steps), steps - 1)
+    rows, most = np.empty((steps, len(TRACES))), 0.0
     for number in range(steps):
         time = (begun + number) * step
         hammer.w[to_wave] = rod.w[wave]
@@ -94,15 +93,30 @@ def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow
         rod.step(time, step)
         rows[number] = rod.w[kept]
         most = max(most, rod.w[work] - before["energy.head"])
-        if number >= tail:
-            residual += rod["force"]
-    rod.w[force] = 0.0
     traces: dict[str, Floats] = {**dict(zip(TRACES, rows.T)), "time": step * np.arange(begun + 1.0, begun + steps + 1.0)}
     unbalanced = (rod["energy.residual"] - before["energy.residual"] + hammer["energy.residual"]
                   + rod["energy.work.head"] - before["energy.work.head"] + hammer["energy.work.head"])
+    moving = rod["energy.kinetic"]
+    come_to_rest(rod, begun + steps, step, _AT_REST * hammer["energy.start"])
     return Blow(resistance, rod["toe.set"] - before["toe.set"], float(traces["toe.position"].max()) - before["toe.position"],
                 float(traces["head.contact_force"].max()), rod["stress.compression"].copy(), rod["stress.tension"].copy(),
-                residual / (steps - tail), most, hammer["energy.start"], unbalanced, rod["energy.kinetic"], traces)
+                rod["force"].copy(), most, hammer["energy.start"], unbalanced, moving, traces)
+
+
+def come_to_rest(rod: Instance, begun: int, step: float, energy: float) -> None:
+    """Let the rod come to rest without the ram: until so much kinetic energy (J) is left, at most.
+
+    Every wave that arrives at the head leaves the rod there (F = -c/2, so that none is sent down again), in the place of what
+    damps it in the seconds between two blows. At rest the head bears no force.
+    """
+    segments = rod["force"].size
+    wave, force, kinetic = (rod.references[name] for name in ("head.wave", "head.force", "energy.kinetic"))
+    for number in range(_LONGEST_REST * segments):
+        rod.w[force] = -0.5 * rod.w[wave]
+        rod.step((begun + number) * step, step)
+        if number % segments == 0 and rod.w[kinetic] <= energy:
+            break
+    rod.w[force] = 0.0
 
 
 def blow_figures(made: Prepared, blow: Blow) -> Sequence[tuple[str, float | None, str]]:

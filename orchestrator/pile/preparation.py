@@ -23,6 +23,8 @@ MOST_ROWS = 20_000_000
 """Of the traces of all blows: a GiB and a half."""
 SHORTEST, TRAVELS = 0.1, 20.0
 """Time of a blow where none is given: so many seconds, or so many travel times of a wave."""
+LEAST_TRAVELS = 4.0
+"""Travel times that a blow takes at least: to the toe and back, twice."""
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,9 @@ def prepare(file: Path, blows: int | None = None) -> Prepared:
         problems.append(Problem(where.of(("time",)), f"{site.blows} blows of {made.time:g} s in steps of {made.step:.3g} s are "
                                 f"{rows:.2g} rows, and at most {MOST_ROWS:.2g} are kept",
                                 "shorten time, or give fewer blows or segments"))
+    if made.time < LEAST_TRAVELS * made.travel_time:
+        problems.append(Problem(where.of(("time",)), f"{made.time:g} s is too short for a blow: a wave needs "
+                                f"{made.travel_time:.3g} s from head to toe", f"give {LEAST_TRAVELS * made.travel_time:.2g} s or more"))
     if not problems:
         try:
             made.rod()

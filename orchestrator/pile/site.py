@@ -15,14 +15,14 @@ class Hammer(Data):
 
     mass: Positive
     drop: Positive
-    efficiency: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
+    efficiency: Annotated[float, Field(gt=0.0, le=1.0, strict=True)] = 1.0
 
 
 class Cushion(Data):
     """Between ram and head: no tension; it gives back the square of ``restitution`` of its energy. stiffness: N/m."""
 
     stiffness: Positive
-    restitution: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
+    restitution: Annotated[float, Field(gt=0.0, le=1.0, strict=True)] = 1.0
 
 
 class Section(Data):

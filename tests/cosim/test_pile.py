@@ -105,10 +105,12 @@ def test_the_command_writes_tables_files_and_pictures(tmp_path, monkeypatch):
     assert figures["blow.1.energy_ratio"] == pytest.approx(1.0, abs=0.03)
 
 
-def test_a_blow_may_be_as_short_as_a_step(site):
-    blow, = drive(site(SPT, ("gravity = 9.80665", "time = 1e-6")))
-    assert blow.set == 0.0
-    assert blow.count is None
+def test_residual_forces_are_those_of_a_rod_at_rest(site):
+    text = (EXAMPLES / "pile.toml").read_text(encoding="utf-8").replace("blows = 5", "blows = 1")
+    short, = drive(site(text, ("time = 0.25", "time = 0.1")))
+    longer, = drive(site(text, ("time = 0.25", "time = 0.2")))
+    assert short.residual == pytest.approx(longer.residual, abs=1e-4 * longer.residual.max())
+    assert short.residual[0] == pytest.approx(0.0, abs=0.02 * short.residual.max())  # nothing presses on the head
 
 
 # --- refusals ---
@@ -118,6 +120,9 @@ SHAFT = "damping = 0.5\n[[shaft]]\nfrom = 5\nto = {to}\nresistance = 1e3"
 
 @pytest.mark.parametrize(("replaced", "place", "words"), [
     (("quake = 2.5e-3", "quake = 0"), "quake = 0", "toe.quake: input should be greater than 0"),
+    (("gravity = 9.80665", "time = 1e-3"), "time = 1e-3", "0.001 s is too short for a blow: a wave needs 0.002 s from head to toe"),
+    (("quake = 2.5e-3", "quake = true"), "quake = true", "toe.quake: input should be a valid number (given: True)"),
+    (("quake = 2.5e-3", 'quake = "2"'), 'quake = "2"', "toe.quake: input should be a valid number (given: '2')"),
     (("area = 5.8e-4", "area = -1"), "area = -1", "rod[1].area: input should be greater than 0"),
     (("density = 7850.0", "density = 0"), "density = 0", "rod[1].density"),
     (("segments = 100", "segments = 0"), "segments = 0", "segments: input should be greater than or equal to 1"),
