@@ -153,13 +153,19 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
         for column in [f"{name}.energy.residual", *works]:
             part = run.series[column] - run.series[column][0]
             total = part if total is None else total + part
-    for rod in named(run, "PileRod"):
-        if total is not None and f"{rod}.head.position" in run.series:
-            total = total + _preload(run, rod) * run.series[f"{rod}.head.position"]
-    return total
+    carried = carried_work(run)
+    return total if total is None or carried is None else total - carried
 
 
-def _preload(run: "Run", rod: str) -> float:
+def carried_work(run: "Run") -> "NDArray[np.float64] | None":
+    """Work (J) on the way of their heads of the loads that rods carry at rest, at each row, which no component counts; None without
+    rods."""
+    rods = [rod for rod in named(run, "PileRod") if f"{rod}.head.position" in run.series]
+    works = [-preload(run, rod) * run.series[f"{rod}.head.position"] for rod in rods]
+    return sum(works[1:], works[0]) if works else None
+
+
+def preload(run: "Run", rod: str) -> float:
     """Static load (N) at the head of a rod, positive in the direction of its head."""
     parameters = run.provenance["components"][rod]["parameters"]
     return float(parameters["head.preload"]["value"]) * (-1.0 if parameters["head.direction"]["value"] == "up" else 1.0)

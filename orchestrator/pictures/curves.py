@@ -188,8 +188,10 @@ def energy(run: Run, file: Path) -> None:
             upper.stackplot(time, [values for _, _, values in layers], colors=[colour for _, colour, _ in layers],
                             labels=[name for name, _, _ in layers], edgecolor="white", linewidth=0.3)
         start = np.full(time.size, sum(float(values[0]) for _, _, values in layers))
-        upper.plot(time, start if put_in is None else start + put_in, color=INK, linewidth=0.9, linestyle="--",
-                   label="all energy at the start" + ("" if put_in is None else "\nand work of the machine"))
+        works = {"work of the machine": put_in, "work of the loads at rest": h.carried_work(run)}
+        given = {words: work for words, work in works.items() if work is not None and work.any()}
+        upper.plot(time, sum(given.values(), start), color=INK, linewidth=0.9, linestyle="--",
+                   label="\nand ".join(["all energy at the start", *given]))
         upper.set(ylabel="energy (J)")
         over_time(upper, time)
         handles, labels = upper.get_legend_handles_labels()

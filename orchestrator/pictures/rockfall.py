@@ -129,9 +129,16 @@ def _histograms(made: Prepared, found: Sequence[Passing], file: Path) -> None:
             panels[0].set_title(f"{passing.name}: {passing.count} of {made.campaign.trials} rocks")
 
 
+_ALIKE = 1e-9
+"""Values that differ by no more than this part of the largest are one."""
+
+
 def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
+    if np.ptp(values) <= _ALIKE * np.abs(values).max():  # one value but for rounding, as on a level line
+        values = np.full(values.size, values[0])
     axes.hist(values, bins=min(60, max(8, round(len(values)**0.5))), density=True, color=SAND, edgecolor="white", linewidth=0.3)
     mean, deviation = float(values.mean()), float(values.std(ddof=1))
+    axes.ticklabel_format(axis="x", useOffset=False)
     if deviation > 0.0:
         x = np.linspace(*axes.get_xlim(), 200)
         curve = np.exp(-0.5 * ((x - mean) / deviation)**2) / (deviation * np.sqrt(2.0 * np.pi))

@@ -129,9 +129,9 @@ def prepare(file: Path, blows: int | None = None) -> Prepared:
         problems.append(Problem(where.of(("time",)), f"{site.blows} blows of {made.time:g} s in steps of {made.step:.3g} s are "
                                 f"{rows:.2g} rows, and at most {MOST_ROWS:.2g} are kept",
                                 "shorten time, or give fewer blows or segments"))
-    if made.time < LEAST_TRAVELS * made.travel_time:
+    if made.time < (least := LEAST_TRAVELS * made.travel_time):
         problems.append(Problem(where.of(("time",)), f"{made.time:g} s is too short for a blow: a wave needs "
-                                f"{made.travel_time:.3g} s from head to toe", f"give {LEAST_TRAVELS * made.travel_time:.2g} s or more"))
+                                f"{made.travel_time:.3g} s from head to toe", f"give at least {least:.2g} s"))
     if not problems:
         try:
             made.rod()

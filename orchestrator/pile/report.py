@@ -62,7 +62,7 @@ def warnings(done: Finished) -> Iterator[str]:
     every = [*done.blows, *done.graph]
     moving = max(blow.moving / blow.impact_energy for blow in every)
     if moving > RESTLESS:
-        yield (f"the rod still moves at the end of a blow, with {100.0 * moving:.2g} % of the impact energy: what comes later is not "
-               "in the figures; raise time")
+        yield (f"the rod still moves at the end of a blow, with {100.0 * moving:.2g} % of the impact energy: what comes later is "
+               "not in the figures; raise time")
     if any(blow.transferred < UNSPENT * blow.impact_energy for blow in every):
         yield "the ram has hardly given any energy to the rod when its time is over: raise time, or the stiffness of the cushion"

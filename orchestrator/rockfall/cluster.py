@@ -113,6 +113,9 @@ def _running(address: str) -> "Iterator[Client]":
 
 
 def _first_line(error: Exception) -> str:
+    """What went wrong, as far as it says something to a person."""
+    if isinstance(error, MemoryError):  # it has taken what something else answers for the length of a message
+        return "what answers is no Dask scheduler"
     return (str(error).splitlines() or [type(error).__name__])[0]
 
 

@@ -84,7 +84,7 @@ def _from_csv(path: Path, profile: Profile, known: Collection[str], problems: li
     header = [name.strip().lower() for name in rows[0][1].split(",")] if rows else []
     if header[:2] != ["x", "y"] or header[2:] not in ([], ["material"]):
         problems.append(Problem(f"{path}, line {rows[0][0] if rows else 1}, column 1", "the first line does not name the columns",
-                                "write x,y or x,y,material"))
+                                "write x,y or x,y,material, with commas between the columns and decimal points"))
         return
     for number, line in rows[1:]:
         yield from _csv_node(path, number, line, len(header), problems)

@@ -14,7 +14,7 @@ from .struck_rod import AREA, DENSITY, DROP, GRAVITY, MASS, QUAKE, SOURCE, SPEED
 
 LENGTH, SEGMENTS = 5.0, 1000
 ENERGY = 4762.5
-"""As printed (kg cm)."""
+"""As printed (kgf cm)."""
 DIVISIONS = (10, 100, 1000)
 RESISTING = 0.5
 """Reflection for which the resistance is listed."""
@@ -57,7 +57,7 @@ def rows(found: Outcomes) -> list[Row]:
     resting = {n: resistance(n, RESISTING) / kN for n in DIVISIONS}
     tension, kept = float(np.min(run["head.contact_force"])), np.abs(run["energy.residual"]).max() / run.rod["energy.start"]
     return [
-        Row("table 1: energy of a blow", "kg cm", ENERGY, computed=MASS * DROP / cm, verdict=verdict(MASS * DROP / cm == ENERGY),
+        Row("table 1: energy of a blow", "kgf cm", ENERGY, computed=MASS * DROP / cm, verdict=verdict(MASS * DROP / cm == ENERGY),
             note=f"63.5 kg x 75 cm = {MASS * DROP * GRAVITY:.0f} J"),
         Row("a step smaller than dx/c oscillates: overshoot of the front at dx/c / 5", "1", computed=overshoot(5),
             verdict=verdict(abs(overshoot(1)) < 1e-10 < 0.1 < overshoot(5)),
