@@ -25,8 +25,8 @@ def blow(run: Run, file: Path) -> None:
             axes.axhline(0.0, color=GREY, linewidth=0.7)
             axes.set(ylabel=f"{rod} (kN)")
             if load := h.preload(run, rod):
-                axes.annotate(f"beyond the load at rest, {abs(load) / kN:.1f} kN at the head", (0.0, 1.0), xycoords="axes fraction",
-                              xytext=(3, -3), textcoords="offset points", va="top", fontsize=8, color=GREY)
+                axes.annotate(f"beyond the load at rest, {abs(load) / kN:.1f} kN at the head", (1.0, 0.0), xycoords="axes fraction",
+                              xytext=(-3, 3), textcoords="offset points", ha="right", va="bottom", fontsize=8, color=GREY)
         legend(rows[0], loc="upper right", ncols=3)
         for ground, colour in zip(grounds, _GROUNDS):
             axes = rows[-1]
