@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from .component import Component
+from .common.component import Component
 
 _FOLDERS = {
     "FallingRock": "falling_rock",

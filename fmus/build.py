@@ -1,7 +1,7 @@
 """Build FMUs. Those with Python: frozen sources, pythonfmu's binaries, model description and documentation in one file.
 
 The sources go in under names that contain a hash of their content, so that FMUs which share a Python interpreter cannot confuse
-their modules (see :mod:`fmus.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`fmus.native_fmu`.
+their modules (see :mod:`rockshed.fmus.python.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`rockshed.fmus.native.fmu`.
 """
 
 import re
@@ -12,15 +12,14 @@ from pathlib import Path
 
 import pythonfmu
 from filelock import FileLock
+from rockshed.components.catalogue import component as catalogued
+from rockshed.components.common.component import Component
 
-from components.catalogue import component as catalogued
-from components.component import Component
-
-from .description import model_description
-from .native_fmu import native_files
+from .description.fmi2 import model_description
+from .native.fmu import native_files
 from .parts import DESCRIPTION, BuildError, Files, Fmi, Runtime, archive, component_sources, digest, documentation, picture, replace
 from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, folder_name, native_is_fresh
-from .script import SCRIPT
+from .python.script import SCRIPT
 
 __all__ = ["FOLDER_VARIABLE", "BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name",
            "fmu_content", "fmu_files", "fmu_folder", "folder_name", "native_is_fresh", "store"]
@@ -30,7 +29,7 @@ ONLY_NATIVE = "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes 
 _HERE = Path(__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
 _PYTHONFMU_PARTS = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
-_SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "python_fmu.py")
+_SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "slave.py")
 
 
 def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
@@ -121,9 +120,9 @@ def _stamped_files(component: Component, sizes: Mapping[str, int], library: str,
 
 def _library_files(component: Component) -> Files:
     """The package that runs inside the FMU: slave, component with what the components share, and parts of pythonfmu."""
-    paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {name: _HERE / name for name in _SLAVE_PARTS}
+    paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {name: _HERE / "python" / name for name in _SLAVE_PARTS}
     files = component_sources(component) | {name: path.read_bytes() for name, path in paths.items()}
-    files["foundations.py"] = re.sub(rb"^from (components|pythonfmu)\.", rb"from .\1.", files["foundations.py"], flags=re.MULTILINE)
+    files["foundations.py"] = re.sub(rb"^from (?:rockshed\.)?(components|pythonfmu)\.", rb"from .\1.", files["foundations.py"], flags=re.MULTILINE)
     return files | {"__init__.py": b"", "pythonfmu/__init__.py": b""}
 
 

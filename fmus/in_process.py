@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from components.component import Component
+from rockshed.components.common.component import Component
 
 from .build import fmu_files
-from .foundations import Fmi2Status
-from .python_fmu import ComponentSlave
+from .python.foundations import Fmi2Status
+from .python.slave import ComponentSlave
 
 OK, DISCARD, ERROR = int(Fmi2Status.ok), int(Fmi2Status.discard), int(Fmi2Status.error)
 

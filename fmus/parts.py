@@ -8,9 +8,9 @@ import zipfile
 from enum import IntEnum, StrEnum
 from pathlib import Path
 
-import components
-from components.component import Component
-from components.ports import Sizes
+from rockshed import components
+from rockshed.components.common.component import Component
+from rockshed.components.common.ports import Sizes
 
 COMPONENTS = Path(components.__file__).parent
 DESCRIPTION = "modelDescription.xml"
@@ -40,7 +40,8 @@ class BuildError(Exception):
 
 def component_sources(component: Component) -> Files:
     """The component with what the components share: everything that its kernels and declarations follow from."""
-    paths = {f"components/{path.name}": path for path in COMPONENTS.glob("*.py") if path.name != "catalogue.py"}
+    paths = {f"components/{path.relative_to(COMPONENTS).as_posix()}": path
+             for path in (COMPONENTS / "__init__.py", *COMPONENTS.glob("common/**/*.py"))}
     paths |= {f"components/{path.relative_to(component.folder.parent).as_posix()}": path
               for path in component.folder.rglob("*") if path.is_file() and path.suffix not in _NOT_FROZEN}
     return {name: path.read_bytes() for name, path in paths.items()}
@@ -48,7 +49,7 @@ def component_sources(component: Component) -> Files:
 
 def documentation(component: Component, sizes: Sizes) -> Files:
     """The documentation."""
-    from .documentation import index_html
+    from .description.documentation import index_html
 
     return {"documentation/index.html": index_html(component, sizes).encode()}
 

@@ -6,9 +6,9 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from components.component import Component
+from rockshed.components.common.component import Component
 
-from .native_fmu import own_binary, stamp
+from .native.fmu import own_binary, stamp
 from .parts import DESCRIPTION, BuildError, Fmi, Runtime
 
 __all__ = ["FOLDER_VARIABLE", "Fmi", "Runtime", "file_name", "fmu_file", "fmu_folder", "folder_name", "native_is_fresh"]

@@ -1,9 +1,8 @@
 """Rods for tests."""
 
 import numpy as np
-
-from components.catalogue import component
-from components.pile_rod.st_venant import StVenant
+from rockshed.components.catalogue import component
+from rockshed.components.pile_rod.st_venant import StVenant
 
 ROD = component("PileRod")
 HAMMER = component("Hammer")

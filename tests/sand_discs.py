@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from components.component import Instance
-from components.falling_rock import COMPONENT as FALLING_ROCK
-from components.sand_cushion import COMPONENT
-from components.sand_cushion.declarations import ROW, SUM
+from rockshed.components.common.component import Instance
+from rockshed.components.falling_rock import COMPONENT as FALLING_ROCK
+from rockshed.components.sand_cushion import COMPONENT
+from rockshed.components.sand_cushion.declarations import ROW, SUM
 
 Pairs = Sequence[tuple[float, float]] | NDArray[np.float64]
 

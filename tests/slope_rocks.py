@@ -4,12 +4,11 @@ import math
 
 import numpy as np
 from numba import njit
-
-from components.catalogue import component
-from components.counter_random import stream
-from components.slope_rockfall.declarations import BODY
-from components.slope_rockfall.events import begin, happen, world
-from components.slope_rockfall.trajectory import BARRIER, OUTCOME, PASSAGE, PEAK, trials
+from rockshed.components.catalogue import component
+from rockshed.components.common.counter_random import stream
+from rockshed.components.slope_rockfall.declarations import BODY
+from rockshed.components.slope_rockfall.events import begin, happen, world
+from rockshed.components.slope_rockfall.trajectory import BARRIER, OUTCOME, PASSAGE, PEAK, trials
 
 SLOPE = component("SlopeRockfall")
 G = 9.80665

@@ -1,8 +1,8 @@
 """Variables of the falling rock. Equations, frame and signs: README.md beside this file."""
 
-from ..ports import Layout, choice, inp, out, param
-from ..stepping import internal_step, stable_step
-from ..units import cm
+from ..common.ports import Layout, choice, inp, out, param
+from ..common.stepping import internal_step, stable_step
+from ..common.units import cm
 
 SPHERE, DISC, GIVEN = 1, 2, 3
 FREE, DRIVEN = 1, 2

@@ -2,9 +2,9 @@
 
 import math
 
-from ..compilation import kernel
-from ..component import OK
-from ..stepping import substep_count, substep_length
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.stepping import substep_count, substep_length
 from .declarations import DISC, DRIVEN, LAYOUT, SPHERE
 
 V = LAYOUT.scalar

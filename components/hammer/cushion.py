@@ -2,7 +2,7 @@
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 
 _ROUNDS = 60
 

@@ -1,8 +1,8 @@
 """Variables of the hammer. Equations, frame and signs: README.md beside this file."""
 
-from ..ports import Layout, State, choice, inp, out, param, switch
-from ..stepping import internal_step, stable_step
-from ..units import cm, cm2
+from ..common.ports import Layout, State, choice, inp, out, param, switch
+from ..common.stepping import internal_step, stable_step
+from ..common.units import cm, cm2
 
 KINEMATICS, WAVES = 1, 2
 

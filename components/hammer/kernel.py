@@ -2,11 +2,11 @@
 
 import math
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
-from ..stepping import substep_count, substep_length
-from ..wave_port import TOGETHER, rigid_mass
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.stepping import substep_count, substep_length
+from ..common.wave_port import TOGETHER, rigid_mass
 from .cushion import cushion_force, met, steeper
 from .declarations import KINEMATICS, LAYOUT, WAVES
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..component import Component
+from ..common.component import Component
 from . import kernel
 from .declarations import LAYOUT
 

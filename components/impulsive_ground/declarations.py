@@ -2,9 +2,9 @@
 
 from collections import namedtuple
 
-from ..ports import Layout, State, choice, inp, out, param
-from ..stepping import internal_step, stable_step
-from ..units import cm, cm2, deg, kgf, mm
+from ..common.ports import Layout, State, choice, inp, out, param
+from ..common.stepping import internal_step, stable_step
+from ..common.units import cm, cm2, deg, kgf, mm
 
 SETTLEMENT, KINEMATICS, WAVE = 1, 2, 3
 SMITH, MOGAMI = 1, 2

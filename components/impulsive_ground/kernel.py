@@ -3,10 +3,10 @@
 import math
 from typing import TYPE_CHECKING
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
-from ..stepping import substep_count, substep_length
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.stepping import substep_count, substep_length
 from .declarations import BODY, KINEMATICS, LAYOUT, MOGAMI, SETTLEMENT, SMITH, WAVE
 from .motion import (
     Ground,
@@ -23,7 +23,7 @@ from .motion import (
 from .settlement import soil_mass
 
 if TYPE_CHECKING:
-    from ..component import Instance
+    from ..common.component import Instance
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

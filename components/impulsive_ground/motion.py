@@ -6,7 +6,7 @@ and its work (J), preload included.
 
 from collections import namedtuple
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 from .declarations import BODY, LAYOUT
 from .plate import slide, stop, work_of_load
 from .spring import mean_force, press, relax

@@ -8,7 +8,7 @@ and forces on the plate count downwards. Everything is exact; phi functions make
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 
 _SERIES = 0.5
 """Argument below which phi functions are summed as series."""

@@ -6,8 +6,8 @@ contradict one another and are kept apart: no function here feeds one into anoth
 
 import math
 
-from ..compilation import kernel
-from ..units import cm2, kgf, mm
+from ..common.kernels import kernel
+from ..common.units import cm2, kgf, mm
 
 DERIVED, PRINTED = 1, 2
 """Forms of the soil mass: with 12 r2, the momentum of the frustum; with 3 r2, as it stands in the paper."""

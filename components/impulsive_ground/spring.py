@@ -7,7 +7,7 @@ stepped in time: a stretch is exact, its work is what the spring has gained and 
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 
 _ENDLESS = 1e30
 

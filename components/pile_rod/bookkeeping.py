@@ -1,7 +1,7 @@
 """What every scheme keeps account of: soil, head, envelopes."""
 
-from ..compilation import kernel
-from ..ports import view
+from ..common.kernels import kernel
+from ..common.ports import view
 from .declarations import LAYOUT, SOIL
 from .soil import Soil, drag, stored, stretched
 

@@ -5,9 +5,9 @@ b that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - 
 so that jumps stay sharp.
 """
 
-from ..compilation import kernel
-from ..ports import view
-from ..wave_port import TOGETHER, rigid_mass
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.wave_port import TOGETHER, rigid_mass
 from .bookkeeping import book_head, book_soil, envelope, shaft_soil, toe_soil
 from .declarations import LAYOUT, MATCHED, PORT, RAM
 from .segments import below_toe, toe_is_fixed

@@ -2,10 +2,10 @@
 
 from collections import namedtuple
 
-from ..component import Size
-from ..ports import Layout, Sizes, State, choice, inp, out, param
-from ..stepping import internal_step, stable_step
-from ..units import cm2, mm
+from ..common.component import Size
+from ..common.ports import Layout, Sizes, State, choice, inp, out, param
+from ..common.stepping import internal_step, stable_step
+from ..common.units import cm2, mm
 
 CHARACTERISTICS, SMITH, MODIFIED_SMITH, REPAIRED = 1, 2, 3, 4
 KINEMATICS, WAVES = 1, 2

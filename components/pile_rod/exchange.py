@@ -1,7 +1,7 @@
 """Ports and clock: forces from outside over whole internal steps, and the waves that come out of the rod next."""
 
-from ..compilation import kernel
-from ..ports import view
+from ..common.kernels import kernel
+from ..common.ports import view
 from . import chain, characteristics
 from .declarations import CHARACTERISTICS, CLOCK, LAYOUT, PARALLEL, PORT, WAVES
 from .segments import head_sign

@@ -2,24 +2,15 @@
 
 import math
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
-from ..stepping import substep_count
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.stepping import substep_count
 from .bookkeeping import shaft_soil, toe_soil
 from .chain import spring_energy, spring_force
 from .declarations import CHARACTERISTICS, LAYOUT, RAM, SOIL, WAVES
 from .exchange import gives_waves, publish_waves, run, waves_known
-from .segments import (
-    divide,
-    find_free_stretches,
-    gauge_segment,
-    head_sign,
-    lump,
-    publish_limits,
-    rod_length,
-    stable_limit,
-)
+from .segments import divide, find_free_stretches, gauge_segment, head_sign, lump, publish_limits, rod_length, stable_limit
 from .soil import static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array

@@ -2,21 +2,9 @@
 
 import math
 
-from ..compilation import kernel
-from ..ports import view
-from .declarations import (
-    CHARACTERISTICS,
-    DOWN,
-    FIXED,
-    LAYOUT,
-    PORT,
-    REFLECTION,
-    REPAIRED,
-    SEQUENTIAL,
-    SMITH,
-    SOIL,
-    WAVES,
-)
+from ..common.kernels import kernel
+from ..common.ports import view
+from .declarations import CHARACTERISTICS, DOWN, FIXED, LAYOUT, PORT, REFLECTION, REPAIRED, SEQUENTIAL, SMITH, SOIL, WAVES
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

@@ -3,7 +3,7 @@
 import math
 from collections import namedtuple
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 
 Soil = namedtuple("Soil", "stretch quake resistance damping tension")
 """Elastic displacement (m), quake (m), ultimate resistance (N), Smith's damping (s/m), and whether the soil pulls too: a shaft

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ..component import Component
-from ..ports import Bond
+from ..common.component import Component
+from ..common.ports import Bond
 from . import kernel
 from .declarations import LAYOUT, SIZES
 

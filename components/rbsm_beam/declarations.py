@@ -1,9 +1,9 @@
 """Variables of the beam. Equations, frame and signs: README.md beside this file."""
 
-from ..component import Size
-from ..ports import Layout, Sizes, State, choice, inp, out, param
-from ..stepping import internal_step, stable_step
-from ..units import cm, cm2, cm4, kgf
+from ..common.component import Size
+from ..common.ports import Layout, Sizes, State, choice, inp, out, param
+from ..common.stepping import internal_step, stable_step
+from ..common.units import cm, cm2, cm4, kgf
 
 SIMPLE, FIXED = 1, 2
 

@@ -1,9 +1,9 @@
 """Life of the beam: start at rest, advance with held forces, publish."""
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
-from ..stepping import substep_count, substep_length
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.stepping import substep_count, substep_length
 from .chain import (
     axial_energy,
     bending_energy,

@@ -5,7 +5,7 @@ way, capillary bridges.
 All functions work on one contact. The normal points from body 1 to body 2; the tangent is the normal turned counter-clockwise.
 """
 
-from ..compilation import inlined
+from ..common.kernels import inlined
 
 
 @inlined

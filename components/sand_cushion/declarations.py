@@ -3,11 +3,11 @@
 import math
 from collections import namedtuple
 
-from ..component import Size
-from ..ports import Layout, Sizes, State, choice, count, inp, out, param
-from ..stepping import internal_step, stable_step
-from ..threads import MOST
-from ..units import cm, deg, kgf
+from ..common.component import Size
+from ..common.ports import Layout, Sizes, State, choice, count, inp, out, param
+from ..common.stepping import internal_step, stable_step
+from ..common.threads import MOST
+from ..common.units import cm, deg, kgf
 
 SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
 FREE, LOCKED = 1, 2

@@ -2,9 +2,9 @@
 
 import math
 
-from ..compilation import inlined, kernel
-from ..ports import view
-from ..threads import shared_among_threads
+from ..common.kernels import inlined, kernel
+from ..common.ports import view
+from ..common.threads import shared_among_threads
 from .contact_law import normal_force, permanent_overlap, rolling_moment, tangential_force, yield_loss
 from .contact_search import beam_count, disc_count, first_of, part_count, second_of
 from .declarations import (
@@ -29,8 +29,8 @@ from .declarations import (
     TALLY,
     UNBOUNDED,
 )
-from .vector_law import lasting_law, plain_law
-from .vector_rows import FASTEST, KINETIC, POTENTIAL, columns_to_pairs, forces_to_pairs, move_rows, pairs_to_columns
+from .vector.law import lasting_law, plain_law
+from .vector.rows import FASTEST, KINETIC, POTENTIAL, columns_to_pairs, forces_to_pairs, move_rows, pairs_to_columns
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

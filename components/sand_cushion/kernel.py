@@ -2,10 +2,10 @@
 
 import math
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
-from ..stepping import substep_count, substep_length
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.stepping import substep_count, substep_length
 from .contact_search import beam_count, disc_count, divide, forget, is_stale, rebuild
 from .declarations import (
     ANGLE,

@@ -2,9 +2,9 @@
 
 import math
 
-from ..compilation import kernel
-from ..counter_random import uniform
-from ..ports import view
+from ..common.counter_random import uniform
+from ..common.kernels import kernel
+from ..common.ports import view
 from .contact_search import base_top, beam_count, disc_count
 from .declarations import BEAM_DISCS, HALF_ROOT, HEXAGONAL, INVERSE_MASS, LAYER, LAYOUT, RADIUS, RANDOM, ROW, SPIN
 

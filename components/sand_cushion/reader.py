@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compilation import kernel
-from ..component import HEADER, ComponentError, Instance
-from ..ports import view
+from ..common.component import HEADER, ComponentError, Instance
+from ..common.kernels import kernel
+from ..common.ports import view
 from . import COMPONENT
 from .contact_search import base_top, beam_count, disc_count, first_of, second_of
 from .declarations import ANGLE, BEAM_DISCS, KIND, LAW, LAYOUT, ON_BEAM, RADIUS, ROW, UNBOUNDED
@@ -86,7 +86,7 @@ class SandState:
 
 
 def read(content: bytes, sizes: Mapping[str, int]) -> SandState:
-    """Decode what :meth:`components.component.Instance.to_bytes` wrote for a cushion of these ``sizes``.
+    """Decode what :meth:`rockshed.components.common.component.Instance.to_bytes` wrote for a cushion of these ``sizes``.
 
     Raises:
         ComponentError: not such a state, of another component or other sizes, or cut short.

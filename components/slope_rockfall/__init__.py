@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ..component import Component
-from ..ports import Bond, NextEvent
+from ..common.component import Component
+from ..common.ports import Bond, NextEvent
 from . import kernel, refusals
 from .declarations import LAYOUT, SIZES
 

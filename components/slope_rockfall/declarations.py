@@ -2,10 +2,10 @@
 
 from collections import namedtuple
 
-from ..component import Size
-from ..ports import Kind, Layout, Sizes, State, choice, count, inp, out, param, switch
-from ..stepping import internal_step, stable_step
-from ..units import kN
+from ..common.component import Size
+from ..common.ports import Kind, Layout, Sizes, State, choice, count, inp, out, param, switch
+from ..common.stepping import internal_step, stable_step
+from ..common.units import kN
 
 SPHERE, DISC, GIVEN = 1, 2, 3
 PRINTED, NONE, CONSISTENT = 1, 2, 3

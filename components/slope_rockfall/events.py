@@ -9,9 +9,9 @@ from collections import namedtuple
 
 import numpy as np
 
-from ..compilation import kernel
-from ..counter_random import draw, mix, shuffled, stream
-from ..ports import view
+from ..common.counter_random import draw, mix, shuffled, stream
+from ..common.kernels import kernel
+from ..common.ports import view
 from .declarations import (
     ABSOLUTE,
     BODY,

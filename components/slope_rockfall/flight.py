@@ -2,7 +2,7 @@
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 from .declarations import BODY, NEVER, PATH
 
 

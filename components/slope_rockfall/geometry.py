@@ -8,8 +8,8 @@ rock never cuts into the slope, and all its motion is that of a point on straigh
 
 import math
 
-from ..compilation import kernel
-from ..ports import view
+from ..common.kernels import kernel
+from ..common.ports import view
 from .declarations import LAYOUT, NEVER, PATH, STEEPEST_JOINT
 
 V, A = LAYOUT.scalar, LAYOUT.array

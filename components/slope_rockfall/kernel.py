@@ -2,11 +2,11 @@
 
 import math
 
-from ..compilation import kernel
-from ..component import OK
-from ..counter_random import stream
-from ..ports import view
-from ..stepping import substep_count, substep_length
+from ..common.component import OK
+from ..common.counter_random import stream
+from ..common.kernels import kernel
+from ..common.ports import view
+from ..common.stepping import substep_count, substep_length
 from .declarations import BODY, CLOCK, GROUND, LAYOUT, LEAVE, NEVER, PATH, RECEIVED
 from .events import begin, happen, inertia, losses, plan, world
 from .flight import move

@@ -1,6 +1,6 @@
 """The receiver: a box in which the rock is handed over, and moves under its weight and the forces given from outside."""
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 from .declarations import BODY, NEVER
 from .flight import passing
 

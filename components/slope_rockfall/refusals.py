@@ -3,8 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from ..compilation import kernel
-from ..ports import view
+from ..common.kernels import kernel
+from ..common.ports import view
 from .declarations import LAYOUT, LOGNORMAL
 from .geometry import node
 from .sampling import widest
@@ -12,7 +12,7 @@ from .sampling import widest
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ..component import Instance
+    from ..common.component import Instance
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

@@ -6,7 +6,7 @@ omega positive against the direction of rolling.
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 from .declarations import CONSISTENT, PRINTED
 
 _SERIES_BELOW = 0.02

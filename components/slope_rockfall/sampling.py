@@ -5,7 +5,7 @@ One number per variate keeps every trial reproducible by its counter, and lets a
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 from .declarations import LOGNORMAL, TRIANGULAR, UNIFORM
 
 _ROOT_3, _ROOT_6 = math.sqrt(3.0), math.sqrt(6.0)

@@ -6,7 +6,7 @@ direction of rolling. Accelerations are constant until the next event.
 
 import math
 
-from ..compilation import kernel
+from ..common.kernels import kernel
 from .declarations import REST, ROLLING, SLIDING, SPINNING
 
 _SLIP = 1e-10

@@ -7,8 +7,8 @@ of threads; each needs its own ``body``.
 import math
 from collections import namedtuple
 
-from ..compilation import kernel, released
-from ..counter_random import stream
+from ..common.counter_random import stream
+from ..common.kernels import kernel, released
 from .declarations import BODY, LAYOUT, NEVER, PATH, REST
 from .events import begin, happen, world
 from .flight import passing

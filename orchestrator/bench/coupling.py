@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from time import thread_time
 
-from fmus.build import BuildError, Runtime, build_if_needed
-from fmus.native_fmu import CPU
+from rockshed.fmus.build import BuildError, Runtime, build_if_needed
+from rockshed.fmus.native.fmu import CPU
 
 from ..cases.sonoda1993 import Coupling, lab_system, tests
 from ..core.run import simulate
-from ..core.system import System
+from ..core.system.system import System
 from .interleave import Contestant
 from .monolithic import from_system
 from .peer import Peer

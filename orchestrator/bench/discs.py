@@ -5,10 +5,9 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 import numpy as np
-
-from components.component import Instance
-from components.sand_cushion import COMPONENT
-from components.sand_cushion.declarations import ROW
+from rockshed.components.common.component import Instance
+from rockshed.components.sand_cushion import COMPONENT
+from rockshed.components.sand_cushion.declarations import ROW
 
 from .interleave import Contestant
 from .peer import Peer

@@ -10,21 +10,21 @@ from contextlib import ExitStack
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-import components
-from components.component import Component
-from fmus.build import Runtime, build_component
+from rockshed import components
+from rockshed.components.common.component import Component
+from rockshed.fmus.build import Runtime, build_component
 
-from ..core.exchange import State, make_driver
-from ..core.initialisation import free, initialise, instantiate
-from ..core.plan import make_plan
+from ..core.fmu.initialisation import free, initialise, instantiate
+from ..core.loop.exchange import State, make_driver
 from ..core.run import sources_of
-from ..core.system import system_from
+from ..core.system.plan import make_plan
+from ..core.system.system import system_from
 from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
 
 OURS, BARE = "our loop", "ctypes"
 PEERS: Mapping[str, str] = {BARE: "fmpy", "fmpy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy"}
-"""Other tools by the names of :mod:`orchestrator.bench.exchange_peer`, and the package that brings each."""
+"""Other tools by the names of :mod:`rockshed.bench.exchange_peer`, and the package that brings each."""
 _STEPS = {Runtime.NATIVE: 10_000, Runtime.PYTHON: 1000}
 """Macro steps of one measurement."""
 _AT_ONCE = 1000
@@ -37,7 +37,7 @@ def relay() -> Component:
     here = str(Path(__file__).parent)
     components.__path__.append(here)
     try:
-        found = importlib.import_module("components.pair").COMPONENT
+        found = importlib.import_module("rockshed.components.pair").COMPONENT
     finally:
         components.__path__.remove(here)
     assert isinstance(found, Component)

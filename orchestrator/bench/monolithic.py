@@ -9,23 +9,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from rockshed.components.common.component import Instance
+from rockshed.components.common.kernels import kernel
+from rockshed.components.common.ports import view
+from rockshed.components.falling_rock import COMPONENT as ROCK
+from rockshed.components.falling_rock import kernel as rock_kernel
+from rockshed.components.falling_rock.declarations import LAYOUT as ROCK_LAYOUT
+from rockshed.components.rbsm_beam import COMPONENT as BEAM
+from rockshed.components.rbsm_beam import kernel as beam_kernel
+from rockshed.components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
+from rockshed.components.sand_cushion import COMPONENT as SAND
+from rockshed.components.sand_cushion import contact_search
+from rockshed.components.sand_cushion import kernel as sand_kernel
+from rockshed.components.sand_cushion.declarations import ANGLE, FORCE_ROW, RADIUS, ROW, SPIN, SUM
+from rockshed.components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
 
-from components.compilation import kernel
-from components.component import Instance
-from components.falling_rock import COMPONENT as ROCK
-from components.falling_rock import kernel as rock_kernel
-from components.falling_rock.declarations import LAYOUT as ROCK_LAYOUT
-from components.ports import view
-from components.rbsm_beam import COMPONENT as BEAM
-from components.rbsm_beam import kernel as beam_kernel
-from components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
-from components.sand_cushion import COMPONENT as SAND
-from components.sand_cushion import contact_search
-from components.sand_cushion import kernel as sand_kernel
-from components.sand_cushion.declarations import ANGLE, FORCE_ROW, RADIUS, ROW, SPIN, SUM
-from components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
-
-from ..core.system import System
+from ..core.system.system import System
 
 RV, SV, BV = ROCK_LAYOUT.scalar, SAND_LAYOUT.scalar, BEAM_LAYOUT.scalar
 SA, BA = SAND_LAYOUT.array, BEAM_LAYOUT.array

@@ -1,6 +1,6 @@
 """The one program of the coupling benchmark in a process of its own: numba compiles for one processor per process.
 
-``python -m orchestrator.bench.monolithic_peer`` answers each line with the processor time (s) of a run.
+``python -m rockshed.bench.monolithic_peer`` answers each line with the processor time (s) of a run.
 """
 
 import sys

@@ -7,8 +7,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter, thread_time
 
-from ..rockfall.campaign import Campaign, Done, Records, compute
-from ..rockfall.preparation import prepare
+from ..analyses.rockfall.campaign import Campaign, Done, Records, compute
+from ..analyses.rockfall.preparation import prepare
 from .interleave import Contestant
 
 SITE = Path(__file__).with_name("slope15.toml")
@@ -41,7 +41,7 @@ def dask_available() -> bool:
 @contextmanager
 def dask_campaigns() -> Iterator[dict[str, Contestant]]:
     """The campaign on one and on two local workers, which are there already; wall time (s) until all records are here."""
-    from ..rockfall.cluster import dask_workers
+    from ..analyses.rockfall.cluster import dask_workers
 
     given = prepare(SITE, trials=CAMPAIGN).campaign
     with ExitStack() as running:

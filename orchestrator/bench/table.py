@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from fmus.build import BuildError, Runtime
-from fmus.native_fmu import CPU
+from rockshed.fmus.build import BuildError, Runtime
+from rockshed.fmus.native.fmu import CPU
 
 from . import coupling, discs, rockfall
 from .exchange import BARE, OURS, PEERS, Pair
@@ -106,7 +106,7 @@ def start_rows(rounds: int) -> Iterator[Row]:
     """A warm start: from the start of the command to the first exchange, and to its end after 20 ms of simulated time."""
     first, whole = [], []
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "orchestrator.cli", "run", "lab-impact", "--stop-time", "0.02", "--no-figures", "--quiet",
+        command = [sys.executable, "-m", "rockshed.commands.app", "run", "lab-impact", "--stop-time", "0.02", "--no-figures", "--quiet",
                    "--output-dir", str(Path(folder) / "run")]
         kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}  # a warm start has bytecode
         for _ in range(rounds + 1):

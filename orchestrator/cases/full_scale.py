@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
-from components.catalogue import component
-from components.units import cm, cm2, cm4, kgf, kN
+from rockshed.components.catalogue import component
+from rockshed.components.common.units import cm, cm2, cm4, kgf, kN
 
-from .. import headlines as h
-from ..core.schedule import Scheme
-from ..core.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
-from ..headlines import Known, Reference, References
+from ..core.system.schedule import Scheme
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..metrics import headlines as h
+from ..metrics.headlines import Known, Reference, References
 from .sand_models import FULL_SCALE_SOIL, Layer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
 

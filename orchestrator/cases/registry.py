@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, cast
 
-from components.catalogue import component
+from rockshed.components.catalogue import component
 
 from ..core.errors import InputRefused, Problem
-from ..core.names import nearest
-from ..core.system import System, Value
-from ..headlines import References
-from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt, static_test
+from ..core.system.names import nearest
+from ..core.system.system import System, Value
+from ..metrics.headlines import References
+from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
+from . import static_loading as static_test
 from .sand_models import Changes, Layer, Soil, changes, sand_model
 
 Sizes = Mapping[str, Mapping[str, int]]

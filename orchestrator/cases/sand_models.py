@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
-from components.catalogue import component
-from components.units import cm, kgf
+from rockshed.components.catalogue import component
+from rockshed.components.common.units import cm, kgf
 
 from ..core.errors import InputRefused, Problem
-from ..core.names import nearest
-from ..core.system import Value
+from ..core.system.names import nearest
+from ..core.system.system import Value
 
 _KGF_PER_CM2 = kgf / cm**2
 

@@ -9,7 +9,7 @@ count displacements, waves and stresses from there, so gravity is 0 in them.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..core.system import ComponentSpec, Connection, PowerBond, System, Value
+from ..core.system.system import ComponentSpec, Connection, PowerBond, System, Value
 from . import full_scale
 from .spt import toe_bond, toe_connections
 

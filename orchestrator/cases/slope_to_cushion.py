@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from components.component import Instance
-from components.ports import Causality, Kind
-from components.units import cm, cm2, kgf
+from rockshed.components.common.component import Instance
+from rockshed.components.common.ports import Causality, Kind
+from rockshed.components.common.units import cm, cm2, kgf
 
-from ..core.system import ComponentSpec, System, Value
+from ..core.system.system import ComponentSpec, System, Value
 from .full_scale import GIRDER_DEPTH, Coupling, Impact, full_scale_system, layer
 from .sand_models import Layer
 
@@ -47,7 +47,7 @@ def cells() -> int:
 @cache
 def _site() -> Instance:
     """The site as an initialised component, as its campaign has it."""
-    from ..rockfall.preparation import prepare
+    from ..analyses.rockfall.preparation import prepare
 
     return prepare(SITE).instance
 

@@ -9,11 +9,11 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
-from components.units import cm, kgf, mm
+from rockshed.components.common.units import cm, kgf, mm
 
-from ..core.schedule import Scheme
-from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System, Value
-from ..headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_LOAD_CELL, PEAK_TRANSMITTED, PENETRATION, Known, Reference, References
+from ..core.system.schedule import Scheme
+from ..core.system.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System, Value
+from ..metrics.headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_LOAD_CELL, PEAK_TRANSMITTED, PENETRATION, Known, Reference, References
 from .sand_models import DENSE, LOOSE, Layer, Soil
 
 _DATA = Path(__file__).parent / "data"

@@ -7,9 +7,9 @@ ground under the sampler is Smith's, with a resistance of 20 kN, which is assume
 from collections.abc import Mapping
 from typing import Literal
 
-from components.units import cm, cm2, mm
+from rockshed.components.common.units import cm, cm2, mm
 
-from ..core.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, System, Value
+from ..core.system.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, System, Value
 
 NAME = "spt"
 Coupling = Literal["waves", "plain"]

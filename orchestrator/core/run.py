@@ -7,21 +7,21 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from .clock import to_seconds
 from .errors import RunFailed
-from .exchange import State, make_driver
-from .fmu_slave import FmuFile
-from .initialisation import free, initialise, instantiate
-from .journal import Journal
-from .ledger import Accounts
-from .master import Interruption, Master, Progress
-from .plan import Plan, make_plan
-from .provenance import describe_run
-from .reading import Run, read_run
-from .recording import Recorder
-from .results import Figure, RunFolder
-from .slave import FATAL, Slave, Source
-from .system import System
+from .fmu.fmu_slave import FmuFile
+from .fmu.initialisation import free, initialise, instantiate
+from .fmu.slave import FATAL, Slave, Source
+from .loop.exchange import State, make_driver
+from .loop.journal import Journal
+from .loop.ledger import Accounts
+from .loop.master import Interruption, Master, Progress
+from .results.provenance import describe_run
+from .results.reading import Run, read_run
+from .results.recording import Recorder
+from .results.run_folder import Figure, RunFolder
+from .system.clock import to_seconds
+from .system.plan import Plan, make_plan
+from .system.system import System
 
 
 def sources_of(system: System) -> dict[str, Source]:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ..core.errors import InputRefused, Problem
-from ..core.names import nearest
+from ..core.system.names import nearest
 from .places import Places, line_and_column, places
 
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]

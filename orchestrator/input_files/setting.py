@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import Any
 
-from components.component import Instance, value_problems
+from rockshed.components.common.component import Instance, value_problems
 
 from ..core.errors import Problem
-from ..core.names import nearest
+from ..core.system.names import nearest
 from .places import Path as Key
 from .places import Places
 

@@ -6,12 +6,12 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from components.component import ComponentError
+from rockshed.components.common.component import ComponentError
 
-from ..comparison import known_of
 from ..core.errors import InputRefused, Problem
-from ..core.reading import Run
-from ..headlines import driven, named, roles
+from ..core.results.reading import Run
+from ..metrics.comparison import known_of
+from ..metrics.headlines import driven, named, roles
 
 Tell = Callable[[str], None]
 """Shows a line to the user."""

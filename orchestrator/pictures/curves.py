@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
+from rockshed.components.common.units import cm, kgf, kN, mm, ms
 
-from components.units import cm, kgf, kN, mm, ms
-
-from .. import headlines as h
-from ..core.reading import Run
-from ..loading import DEPTH, load_curve
+from ..core.results.reading import Run
+from ..metrics import headlines as h
+from ..metrics.load_curve import DEPTH, load_curve
 from .style import BEAM, GREY, INK, ROCK, TRANSMITTED, WIDTH, figure, over_time, reference_line, second_scale
 
 Known = Mapping[str, h.Known]

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from components.units import kN, mm, ms
+from rockshed.components.common.units import kN, mm, ms
 
-from .. import headlines as h
-from ..core.reading import Run
+from ..core.results.reading import Run
+from ..metrics import headlines as h
 from .style import BEAM, GREY, ROCK, SAND, TRANSMITTED, WIDTH, figure, legend, over_time
 
 _CURVES = (("head.contact_force", ROCK, "-", "force at the head"), ("head.zv", ROCK, "--", "Z v there"),

@@ -12,14 +12,13 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from rockshed.components.common.units import cm, kN, ms
+from rockshed.components.sand_cushion.reader import Box, Discs, SandState, read, sizes_of
+from rockshed.fmus.python.slave import component_state
 
-from components.sand_cushion.reader import Box, Discs, SandState, read, sizes_of
-from components.units import cm, kN, ms
-from fmus.python_fmu import component_state
-
-from .. import headlines as h
-from ..comparison import caption
-from ..core.reading import Run
+from ..core.results.reading import Run
+from ..metrics import headlines as h
+from ..metrics.comparison import caption
 from .curves import Known, force_axes
 from .style import BEAM, GREY, INK, captioned
 

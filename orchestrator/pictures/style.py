@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..comparison import caption
-from ..core.reading import Run
+from ..core.results.reading import Run
+from ..metrics.comparison import caption
 
 WIDTH = 7.2
 """Width (inch) of a picture of curves."""

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.catalogue import component
+from rockshed.components.catalogue import component
 
 BEAM = component("RBSMBeam")
 N, SPAN = 12, 1.2

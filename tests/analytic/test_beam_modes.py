@@ -5,9 +5,8 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
-
-from components.catalogue import component
-from components.component import ComponentError
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import ComponentError
 
 BEAM = component("RBSMBeam")
 SPAN = 1.2

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.catalogue import component
-from components.component import ComponentError
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import ComponentError
 
 BEAM = component("RBSMBeam")
 EI = 2.1e6 * 9.80665e4 * 187e-8

@@ -5,8 +5,7 @@ import math
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-
-from components.catalogue import component
+from rockshed.components.catalogue import component
 
 ROCK = component("FallingRock")
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rockshed.components.catalogue import component
+from rockshed.components.common.units import cm, cm2, kgf, mm
+from rockshed.components.impulsive_ground import settlement as mogami
 from scipy.integrate import quad, solve_ivp
-
-from components.catalogue import component
-from components.impulsive_ground import settlement as mogami
-from components.units import cm, cm2, kgf, mm
 
 GROUND = component("ImpulsiveGround")
 PLATES, WEIGHTS, DROPS = (100, 200, 300, 400), (4.65, 9.75, 14.70, 20.40), range(10, 70, 10)
@@ -179,7 +178,7 @@ def test_between_r0_and_r1_the_plate_creeps_to_where_the_resistance_holds_it():
 
 
 def test_phi_functions():
-    from components.impulsive_ground.plate import phi
+    from rockshed.components.impulsive_ground.plate import phi
 
     def integrated(n, z):
         return quad(lambda u: math.exp(-z * (1.0 - u)) * u ** (n - 1) / math.factorial(n - 1), 0.0, 1.0)[0]

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import ComponentError
 from scipy.integrate import solve_ivp
-
-from components.catalogue import component
-from components.component import ComponentError
 
 GROUND = component("ImpulsiveGround")
 Z = 23311.0

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.component import ComponentError
-from components.pile_rod.st_venant import StVenant
+from rockshed.components.common.component import ComponentError
+from rockshed.components.pile_rod.st_venant import StVenant
 
 from ..rods import HAMMER, ROD, march, named, reflecting, rod
 

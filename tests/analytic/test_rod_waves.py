@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.component import ComponentError
+from rockshed.components.common.component import ComponentError
 
 from ..rods import closed_form, march, reflecting, rod
 

@@ -5,8 +5,8 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rockshed.components.common.units import cm, kgf
 
-from components.units import cm, kgf
 from tests.sand_discs import RADIUS, cushion, discs_at, masses, rows, run, sand_stiffness, stirred
 
 COHESION = 0.05 * kgf / cm**2

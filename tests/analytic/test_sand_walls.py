@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rockshed.components.common.component import ComponentError
+from rockshed.components.sand_cushion.forces import touch
 
-from components.component import ComponentError
-from components.sand_cushion.forces import touch
 from tests.sand_discs import EMPTY_SPACE, RockOnSand, cushion
 
 LEFT, WIDTH, TOP, THICK, RADIUS = -5.0, 10.0, 0.5, 0.2, 0.05

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
+from rockshed.components.slope_rockfall.restitution import collide, contact_tilt, rebound, restitution
 from scipy.special import lambertw
 
-from components.slope_rockfall.restitution import collide, contact_tilt, rebound, restitution
 from tests.slope_rocks import G, along, mode, plane, slope
 
 PRINTED, NONE, CONSISTENT = 1, 2, 3

@@ -3,9 +3,9 @@
 import math
 
 import pytest
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import ComponentError
 
-from components.catalogue import component
-from components.component import ComponentError
 from tests.slope_rocks import G, mode, slope
 
 FALLING = component("FallingRock")

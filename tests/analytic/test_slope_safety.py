@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from rockshed.components.slope_rockfall.declarations import BODY, EXAMPLE
+from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSED_LEFT, PASSED_RIGHT, RESTED
 
-from components.slope_rockfall.declarations import BODY, EXAMPLE
-from components.slope_rockfall.trajectory import OUTCOME, PASSED_LEFT, PASSED_RIGHT, RESTED
 from tests.slope_rocks import SLOPE, deepest, run_trials, slope
 
 ROUGHEST = {"tilt__distribution": "uniform", "tilt_deviation": 0.5, "roughness": 0.6, "roughness_deviation": 0.3, "hardening": 1.0,

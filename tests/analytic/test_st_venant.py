@@ -5,9 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from rockshed.components.pile_rod.st_venant import StVenant
 from scipy.integrate import solve_ivp
-
-from components.pile_rod.st_venant import StVenant
 
 
 def by_steps(problem, reflections):

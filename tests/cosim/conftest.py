@@ -21,6 +21,6 @@ def foreign(tmp_path_factory):
 @pytest.fixture(scope="session")
 def rock_fmu(tmp_path_factory):
     """The FMU of the falling rock."""
-    from fmus.build import build
+    from rockshed.fmus.build import build
 
     return build("FallingRock", destination=tmp_path_factory.mktemp("rock"))

@@ -164,7 +164,7 @@ def spring(stiffness: float = 1.0, ends: int = 1) -> Mock:
 
 def wired(mocks: Mapping[str, Mock], connections: list[str], **settings: Any) -> tuple[Any, Mapping[str, Mock]]:
     """A system of mocks and its sources."""
-    from orchestrator.core.system import system_from
+    from rockshed.core.system.system import system_from
 
     specs = settings.pop("components", {})
     data = {"name": "test", "components": {name: {"fmu": "mock", **specs.get(name, {})} for name in mocks},

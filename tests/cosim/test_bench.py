@@ -1,10 +1,9 @@
 """The benchmark of a macro step: all tools really exchange the values, and one that is missing or fails says so."""
 
 import pytest
-
-from fmus.build import Runtime
-from orchestrator.bench import exchange, table
-from orchestrator.bench.exchange import BARE, OURS, PEERS, Pair
+from rockshed.bench import exchange, table
+from rockshed.bench.exchange import BARE, OURS, PEERS, Pair
+from rockshed.fmus.build import Runtime
 
 
 def test_every_tool_there_is_connects_the_pair():

@@ -3,12 +3,11 @@
 import json
 
 import pytest
+from rockshed.commands.app import app
+from rockshed.components.common.units import cm, kgf
+from rockshed.core.results.reading import read_run
+from rockshed.metrics.load_curve import load_curve
 from typer.testing import CliRunner
-
-from components.units import cm, kgf
-from orchestrator.cli import app
-from orchestrator.core.reading import read_run
-from orchestrator.loading import load_curve
 
 
 def rockshed(*arguments):

@@ -10,12 +10,11 @@ import time
 from pathlib import Path
 
 import pytest
+from rockshed.commands.app import app
+from rockshed.commands.screen import spoken
+from rockshed.core.results.reading import read_run
+from rockshed.core.system.system import load_system
 from typer.testing import CliRunner
-
-from orchestrator.cli import app
-from orchestrator.core.reading import read_run
-from orchestrator.core.system import load_system
-from orchestrator.screen import spoken
 
 PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
 SHORT = ["--stop-time", "0.001", "--no-figures"]
@@ -58,7 +57,7 @@ def finished(fmu_folder, tmp_path_factory):
 
 
 def test_help_is_there_without_the_heavy_libraries():
-    script = ("import sys; from orchestrator.cli import app; from typer.testing import CliRunner\n"
+    script = ("import sys; from rockshed.commands.app import app; from typer.testing import CliRunner\n"
               "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
               "print({'numba', 'numpy', 'fmpy', 'matplotlib', 'pydantic'} & set(sys.modules))")
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
@@ -90,7 +89,7 @@ def test_list_names_every_case_and_component(rockshed):
 
 def test_a_terminal_that_knows_few_letters_shows_what_it_can(finished):
     for command, said in ((["list"], "kgf/cm?"), (["plot", str(finished[0]), "--output-dir", str(finished[0].parent / "ü")], "")):
-        done = subprocess.run([sys.executable, "-m", "orchestrator.cli", *command], capture_output=True,
+        done = subprocess.run([sys.executable, "-m", "rockshed.commands.app", *command], capture_output=True,
                               cwd=Path(__file__).parents[2], env={**os.environ, "PYTHONIOENCODING": "ascii"})
         assert done.returncode == 0, done.stderr
         assert said in done.stdout.decode("ascii")
@@ -306,9 +305,9 @@ def test_times_that_a_refusal_proposes_together_are_accepted(rockshed):
 
 
 def test_the_interval_that_a_refusal_proposes_is_accepted(rockshed):
-    from orchestrator.core.plan import make_plan
-    from orchestrator.core.run import sources_of
-    from orchestrator.job import Request, prepare
+    from rockshed.core.run import sources_of
+    from rockshed.core.system.plan import make_plan
+    from rockshed.runs.job import Request, prepare
 
     system = prepare(Request("lab-impact", options={"stop_time": 1e6, "output_interval": 5.0, "state_interval": 100.0})).system
     assert make_plan(system, sources_of(system)).timing.exchanges == 10**11
@@ -325,7 +324,7 @@ def test_the_encoding_of_a_system_file(rockshed, tmp_path, encoding, said):
 
 
 def test_a_long_run_tells_how_long_it_will_take(capsys):
-    from orchestrator.screen import Estimate, Screen
+    from rockshed.commands.screen import Estimate, Screen
 
     now = [0.0]
     estimate = Estimate(lambda: now[0])
@@ -445,7 +444,7 @@ def impatient(monkeypatch):
     def stop(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("orchestrator.pictures.draw_all", stop)
+    monkeypatch.setattr("rockshed.pictures.draw_all", stop)
 
 
 def test_ctrl_c_while_a_failed_run_is_drawn_does_not_hide_why_it_failed(rockshed, impatient):
@@ -474,8 +473,7 @@ def test_pictures_can_be_drawn_again(rockshed, finished, tmp_path):
 def test_pictures_of_the_sand_have_a_scale_and_one_unit_of_length(finished):
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation, Text
-
-    from orchestrator.pictures import sand
+    from rockshed.pictures import sand
 
     run, made = read_run(finished[0]), Figure()
     panels = list(made.subplots(1, 2))
@@ -544,7 +542,7 @@ def long_run(tmp_path):
 
     def start(folder):
         command = ["run", "lab-impact", "--stop-time", "9", "--output-dir", str(folder), "--no-figures"]
-        process = subprocess.Popen([sys.executable, "-m", "orchestrator.cli", *command], stdout=subprocess.PIPE,
+        process = subprocess.Popen([sys.executable, "-m", "rockshed.commands.app", *command], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
         processes.append(process)
         stream, until = folder.with_name(f"{folder.name}.running") / "timeseries.arrows", time.monotonic() + 120

@@ -1,6 +1,5 @@
 import pytest
-
-from orchestrator.core.clock import to_seconds, to_ticks
+from rockshed.core.system.clock import to_seconds, to_ticks
 
 
 @pytest.mark.parametrize(("seconds", "ticks"), [

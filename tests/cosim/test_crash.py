@@ -7,8 +7,7 @@ import sys
 import zipfile
 
 import pytest
-
-from orchestrator.core.reading import read_run
+from rockshed.core.results.reading import read_run
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux" or not shutil.which("cc"), reason="needs Linux and a C compiler")
 
@@ -59,7 +58,7 @@ def run(folder, **parameters):
         step = 0.0005
         parameters = {{ {", ".join(f"{name} = {value}" for name, value in parameters.items())} }}
     """)
-    return subprocess.run([sys.executable, "-m", "orchestrator.cli", "run", "system.toml", "--output-dir", "out"], cwd=folder,
+    return subprocess.run([sys.executable, "-m", "rockshed.commands.app", "run", "system.toml", "--output-dir", "out"], cwd=folder,
                           capture_output=True, text=True, timeout=60, check=False)
 
 

@@ -7,17 +7,17 @@ import time
 
 import numpy as np
 import pytest
+from rockshed.core.results.reading import read_run
+from rockshed.core.results.run_folder import running_folder
+from rockshed.core.run import simulate
 
-from orchestrator.core.reading import read_run
-from orchestrator.core.results import running_folder
-from orchestrator.core.run import simulate
 from tests.cosim.mocks import mass, wired
 
 SCRIPT = """
 import sys
 from pathlib import Path
-from orchestrator.core.run import simulate
-from orchestrator.core.system import system_from
+from rockshed.core.run import simulate
+from rockshed.core.system.system import system_from
 
 fmu, folder, plain = sys.argv[1:]
 system = system_from({"name": "slow", "components": {"a": {"fmu": fmu, "parameters": {"pause": 0.001}, "record_states": True}},

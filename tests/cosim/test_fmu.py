@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rockshed.core.errors import InputRefused, RunFailed
+from rockshed.core.fmu.fmu_slave import FmuFile, read_description
+from rockshed.core.fmu.slave import BOOLEAN, DISCARD, ERROR, INTEGER, OK
+from rockshed.core.results.reading import read_run
+from rockshed.core.run import simulate
+from rockshed.core.system.system import system_from
 
-from orchestrator.core.errors import InputRefused, RunFailed
-from orchestrator.core.fmu_slave import FmuFile, read_description
-from orchestrator.core.reading import read_run
-from orchestrator.core.run import simulate
-from orchestrator.core.slave import BOOLEAN, DISCARD, ERROR, INTEGER, OK
-from orchestrator.core.system import system_from
 from tests.cosim.mocks import Mock, inp, mass, out
 
 RING = ["a.force -> b.speed", "b.force -> a.speed", "a.next_level -> b.level", "b.next_level -> a.level",
@@ -185,7 +185,7 @@ def test_unpacked_files_are_removed(foreign, tmp_path, monkeypatch):
 STEP = """
 import sys
 from pathlib import Path
-from orchestrator.core.fmu_slave import FmuFile
+from rockshed.core.fmu.fmu_slave import FmuFile
 slave = FmuFile(Path(sys.argv[1])).instantiate("one")
 print(max(slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation(), slave.step(0.0, 0.1)))
 slave.free()

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-
-from components.pile_rod.st_venant import StVenant
-from fmus.build import build_if_needed
-from orchestrator.core.errors import InputRefused
-from orchestrator.core.run import simulate
-from orchestrator.core.system import system_from
+from rockshed.components.pile_rod.st_venant import StVenant
+from rockshed.core.errors import InputRefused
+from rockshed.core.run import simulate
+from rockshed.core.system.system import system_from
+from rockshed.fmus.build import build_if_needed
 
 SEGMENTS, LENGTH = 256, 10.24
 """Travel time 2 ms, of a segment 7.8125 us: a whole number of ticks."""

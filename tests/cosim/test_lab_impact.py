@@ -2,18 +2,17 @@
 
 import numpy as np
 import pytest
-
-from components.sand_cushion import COMPONENT as SAND
-from components.sand_cushion.declarations import ROW
-from fmus.build import build_if_needed
-from orchestrator import headlines
-from orchestrator.bench.monolithic import Monolith, from_system
-from orchestrator.cases.sonoda1993 import lab_system
-from orchestrator.cases.sonoda1993 import tests as laboratory_tests
-from orchestrator.core.errors import InputRefused, RunFailed
-from orchestrator.core.reading import Run, read_run
-from orchestrator.core.run import simulate
-from orchestrator.core.system import System, with_values
+from rockshed.bench.monolithic import Monolith, from_system
+from rockshed.cases.sonoda1993 import lab_system
+from rockshed.cases.sonoda1993 import tests as laboratory_tests
+from rockshed.components.sand_cushion import COMPONENT as SAND
+from rockshed.components.sand_cushion.declarations import ROW
+from rockshed.core.errors import InputRefused, RunFailed
+from rockshed.core.results.reading import Run, read_run
+from rockshed.core.run import simulate
+from rockshed.core.system.system import System, with_values
+from rockshed.fmus.build import build_if_needed
+from rockshed.metrics import headlines
 
 END = 0.02
 IMPACT_ENERGY = 0.5 * 4.0 * 8.0**2

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from rockshed.core.run import simulate
 
-from orchestrator.core.run import simulate
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
 BOND = {"giver": "spring", "force": ["end1.force"], "taker": "mass", "position": ["position"]}

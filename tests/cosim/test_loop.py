@@ -5,18 +5,18 @@ import math
 
 import numpy as np
 import pytest
+from rockshed.bench.exchange import relay
+from rockshed.core.fmu.initialisation import free, initialise, instantiate
+from rockshed.core.fmu.slave import BOOLEAN, INTEGER, REAL, Addresses
+from rockshed.core.loop import compiled as loop
+from rockshed.core.loop.exchange import CompiledDriver, PlainDriver, State
+from rockshed.core.loop.tables import NOT_FINITE
+from rockshed.core.run import sources_of
+from rockshed.core.system.plan import make_plan
+from rockshed.core.system.system import system_from
+from rockshed.fmus.build import BuildError, Runtime, build_component
+from rockshed.fmus.native.fmu import compiler, own_platform
 
-from fmus.build import BuildError, Runtime, build_component
-from fmus.native_fmu import compiler, own_platform
-from orchestrator.bench.exchange import relay
-from orchestrator.core import loop
-from orchestrator.core.exchange import CompiledDriver, PlainDriver, State
-from orchestrator.core.initialisation import free, initialise, instantiate
-from orchestrator.core.plan import make_plan
-from orchestrator.core.run import sources_of
-from orchestrator.core.slave import BOOLEAN, INTEGER, REAL, Addresses
-from orchestrator.core.system import system_from
-from orchestrator.core.tables import NOT_FINITE
 from tests.cosim.mocks import Mock, MockSlave, inp, mass, out, spring, wired
 
 MOVE = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint), ctypes.c_size_t, ctypes.c_void_p)

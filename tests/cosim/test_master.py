@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from rockshed.core.errors import InputRefused, RunFailed
+from rockshed.core.results.reading import read_run
+from rockshed.core.run import simulate
 
-from orchestrator.core.errors import InputRefused, RunFailed
-from orchestrator.core.reading import read_run
-from orchestrator.core.run import simulate
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
 PAIR = ["spring.end1.force -> a.force", "spring.end2.force -> b.force",

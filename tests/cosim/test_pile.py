@@ -7,16 +7,15 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
+import rockshed
 from PIL import Image
+from rockshed.analyses.pile.blows import bearing_graph, drive
+from rockshed.analyses.pile.preparation import prepare
+from rockshed.commands.app import app
+from rockshed.core.errors import InputRefused
 from typer.testing import CliRunner
 
-import orchestrator
-from orchestrator.cli import app
-from orchestrator.core.errors import InputRefused
-from orchestrator.pile.blows import bearing_graph, drive
-from orchestrator.pile.preparation import prepare
-
-EXAMPLES = Path(orchestrator.__file__).parent / "examples"
+EXAMPLES = Path(rockshed.__file__).parent / "examples"
 SPT = (EXAMPLES / "spt.toml").read_text(encoding="utf-8")
 
 

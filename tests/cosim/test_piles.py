@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from rockshed.core.errors import InputRefused
+from rockshed.core.run import simulate
+from rockshed.metrics.headlines import impact_energy, system_residual
+from rockshed.runs.job import Request, prepare
 
-from orchestrator.core.errors import InputRefused
-from orchestrator.core.run import simulate
-from orchestrator.headlines import impact_energy, system_residual
-from orchestrator.job import Request, prepare
 from tests.cosim.mocks import mass, spring, wired
 
 IMPEDANCE = 5.8e-4 * 7850.0 * 5120.0

@@ -3,13 +3,12 @@
 import json
 
 import pytest
+from rockshed.commands.app import app
+from rockshed.papers.running import run_all
+from rockshed.papers.sonoda1993.fig19 import COARSE, _single
+from rockshed.papers.study import COMPLETE, FAILED, Task
+from rockshed.runs.job import Request
 from typer.testing import CliRunner
-
-from orchestrator.cli import app
-from orchestrator.job import Request
-from orchestrator.studies.running import run_all
-from orchestrator.studies.sonoda1993.fig19 import COARSE, _single
-from orchestrator.studies.study import COMPLETE, FAILED, Task
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,11 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from fmpy.util import read_csv
+from rockshed.core.errors import InputRefused
+from rockshed.core.results.reading import add_figures, read_run
+from rockshed.core.results.run_folder import Column, Figure, RunFolder, running_folder
+from rockshed.core.run import simulate
 
-from orchestrator.core.errors import InputRefused
-from orchestrator.core.reading import add_figures, read_run
-from orchestrator.core.results import Column, Figure, RunFolder, running_folder
-from orchestrator.core.run import simulate
 from tests.cosim.mocks import Mock, mass, out, spring, wired
 
 LINKS = ["spring.end1.force -> mass.force", "mass.position -> spring.end1.position"]
@@ -164,7 +164,7 @@ def test_two_runs_into_one_folder(tmp_path):
 
 def test_two_processes_into_one_folder(tmp_path):
     first = writing(tmp_path / "run")
-    script = "import sys, pathlib, orchestrator.core.results as r; r.RunFolder(pathlib.Path(sys.argv[1])).__enter__()"
+    script = "import sys, pathlib, rockshed.core.results.run_folder as r; r.RunFolder(pathlib.Path(sys.argv[1])).__enter__()"
     second = subprocess.run([sys.executable, "-c", script, str(tmp_path / "run")], capture_output=True, text=True, check=False)
     assert "another run is writing there" in second.stderr
     first.__exit__(None, None, None)

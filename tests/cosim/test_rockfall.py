@@ -11,18 +11,17 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
+import rockshed
 from PIL import Image
+from rockshed.analyses.rockfall import campaign
+from rockshed.analyses.rockfall.preparation import prepare
+from rockshed.analyses.rockfall.replay import replay
+from rockshed.analyses.rockfall.results import passings
+from rockshed.commands.app import app
+from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE
 from typer.testing import CliRunner
 
-import orchestrator
-from components.slope_rockfall.trajectory import OUTCOME, PASSAGE
-from orchestrator.cli import app
-from orchestrator.rockfall import campaign
-from orchestrator.rockfall.preparation import prepare
-from orchestrator.rockfall.replay import replay
-from orchestrator.rockfall.results import passings
-
-EXAMPLE = Path(orchestrator.__file__).parent / "examples" / "slope.toml"
+EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 
 
 @pytest.fixture
@@ -159,7 +158,7 @@ def test_plot_says_that_a_campaign_is_no_run(rockshed, finished):
 
 
 def test_ctrl_c_leaves_nothing(tmp_path):
-    command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "1000000", "--workers", "1",
+    command = [sys.executable, "-m", "rockshed.commands.app", "rockfall", str(EXAMPLE), "--trials", "1000000", "--workers", "1",
                "--output-dir", str(tmp_path / "out")]
     run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # tests in the background ignore it
@@ -173,7 +172,7 @@ def test_ctrl_c_leaves_nothing(tmp_path):
 def test_without_further_packages_there_are_gif_files(rockshed, monkeypatch):
     for name in ("imageio", "imageio_ffmpeg"):
         monkeypatch.setitem(sys.modules, name, None)
-    from orchestrator.pictures import animation
+    from rockshed.analyses.rockfall import animation
 
     notes = []
     assert animation.kind_of(None, notes.append) == "gif"

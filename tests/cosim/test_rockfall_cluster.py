@@ -13,14 +13,13 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
+import rockshed
+from rockshed.analyses.rockfall import campaign, cluster
+from rockshed.analyses.rockfall.preparation import prepare
+from rockshed.commands.app import app
 from typer.testing import CliRunner
 
-import orchestrator
-from orchestrator.cli import app
-from orchestrator.rockfall import campaign, cluster
-from orchestrator.rockfall.preparation import prepare
-
-EXAMPLE = Path(orchestrator.__file__).parent / "examples" / "slope.toml"
+EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +170,7 @@ def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a terminal's Ctrl-C is a signal to a group of processes")
 def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_nothing(tmp_path):
-    command = [sys.executable, "-m", "orchestrator.cli", "rockfall", str(EXAMPLE), "--trials", "400000", "--scheduler", "local",
+    command = [sys.executable, "-m", "rockshed.commands.app", "rockfall", str(EXAMPLE), "--trials", "400000", "--scheduler", "local",
                "--workers", "1", "--output-dir", str(tmp_path / "out")]
     run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True,
                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))

@@ -4,13 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from rockshed.commands.app import app
+from rockshed.components.catalogue import NAMES as CATALOGUE
+from rockshed.core.results.reading import read_run
+from rockshed.fmus.build import BuildError
+from rockshed.fmus.native.fmu import compiler, own_platform
 from typer.testing import CliRunner
-
-from components.catalogue import NAMES as CATALOGUE
-from fmus.build import BuildError
-from fmus.native_fmu import compiler, own_platform
-from orchestrator.cli import app
-from orchestrator.core.reading import read_run
 
 NAMES = [f"{name}.fmu" for name in CATALOGUE]
 SHORT = ["--stop-time", "0.001", "--no-figures"]

@@ -5,8 +5,7 @@ counts the operations of the exchange.
 """
 
 import pytest
-
-from orchestrator.core.schedule import Action, Operation, fits, nearest_steps, plan
+from rockshed.core.system.schedule import Action, Operation, fits, nearest_steps, plan
 
 SET, STEP, GET = Action.SET, Action.STEP, Action.GET
 

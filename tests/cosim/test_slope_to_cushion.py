@@ -4,17 +4,16 @@ import os
 
 import numpy as np
 import pytest
-
-from components.slope_rockfall.trajectory import PASSAGE
-from orchestrator import headlines as h
-from orchestrator.cases import slope_to_cushion as case
-from orchestrator.comparison import table, warnings
-from orchestrator.core.run import simulate
-from orchestrator.job import Request, prepare
-from orchestrator.pictures import draw_all
-from orchestrator.rockfall import campaign
-from orchestrator.rockfall.preparation import prepare as prepare_site
-from orchestrator.rockfall.statistics import percentile
+from rockshed.analyses.rockfall import campaign
+from rockshed.analyses.rockfall.preparation import prepare as prepare_site
+from rockshed.analyses.rockfall.statistics import percentile
+from rockshed.cases import slope_to_cushion as case
+from rockshed.components.slope_rockfall.trajectory import PASSAGE
+from rockshed.core.run import simulate
+from rockshed.metrics import headlines as h
+from rockshed.metrics.comparison import table, warnings
+from rockshed.pictures import draw_all
+from rockshed.runs.job import Request, prepare
 
 
 @pytest.fixture(scope="module")

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rockshed
+from rockshed.core.run import simulate
+from rockshed.core.system.system import system_from
+from rockshed.fmus.build import build_if_needed
 
-import orchestrator
-from fmus.build import build_if_needed
-from orchestrator.core.run import simulate
-from orchestrator.core.system import system_from
-
-EXAMPLE = Path(orchestrator.__file__).parent / "examples" / "rigid_floor.toml"
+EXAMPLE = Path(rockshed.__file__).parent / "examples" / "rigid_floor.toml"
 SLOPE = {"receiver.present": True, "receiver.left": -0.15, "receiver.right": 0.15, "receiver.bottom": -0.5, "receiver.top": 0.16,
          "position0.x": 0.0, "velocity0.x": 0.0,
          "profile.x": -2.0, "profile.y": -0.6, "end.x[1]": 2.0, "end.y[1]": -0.6}

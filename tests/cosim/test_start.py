@@ -5,13 +5,12 @@ import subprocess
 import sys
 
 import pytest
-
-from fmus.build import BuildError
-from fmus.native_fmu import compiler, own_platform
+from rockshed.fmus.build import BuildError
+from rockshed.fmus.native.fmu import compiler, own_platform
 
 RUN = """
 import sys
-from orchestrator.cli import app
+from rockshed.commands.app import app
 sys.argv = ["rockshed", "run", "lab-impact", "--stop-time", "0.001", "--no-figures",
             "--output-dir", sys.argv[1]]
 try:
@@ -47,7 +46,7 @@ def test_a_run_of_native_fmus_needs_no_numba(tmp_path):
 def test_declarations_are_read_without_numba():
     done = python("""
 import sys
-from components.catalogue import NAMES, component
+from rockshed.components.catalogue import NAMES, component
 made = [component(name) for name in NAMES]
 assert len(made[0].instance().w) > 10 and made[1].documentation()
 print("numba" in sys.modules, "llvmlite.binding" in sys.modules)

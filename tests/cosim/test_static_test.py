@@ -3,12 +3,11 @@
 import json
 
 import pytest
+from rockshed.commands.app import app
+from rockshed.components.common.units import cm, kgf
+from rockshed.core.results.reading import read_run
+from rockshed.metrics import headlines as h
 from typer.testing import CliRunner
-
-from components.units import cm, kgf
-from orchestrator import headlines as h
-from orchestrator.cli import app
-from orchestrator.core.reading import read_run
 
 FAST = ["--set", "sand.internal_step=1e-4"]
 

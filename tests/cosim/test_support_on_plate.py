@@ -1,11 +1,10 @@
 """A beam whose supports stand on Mogami's plates, without rods: force in, settlement out."""
 
 import pytest
-
-from components.catalogue import component
-from fmus.in_process import InProcess
-from orchestrator.core.run import simulate
-from orchestrator.core.system import system_from
+from rockshed.components.catalogue import component
+from rockshed.core.run import simulate
+from rockshed.core.system.system import system_from
+from rockshed.fmus.in_process import InProcess
 
 SIDES = ("left", "right")
 

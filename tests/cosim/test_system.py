@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-
-from orchestrator.core.errors import InputRefused
-from orchestrator.core.system import Connection, load_system, system_from, with_values
+from rockshed.core.errors import InputRefused
+from rockshed.core.system.system import Connection, load_system, system_from, with_values
 
 TEXT = """
 name = "pair"
@@ -117,8 +116,8 @@ def test_paths_stay_absolute(tmp_path):
 
 
 def test_the_example_in_the_documentation_is_a_system(tmp_path):
-    import orchestrator
+    import rockshed
 
-    text = (Path(orchestrator.__file__).parent / "README.md").read_text(encoding="utf-8")
+    text = (Path(rockshed.__file__).parent / "README.md").read_text(encoding="utf-8")
     (tmp_path / "example.toml").write_text(text.split("```toml\n")[1].split("```")[0])
     assert load_system(tmp_path / "example.toml").bonds["rock"].work == "energy.work.rock"

@@ -4,11 +4,11 @@ import math
 import zipfile
 
 import pytest
+from rockshed.core.errors import InputRefused
+from rockshed.core.run import sources_of
+from rockshed.core.system.plan import make_plan
+from rockshed.core.system.system import system_from
 
-from orchestrator.core.errors import InputRefused
-from orchestrator.core.plan import make_plan
-from orchestrator.core.run import sources_of
-from orchestrator.core.system import system_from
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
 SHAPES = """<TypeDefinitions><SimpleType name='Shape'><Enumeration><Item name='sphere' value='1'/><Item name='disc' value='2'/>

@@ -7,11 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-
-import components
-from components.catalogue import NAMES
-from fmus.build import BuildError, Fmi, Runtime, build, build_component
-from fmus.native_fmu import compiler, own_platform
+from rockshed import components
+from rockshed.components.catalogue import NAMES
+from rockshed.fmus.build import BuildError, Fmi, Runtime, build, build_component
+from rockshed.fmus.native.fmu import compiler, own_platform
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -21,7 +20,7 @@ ROOT = HERE.parent.parent
 def probe():
     """The component that has one of everything, imported as if it lay among the others."""
     components.__path__.append(str(HERE / "extra"))
-    yield importlib.import_module("components.probe").COMPONENT
+    yield importlib.import_module("rockshed.components.probe").COMPONENT
     components.__path__.remove(str(HERE / "extra"))
 
 

@@ -9,14 +9,13 @@ import sys
 import zipfile
 
 import pytest
-
-from components.catalogue import NAMES, component
-from components.component import ComponentError
-from fmus.build import BuildError, build, build_component, build_if_needed, file_name, fmu_files
+from rockshed.components.catalogue import NAMES, component
+from rockshed.components.common.component import ComponentError
+from rockshed.fmus.build import BuildError, build, build_component, build_if_needed, file_name, fmu_files
 
 from .conftest import ROOT
 
-BUILD = "import sys, hashlib; from fmus.build import build; print(hashlib.sha256(build(sys.argv[1], destination=sys.argv[2])" \
+BUILD = "import sys, hashlib; from rockshed.fmus.build import build; print(hashlib.sha256(build(sys.argv[1], destination=sys.argv[2])" \
         ".read_bytes()).hexdigest())"
 
 
@@ -115,7 +114,7 @@ def test_nothing_half_written_is_left_when_a_build_is_interrupted(monkeypatch, t
 
     file = build("FallingRock", destination=tmp_path)
     before = file.read_bytes()
-    monkeypatch.setattr("fmus.parts.os.replace", interrupt)
+    monkeypatch.setattr("rockshed.fmus.parts.os.replace", interrupt)
     with pytest.raises(KeyboardInterrupt):
         build("FallingRock", destination=tmp_path)
     assert file.read_bytes() == before

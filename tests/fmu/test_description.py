@@ -5,10 +5,9 @@ import zipfile
 import pytest
 from fmpy.model_description import read_model_description
 from fmpy.validation import validate_fmu
-
-from components.catalogue import NAMES, component
-from components.ports import Kind
-from fmus.build import build_component
+from rockshed.components.catalogue import NAMES, component
+from rockshed.components.common.ports import Kind
+from rockshed.fmus.build import build_component
 
 
 @pytest.mark.parametrize("name", [*NAMES, "Probe"])

@@ -11,9 +11,8 @@ import pytest
 from fmpy import simulate_fmu
 from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution
 from fmpy.validation import validate_fmu
-
-from components.catalogue import NAMES
-from fmus.native_fmu import compiler
+from rockshed.components.catalogue import NAMES
+from rockshed.fmus.native.fmu import compiler
 
 from .conftest import HERE
 from .host import DISCARD, ERROR, OK, WARNING, Host

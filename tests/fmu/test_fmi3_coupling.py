@@ -4,8 +4,7 @@ import zipfile
 
 import pytest
 from lxml import etree
-
-from fmus.description3 import TERMINALS
+from rockshed.fmus.description.fmi3 import TERMINALS
 
 from .host import Host
 from .host3 import Host3

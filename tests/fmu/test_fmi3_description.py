@@ -8,12 +8,11 @@ import fmpy
 import pytest
 from fmpy.model_description import read_model_description
 from lxml import etree
-
-from components.catalogue import NAMES, component
-from components.component import Component
-from components.ports import BOND_MEMBERS, Bond, Causality, Kind, Layout, inp, out
-from fmus.build import Fmi, Runtime, build_component
-from fmus.description3 import TERMINALS, model_description, terminals_and_icon
+from rockshed.components.catalogue import NAMES, component
+from rockshed.components.common.component import Component
+from rockshed.components.common.ports import BOND_MEMBERS, Bond, Causality, Kind, Layout, inp, out
+from rockshed.fmus.build import Fmi, Runtime, build_component
+from rockshed.fmus.description.fmi3 import TERMINALS, model_description, terminals_and_icon
 
 ALL = [*NAMES, "Probe"]
 TYPES = {Kind.REAL: "Float64", Kind.INTEGER: "Int32", Kind.BOOLEAN: "Boolean", Kind.ENUMERATION: "Enumeration"}

@@ -4,10 +4,9 @@ import timeit
 
 import numpy as np
 import pytest
-
-from components.catalogue import NAMES, component
-from fmus.in_process import InProcess, slave_class
-from orchestrator.core.fmu_slave import FmuFile, read_description
+from rockshed.components.catalogue import NAMES, component
+from rockshed.core.fmu.fmu_slave import FmuFile, read_description
+from rockshed.fmus.in_process import InProcess, slave_class
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -58,8 +57,8 @@ def test_what_is_wrong_is_the_status_of_the_call_itself(tank):
 
 
 DEBUGGING = """
-from components.catalogue import component
-from fmus.in_process import InProcess, slave_class
+from rockshed.components.catalogue import component
+from rockshed.fmus.in_process import InProcess, slave_class
 slave = InProcess(component("FallingRock")).instantiate("rock")
 statuses = slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation(), slave.step(0.0, 1e-5)
 assert statuses == (0, 0, 0, 0)

@@ -7,10 +7,9 @@ import shutil
 import zipfile
 
 import pytest
-
-from components.catalogue import component
-from fmus.build import build_component
-from fmus.isolation import require_libraries
+from rockshed.components.catalogue import component
+from rockshed.fmus.build import build_component
+from rockshed.fmus.python.isolation import require_libraries
 
 LOADED_BY_NUMBA = """
 import sys

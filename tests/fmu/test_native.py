@@ -10,14 +10,13 @@ import pytest
 from fmpy import read_model_description
 from fmpy.fmi2 import fmi2ModelExchange
 from fmpy.validation import validate_fmu
-
-from components.catalogue import NAMES
-from components.sand_cushion.declarations import PART
-from fmus.build import Runtime, build, build_if_needed
-from fmus.native_fmu import compiler
-from orchestrator.cases.sonoda1993 import lab_system
-from orchestrator.cases.sonoda1993 import tests as laboratory_tests
-from orchestrator.core.run import simulate
+from rockshed.cases.sonoda1993 import lab_system
+from rockshed.cases.sonoda1993 import tests as laboratory_tests
+from rockshed.components.catalogue import NAMES
+from rockshed.components.sand_cushion.declarations import PART
+from rockshed.core.run import simulate
+from rockshed.fmus.build import Runtime, build, build_if_needed
+from rockshed.fmus.native.fmu import compiler
 
 from .conftest import HERE
 from .host import ERROR, OK, Host

@@ -13,11 +13,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
-
-import fmus.native_fmu as native_fmu
-from components.catalogue import NAMES, component
-from fmus.build import BuildError, Fmi, Runtime, build_component, build_if_needed, file_name, native_is_fresh
-from fmus.native_fmu import CPU, compiler, model_header, native_files
+from rockshed.components.catalogue import NAMES, component
+from rockshed.fmus.build import BuildError, Fmi, Runtime, build_component, build_if_needed, file_name, native_is_fresh
+from rockshed.fmus.native import fmu as native_fmu
+from rockshed.fmus.native.fmu import CPU, compiler, model_header, native_files
 
 from .host import Host
 
@@ -185,7 +184,7 @@ def test_a_processor_without_the_instructions_is_told_so(native_fmus, monkeypatc
 # ------------------------------------------------------------------ files
 
 
-BUILD = ("import hashlib, sys; from fmus.build import Runtime, build\n"
+BUILD = ("import hashlib, sys; from rockshed.fmus.build import Runtime, build\n"
          "print(hashlib.sha256(build(sys.argv[1], destination=sys.argv[2], runtime=Runtime.NATIVE).read_bytes()).hexdigest())")
 
 

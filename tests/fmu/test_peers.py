@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import read_model_description
-
-import fmus as package
-from components.falling_rock import COMPONENT as ROCK
-from components.sand_cushion import COMPONENT as SAND
-from orchestrator.cases.sonoda1993 import lab_system
-from orchestrator.cases.sonoda1993 import tests as laboratory_tests
-from orchestrator.core.run import simulate
+from rockshed import fmus as package
+from rockshed.cases.sonoda1993 import lab_system
+from rockshed.cases.sonoda1993 import tests as laboratory_tests
+from rockshed.components.falling_rock import COMPONENT as ROCK
+from rockshed.components.sand_cushion import COMPONENT as SAND
+from rockshed.core.run import simulate
 
 README = (Path(package.__file__).parent / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)

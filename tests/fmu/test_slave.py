@@ -4,9 +4,8 @@ import math
 import re
 
 import pytest
-
-from components.catalogue import NAMES
-from fmus.parts import Runtime
+from rockshed.components.catalogue import NAMES
+from rockshed.fmus.parts import Runtime
 
 from .host import DISCARD, ERROR, OK, WARNING, Host
 

@@ -1,9 +1,8 @@
 """The FMU of the rock on its slope: the same trajectory whatever the steps, and states that lead back to any moment of it."""
 
 import pytest
-
-from components.catalogue import component
-from fmus.build import Runtime
+from rockshed.components.catalogue import component
+from rockshed.fmus.build import Runtime
 
 from .host import DISCARD, ERROR, OK, Host
 

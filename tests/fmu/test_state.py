@@ -4,11 +4,10 @@ import pickle
 
 import numpy as np
 import pytest
-
-from components.catalogue import NAMES
-from components.component import ComponentError
-from fmus.parts import Runtime
-from fmus.python_fmu import component_state
+from rockshed.components.catalogue import NAMES
+from rockshed.components.common.component import ComponentError
+from rockshed.fmus.parts import Runtime
+from rockshed.fmus.python.slave import component_state
 
 from .host import DISCARD, Host
 

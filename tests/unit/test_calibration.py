@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
+from rockshed.analyses.calibration import run as calibration
+from rockshed.analyses.calibration.measurement import Measurement, of_stiffness
+from rockshed.analyses.calibration.run import Calibration, Push, Unreachable, by_misfit, calibrate, fit
+from rockshed.commands.app import app
+from rockshed.components.common.units import cm, kgf
+from rockshed.core.errors import InputRefused, RunFailed
+from rockshed.metrics.load_curve import LoadCurve
+from rockshed.papers.study import COMPLETE, FAILED, INTERRUPTED, Outcome
 from typer.testing import CliRunner
-
-from components.units import cm, kgf
-from orchestrator import calibration
-from orchestrator.calibration import Calibration, Push, Unreachable, by_misfit, calibrate, fit
-from orchestrator.cli import app
-from orchestrator.core.errors import InputRefused, RunFailed
-from orchestrator.loading import LoadCurve
-from orchestrator.measurement import Measurement, of_stiffness
-from orchestrator.studies.study import COMPLETE, FAILED, INTERRUPTED, Outcome
 
 E_BAR = kgf / cm**2
 PLACES = np.linspace(0.0, 0.05, 501)

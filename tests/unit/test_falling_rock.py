@@ -3,9 +3,8 @@
 import math
 
 import pytest
-
-from components.catalogue import component
-from components.component import ComponentError
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import ComponentError
 
 ROCK = component("FallingRock")
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rockshed.metrics.headlines import low_pass
 from scipy.signal import butter, sosfiltfilt
-
-from orchestrator.headlines import low_pass
 
 RATE = 1e4
 TIME = np.arange(400) / RATE

@@ -4,15 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from orchestrator import comparison
-from orchestrator import headlines as h
-from orchestrator.cases import sonoda1993
-from orchestrator.cases.registry import case, cases, changes_of, references_of
-from orchestrator.core.errors import InputRefused
-from orchestrator.core.reading import Run
-from orchestrator.core.results import Figure
-from orchestrator.job import Request, prepare
+from rockshed.cases import sonoda1993
+from rockshed.cases.registry import case, cases, changes_of, references_of
+from rockshed.core.errors import InputRefused
+from rockshed.core.results.reading import Run
+from rockshed.core.results.run_folder import Figure
+from rockshed.metrics import comparison
+from rockshed.metrics import headlines as h
+from rockshed.runs.job import Request, prepare
 
 KGF = 9.80665
 
@@ -177,7 +176,7 @@ def test_without_impact_energy_there_are_no_shares_of_it():
 
 
 def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
-    from orchestrator import pictures
+    from rockshed import pictures
 
     def fails(file):
         raise TypeError("no colours")
@@ -193,7 +192,7 @@ def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
 
 
 def test_energies_that_are_all_zero_are_drawn(tmp_path):
-    from orchestrator.pictures import curves
+    from rockshed.pictures import curves
 
     run = made_up()
     curves.energy(replace(run, series={name: np.zeros(1) for name in run.series}), tmp_path / "energy.png")

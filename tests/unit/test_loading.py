@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from orchestrator.loading import DEPTH, WINDOW, LoadCurve, load_curve
+from rockshed.metrics.load_curve import DEPTH, WINDOW, LoadCurve, load_curve
 
 
 def curve(load, depth=0.042, points=843):

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-
-from components.units import kgf
-from orchestrator.core.errors import InputRefused
-from orchestrator.measurement import of_stiffness, read_curve, stiffness_from
+from rockshed.analyses.calibration.measurement import of_stiffness, read_curve, stiffness_from
+from rockshed.components.common.units import kgf
+from rockshed.core.errors import InputRefused
 
 
 @pytest.mark.parametrize(("text", "value"), [

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-
-from components.component import ComponentError
+from rockshed.components.common.component import ComponentError
 
 from ..rods import HAMMER, ROD, march, named, rod
 

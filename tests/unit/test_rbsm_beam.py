@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 import pytest
-
-from components.catalogue import component
-from components.component import ComponentError
-from components.rbsm_beam import kernel
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import ComponentError
+from rockshed.components.rbsm_beam import kernel
 
 BEAM = component("RBSMBeam")
 

@@ -5,13 +5,12 @@ import tomllib
 from pathlib import Path
 
 import pytest
-
-import orchestrator
-from orchestrator.core.errors import InputRefused
-from orchestrator.input_files.places import places
-from orchestrator.rockfall import profile
-from orchestrator.rockfall.materials import QUANTITIES, shipped, source_of
-from orchestrator.rockfall.preparation import prepare
+import rockshed
+from rockshed.analyses.rockfall.preparation import prepare
+from rockshed.core.errors import InputRefused
+from rockshed.input_files.places import places
+from rockshed.sites.rockfall import profile
+from rockshed.sites.rockfall.materials import QUANTITIES, shipped, source_of
 
 HEAD = """\
 [rock]
@@ -84,7 +83,7 @@ def test_every_shipped_material_is_complete_and_says_where_it_comes_from():
 
 
 def test_the_site_in_the_documentation_can_be_prepared(site, tmp_path):
-    text = (Path(orchestrator.__file__).parent / "README.md").read_text()
+    text = (Path(rockshed.__file__).parent / "README.md").read_text()
     (tmp_path / "slope.csv").write_text("x,y\n20,76\n62,31\n140,4\n")
     example = next(block for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL) if "[[barrier]]" in block)
     made = site(example.replace("x = 1.0", "x = 25").replace("to = 62", "to = 140"), head="")

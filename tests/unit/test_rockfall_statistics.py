@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from orchestrator.rockfall.statistics import envelope, percentile, proportion, ranks
+from rockshed.analyses.rockfall.statistics import envelope, percentile, proportion, ranks
 
 
 @pytest.mark.parametrize(("count", "share", "low", "high"), [

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from rockshed.components.common.component import ComponentError
+from rockshed.components.sand_cushion import COMPONENT
 
-from components.component import ComponentError
-from components.sand_cushion import COMPONENT
 from tests.sand_discs import SMALL_BOX, cushion, rows, run, stirred
 
 FORCES = ("rock.force.x", "rock.force.y", "rock.torque", "beam.force.x", "beam.force.y", "beam.torque", "transmitted_force")

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from rockshed.components.common.component import ComponentError
+from rockshed.components.sand_cushion import COMPONENT
 
-from components.component import ComponentError
-from components.sand_cushion import COMPONENT
 from tests.sand_discs import SMALL_BOX, cushion, discs_at, run, stirred
 
 

@@ -3,13 +3,12 @@
 import math
 
 import pytest
-
-from components.units import cm, kgf
-from orchestrator.cases import sonoda1993
-from orchestrator.cases.registry import case, cases, changes_of, model_changes
-from orchestrator.cases.sand_models import MODELS
-from orchestrator.core.errors import InputRefused
-from orchestrator.job import Request, prepare
+from rockshed.cases import sonoda1993
+from rockshed.cases.registry import case, cases, changes_of, model_changes
+from rockshed.cases.sand_models import MODELS
+from rockshed.components.common.units import cm, kgf
+from rockshed.core.errors import InputRefused
+from rockshed.runs.job import Request, prepare
 
 
 def prepared(target, model, *settings):

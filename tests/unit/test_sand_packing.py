@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from rockshed.components.common.component import ComponentError
 
-from components.component import ComponentError
 from tests.sand_discs import RADIUS, SMALL_BOX, cushion, masses, rows
 
 BOX = {**SMALL_BOX, "settling.time": 0.0, "rock.position.y": 10.0}

@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 import pytest
+from rockshed.components.common.component import ComponentError
+from rockshed.components.sand_cushion import reader
 
-from components.component import ComponentError
-from components.sand_cushion import reader
 from tests.sand_discs import RADIUS, SMALL_BOX, cushion, discs_at, masses, rows, run, sand_stiffness, weight
 
 SIZES = {"discs": 60, "elements": 4}

@@ -7,12 +7,12 @@ import sys
 import llvmlite.binding as llvm
 import numpy as np
 import pytest
+from rockshed.components.common.kernels import kernel
+from rockshed.components.common.threads import shared_among_threads
+from rockshed.components.sand_cushion import COMPONENT, forces
+from rockshed.components.sand_cushion.contact_search import forget
+from rockshed.components.sand_cushion.declarations import PART
 
-from components.compilation import kernel
-from components.sand_cushion import COMPONENT, forces
-from components.sand_cushion.contact_search import forget
-from components.sand_cushion.declarations import PART
-from components.threads import shared_among_threads
 from tests.sand_discs import SMALL_BOX, cushion, force_rebuild, rows, run, stirred
 
 MODELS = [{"rotation": "locked"}, {"rotation": "free", "rolling_resistance": 0.3},
@@ -96,7 +96,7 @@ def test_a_large_cushion_is_divided_by_itself_and_uses_more_threads():
 
 STEPS = """
 import sys
-from components.sand_cushion import COMPONENT, forces
+from rockshed.components.sand_cushion import COMPONENT, forces
 sand = COMPONENT.instance(discs=60, elements=4)
 sand.from_bytes(open(sys.argv[1], "rb").read())
 for _ in range(100):

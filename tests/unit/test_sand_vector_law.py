@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.compilation import kernel
-from components.sand_cushion import contact_law, vector_law, vector_rows
-from components.sand_cushion.declarations import BLOCK, COLUMN, LANES, LAW, TALLY
+from rockshed.components.common.kernels import kernel
+from rockshed.components.sand_cushion import contact_law
+from rockshed.components.sand_cushion.declarations import BLOCK, COLUMN, LANES, LAW, TALLY
+from rockshed.components.sand_cushion.vector import law as vector_law
+from rockshed.components.sand_cushion.vector import rows as vector_rows
 
 STIFFNESS, TANGENTIAL, DT = 1e5, 2.5e4, 1e-5
 normal_force, tangential_force, permanent_overlap, yield_loss, capillary_pull, capillary_energy = (

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.compilation import kernel
-from components.sand_cushion import vector_rows
-from components.sand_cushion.contact_search import pair_of
-from components.sand_cushion.declarations import BLOCK
+from rockshed.components.common.kernels import kernel
+from rockshed.components.sand_cushion.contact_search import pair_of
+from rockshed.components.sand_cushion.declarations import BLOCK
+from rockshed.components.sand_cushion.vector import rows as vector_rows
 
 BODIES = 40
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from rockshed.components.common.counter_random import shuffled
+from rockshed.components.slope_rockfall.declarations import UNIFORM
+from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, RESTED, STOPPED
 
-from components.counter_random import shuffled
-from components.slope_rockfall.declarations import UNIFORM
-from components.slope_rockfall.trajectory import OUTCOME, PASSAGE, RESTED, STOPPED
 from tests.slope_rocks import SLOPE, plane, run_trials
 
 

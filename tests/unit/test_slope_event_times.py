@@ -2,9 +2,8 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from components.slope_rockfall.declarations import NEVER
-from components.slope_rockfall.kernel import grid_after, on_grid
+from rockshed.components.slope_rockfall.declarations import NEVER
+from rockshed.components.slope_rockfall.kernel import grid_after, on_grid
 
 TIMES = st.floats(0.0, 1000.0)
 AT_LEISURE = settings(deadline=None)  # the first call compiles

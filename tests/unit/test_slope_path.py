@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rockshed.components.slope_rockfall.declarations import PATH
+from rockshed.components.slope_rockfall.geometry import line_below, path_y
 
-from components.slope_rockfall.declarations import PATH
-from components.slope_rockfall.geometry import line_below, path_y
 from tests.slope_rocks import clearance, plane, slope
 
 cells = st.lists(st.tuples(st.floats(0.05, 5.0), st.floats(-1.3, 1.3)), min_size=1, max_size=20)

@@ -3,8 +3,8 @@
 import math
 
 import pytest
+from rockshed.components.common.component import ComponentError
 
-from components.component import ComponentError
 from tests.slope_rocks import SLOPE, slope
 
 LEVEL = [(0, 0), (10, 0), (20, 0), (30, 0)]

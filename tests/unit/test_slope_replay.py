@@ -4,10 +4,10 @@ import threading
 
 import numpy as np
 import pytest
+from rockshed.components.catalogue import component
+from rockshed.components.slope_rockfall.declarations import FLIGHT
+from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, RESTED
 
-from components.catalogue import component
-from components.slope_rockfall.declarations import FLIGHT
-from components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, RESTED
 from tests.slope_rocks import SLOPE, mode, run_trials
 
 LINES = [(x, -50, x, 200) for x in (60, 90, 120)]

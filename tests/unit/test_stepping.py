@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from components.falling_rock import COMPONENT as ROCK
+from rockshed.components.falling_rock import COMPONENT as ROCK
 
 
 def fall(step, internal=1e-5):

@@ -5,17 +5,16 @@ import json
 import numpy as np
 import pytest
 from jsonschema import validate
-
-from components.units import kgf
-from orchestrator import headlines as h
-from orchestrator.core.errors import InputRefused
-from orchestrator.job import Request
-from orchestrator.studies import running
-from orchestrator.studies.reproduction import DATA, PAGE, chosen, reproduce, studies
-from orchestrator.studies.sonoda1993 import girders, rigid_base, section2, table2
-from orchestrator.studies.sonoda1993.fig19 import order
-from orchestrator.studies.statistics import by_power_law, constant, leave_one_out, mean_absolute_error, power_law
-from orchestrator.studies.study import COMPLETE, FAILED, INTERRUPTED, Outcome, Outcomes, Row, Task, row_of_runs
+from rockshed.components.common.units import kgf
+from rockshed.core.errors import InputRefused
+from rockshed.metrics import headlines as h
+from rockshed.papers import running
+from rockshed.papers.reproduction import DATA, PAGE, chosen, reproduce, studies
+from rockshed.papers.sonoda1993 import girders, rigid_base, section2, table2
+from rockshed.papers.sonoda1993.fig19 import order
+from rockshed.papers.statistics import by_power_law, constant, leave_one_out, mean_absolute_error, power_law
+from rockshed.papers.study import COMPLETE, FAILED, INTERRUPTED, Outcome, Outcomes, Row, Task, row_of_runs
+from rockshed.runs.job import Request
 
 NUMBER, TEXT = {"type": ["number", "null"]}, {"type": "string"}
 HASHES = {"type": "object", "additionalProperties": {"type": "string", "pattern": "^[0-9a-f]{64}$"}}

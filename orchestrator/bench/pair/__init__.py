@@ -1,11 +1,11 @@
 """A component for the benchmark of the exchange: many inputs and outputs, and hardly anything to compute.
 
-It is imported as if it lay among the components, whose modules it uses: see :mod:`orchestrator.bench.exchange`.
+It is imported as if it lay among the components, whose modules it uses: see :mod:`rockshed.bench.exchange`.
 """
 
 from pathlib import Path
 
-from ..component import Component, Size
+from ..common.component import Component, Size
 from . import kernel
 from .declarations import LAYOUT
 

@@ -1,5 +1,5 @@
 """Variables of the relay."""
 
-from ..ports import Layout, inp, out
+from ..common.ports import Layout, inp, out
 
 LAYOUT = Layout((inp("u", "what it is given", size="inputs"), out("y", "half of one of the inputs and one", size="outputs")))

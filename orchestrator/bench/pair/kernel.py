@@ -1,8 +1,8 @@
 """Each output is half of one of the inputs and one."""
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
 from .declarations import LAYOUT
 
 A = LAYOUT.array

@@ -1,10 +1,9 @@
 """What the studies of Mogami and Tamura find."""
 
 import pytest
-
-from orchestrator.studies.mogami1973 import fits, mass, settlement
-from orchestrator.studies.reproduction import reproduce, studies
-from orchestrator.studies.study import Outcomes
+from rockshed.papers.mogami1973 import fits, mass, settlement
+from rockshed.papers.reproduction import reproduce, studies
+from rockshed.papers.study import Outcomes
 
 
 def rows(study):

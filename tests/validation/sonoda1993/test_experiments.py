@@ -5,11 +5,10 @@ The calibrated sand was fitted to the paper's computation, not to these measurem
 
 import numpy as np
 import pytest
-
-from components.units import cm, kgf
-from orchestrator.bench.monolithic import from_system
-from orchestrator.cases.sonoda1993 import lab_system
-from orchestrator.cases.sonoda1993 import tests as table_2
+from rockshed.bench.monolithic import from_system
+from rockshed.cases.sonoda1993 import lab_system
+from rockshed.cases.sonoda1993 import tests as table_2
+from rockshed.components.common.units import cm, kgf
 
 
 def impact(number, **options):

@@ -6,14 +6,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from rockshed.cases.full_scale import DROP, LAYER, ROCK_MASS, ROCK_RADIUS, handbook_force, hertz_force, impacts
+from rockshed.cases.registry import case
+from rockshed.core.run import simulate
+from rockshed.metrics import headlines as h
+from rockshed.papers.sonoda1993 import full_scale
+from rockshed.runs.job import Request, prepare
 from scipy.integrate import solve_ivp
-
-from orchestrator import headlines as h
-from orchestrator.cases.full_scale import DROP, LAYER, ROCK_MASS, ROCK_RADIUS, handbook_force, hertz_force, impacts
-from orchestrator.cases.registry import case
-from orchestrator.core.run import simulate
-from orchestrator.job import Request, prepare
-from orchestrator.studies.sonoda1993 import full_scale
 
 RIGID = ("rigid-base-pit", "rigid-base-river", "rigid-base-crushed")
 GIRDERS = ("girders-8", "girders-10", "girders-12")

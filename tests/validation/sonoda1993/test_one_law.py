@@ -1,12 +1,11 @@
 """One contact law for all tests against what was measured: single packings within what single packings scatter."""
 
 import pytest
-
-from components.units import cm, kgf
-from orchestrator import headlines as h
-from orchestrator.cases import full_scale, sonoda1993
-from orchestrator.core.run import simulate
-from orchestrator.job import Request, prepare
+from rockshed.cases import full_scale, sonoda1993
+from rockshed.components.common.units import cm, kgf
+from rockshed.core.run import simulate
+from rockshed.metrics import headlines as h
+from rockshed.runs.job import Request, prepare
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-
-from components.sand_cushion import COMPONENT
-from components.units import cm, kgf
+from rockshed.components.common.units import cm, kgf
+from rockshed.components.sand_cushion import COMPONENT
 
 SPEED = 1 * cm
 EXCHANGE = 0.01

@@ -3,11 +3,10 @@
 import dataclasses
 
 import pytest
-
-from components.units import cm, kgf
-from orchestrator.bench.monolithic import from_system
-from orchestrator.cases.sonoda1993 import DEFAULT_TEST, lab_system, table_5
-from orchestrator.cases.sonoda1993 import tests as table_2
+from rockshed.bench.monolithic import from_system
+from rockshed.cases.sonoda1993 import DEFAULT_TEST, lab_system, table_5
+from rockshed.cases.sonoda1993 import tests as table_2
+from rockshed.components.common.units import cm, kgf
 
 LITERAL = {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"}
 ROWS = {round(row.modulus / kgf * cm ** 2): row for row in table_5() if row.damping == 0.2}

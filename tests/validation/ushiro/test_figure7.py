@@ -3,10 +3,9 @@
 import math
 
 import pytest
-
-from orchestrator.studies.reproduction import reproduce, studies
-from orchestrator.studies.study import Outcomes
-from orchestrator.studies.ushiro.figure7 import BASE, SPEEDS, STUDY, TREATMENTS, VARIATIONS
+from rockshed.papers.reproduction import reproduce, studies
+from rockshed.papers.study import Outcomes
+from rockshed.papers.ushiro.figure7 import BASE, SPEEDS, STUDY, TREATMENTS, VARIATIONS
 
 
 @pytest.fixture(scope="module")

@@ -3,9 +3,8 @@
 import json
 
 import pytest
-
-from orchestrator.studies.reproduction import reproduce, studies
-from orchestrator.studies.uto1974.struck_rod import alpha, kappa
+from rockshed.papers.reproduction import reproduce, studies
+from rockshed.papers.uto1974.struck_rod import alpha, kappa
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..component import Component, Size
+from ..common.component import Component, Size
 from . import kernel
 from .declarations import LAYOUT
 

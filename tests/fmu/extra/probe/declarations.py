@@ -1,7 +1,7 @@
 """Variables of the probe."""
 
-from ..ports import Layout, State, choice, count, inp, out, param, switch
-from ..stepping import internal_step, stable_step
+from ..common.ports import Layout, State, choice, count, inp, out, param, switch
+from ..common.stepping import internal_step, stable_step
 
 LAYOUT = Layout(
     variables=(

@@ -1,8 +1,8 @@
 """Levels that rise with the inflow and leak: the state is hidden, the outputs are copies of it."""
 
-from ..compilation import kernel
-from ..component import OK
-from ..ports import view
+from ..common.component import OK
+from ..common.kernels import kernel
+from ..common.ports import view
 from .declarations import LAYOUT
 
 V, A = LAYOUT.scalar, LAYOUT.array

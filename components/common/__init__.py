@@ -1,0 +1,1 @@
+"""What all components are made of: declarations, buffers, units, compilation."""

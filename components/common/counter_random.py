@@ -1,0 +1,62 @@
+"""Random numbers from a counter: number i of stream ``seed`` is a function of the two, so any of them can be had in any order.
+
+SplitMix64 (Steele, Lea and Flood 2014) as a hash of seed and counter.
+"""
+
+import numpy as np
+
+from .kernels import kernel
+
+_STREAM = np.uint64(0x9E3779B97F4A7C15)
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_2 = np.uint64(0x94D049BB133111EB)
+_30, _27, _31, _11 = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
+_ONE = np.uint64(1)
+_UNIT = 1.0 / (1 << 53)
+_TURNS = 4
+
+
+@kernel
+def mix(z):
+    """The finaliser of SplitMix64: a bijection of 64-bit numbers that scatters them."""
+    z = (z ^ (z >> _30)) * _MIX_1
+    z = (z ^ (z >> _27)) * _MIX_2
+    return z ^ (z >> _31)
+
+
+@kernel
+def stream(seed, number):
+    """Start of the stream ``number`` among those of ``seed``, for :func:`draw`."""
+    return mix(mix((np.uint64(seed) + _ONE) * _STREAM) + (np.uint64(number) + _ONE) * _STREAM)
+
+
+@kernel
+def draw(start, counter):
+    """Number ``counter`` of the stream that begins with ``start``, uniform in [0, 1)."""
+    return float(mix(start + (np.uint64(counter) + _ONE) * _STREAM) >> _11) * _UNIT
+
+
+@kernel
+def shuffled(number, count, key):
+    """Place of ``number`` in a permutation of 0 ... count - 1 that depends on ``key``.
+
+    A Feistel network of four rounds permutes 0 ... 4^n - 1, n as small as possible; places beyond ``count`` are walked over
+    (Black and Rogaway 2002).
+    """
+    half = np.uint64(1)
+    while np.uint64(1) << (half + half) < np.uint64(count):
+        half += _ONE
+    mask, place = (_ONE << half) - _ONE, np.uint64(number)
+    while True:
+        left, right = place >> half, place & mask
+        for turn in range(_TURNS):
+            left, right = right, left ^ (mix(np.uint64(key) + right * _STREAM + np.uint64(turn)) & mask)
+        place = (left << half) | right
+        if place < np.uint64(count):
+            return int(place)
+
+
+@kernel
+def uniform(seed, counter):
+    """Number ``counter`` of stream ``seed``, uniform in [0, 1)."""
+    return draw(mix((np.uint64(seed) + _ONE) * _STREAM), counter)

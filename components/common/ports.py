@@ -1,0 +1,222 @@
+"""Variables of a component, each declared once.
+
+Everything else derives from these declarations: the place of a value in the component's buffers, the indices that kernels
+use, the model description of the FMU, the checks of the orchestrator and the tables of the documentation.
+
+A component keeps three flat buffers:
+
+``w``  float64, what the outside sees: parameters, inputs and outputs. **The FMI value reference of a variable is its index.**
+``x``  float64, hidden state (positions of sand discs, contact springs, ...).
+``k``  int64, hidden integers, beginning with a table of the arrays: two entries an array, its offset and its length.
+
+Scalars stand first in ``w``, in the order of their declaration, so their index is a constant that a kernel may use. The place
+of an array depends on the sizes the component was built with; kernels find it with :func:`view`.
+"""
+
+from collections import namedtuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from .kernels import inlined
+from .units import UNITS
+
+Sizes = Mapping[str, int]
+"""Sizes a component is built with, by name: ``{"elements": 24}``."""
+
+Start = float | Callable[[int, Sizes], float]
+"""Start value, or for arrays a function of the element's number (from 0) and the sizes."""
+
+
+class Causality(StrEnum):
+    """What a variable is to the outside, in the words of FMI."""
+
+    PARAMETER = "parameter"
+    INPUT = "input"
+    OUTPUT = "output"
+
+
+class Kind(StrEnum):
+    """FMI type of a variable. In the buffer ``w`` all of them are float64; an enumeration counts its choices from 1."""
+
+    REAL = "Real"
+    INTEGER = "Integer"
+    BOOLEAN = "Boolean"
+    ENUMERATION = "Enumeration"
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One variable of a component, scalar or array.
+
+    name: structured name without index, ``rock.position.x``.
+    unit: key of :data:`rockshed.components.common.units.UNITS`.
+    minimum, maximum: allowed range, ends included; None where there is no bound.
+    size: name of the size that gives an array its length; None for a scalar. Elements are named ``name[1]``, ``name[2]``, ...
+    initial_dependencies: for outputs, names of the parameters and inputs that the value at the end of the
+        initialisation depends on. None means: all of them. No output changes with an input between two steps.
+    source: paper and equation or table the variable or its start value comes from.
+    """
+
+    name: str
+    causality: Causality
+    description: str
+    unit: str = "1"
+    start: Start = 0.0
+    minimum: float | None = None
+    maximum: float | None = None
+    kind: Kind = Kind.REAL
+    choices: tuple[str, ...] = ()
+    size: str | None = None
+    initial_dependencies: tuple[str, ...] | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if self.unit not in UNITS:
+            raise ValueError(f"{self.name}: unknown unit {self.unit!r}; known are {', '.join(UNITS)}")
+        if (self.kind is Kind.ENUMERATION) != bool(self.choices):
+            raise ValueError(f"{self.name}: an enumeration has choices, and nothing else has")
+
+    def start_at(self, number: int, sizes: Sizes) -> float:
+        """Start value of element ``number`` (from 0; a scalar has the element 0)."""
+        return float(self.start(number, sizes) if callable(self.start) else self.start)
+
+    def element_names(self, sizes: Sizes) -> list[str]:
+        """Names as the outside sees them: the name itself, or ``name[1]``, ``name[2]``, ... for an array."""
+        if self.size is None:
+            return [self.name]
+        return [f"{self.name}[{i + 1}]" for i in range(sizes[self.size])]
+
+
+def param(name: str, description: str, start: Start, unit: str = "1", **rest: Any) -> Variable:
+    """Declare a real parameter: set before the initialisation, fixed afterwards."""
+    return Variable(name, Causality.PARAMETER, description, unit, start, **rest)
+
+
+def choice(name: str, description: str, choices: Sequence[str], start: str, **rest: Any) -> Variable:
+    """Declare a parameter that selects one of ``choices``; kernels see its number, counted from 1."""
+    number = float(choices.index(start) + 1)
+    return Variable(name, Causality.PARAMETER, description, "1", number, 1.0, float(len(choices)), Kind.ENUMERATION,
+                    tuple(choices), **rest)
+
+
+def switch(name: str, description: str, start: bool, **rest: Any) -> Variable:
+    """Declare a parameter that is on or off."""
+    return Variable(name, Causality.PARAMETER, description, "1", float(start), kind=Kind.BOOLEAN, **rest)
+
+
+def count(name: str, description: str, start: int, **rest: Any) -> Variable:
+    """Declare an integer parameter."""
+    return Variable(name, Causality.PARAMETER, description, "1", float(start), kind=Kind.INTEGER, **rest)
+
+
+def inp(name: str, description: str, unit: str = "1", start: Start = 0.0, **rest: Any) -> Variable:
+    """Declare a real input."""
+    return Variable(name, Causality.INPUT, description, unit, start, **rest)
+
+
+def out(name: str, description: str, unit: str = "1", **rest: Any) -> Variable:
+    """Declare a real output. It has no start value: the component computes it when it is initialised."""
+    return Variable(name, Causality.OUTPUT, description, unit, **rest)
+
+
+BOND_MEMBERS = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "force.x", "force.y", "torque")
+"""Names of what a power bond may carry, in this order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bond:
+    """A mechanical power bond to another component: the motion of a body, which one of them computes, and the force on it.
+
+    Its members are the inputs and outputs of the component that are named ``prefix`` + one of :data:`BOND_MEMBERS`, be they
+    scalars or arrays. Two components fit together if their bonds have the same members.
+
+    name: of the terminal that FMI 3.0 makes of it.
+    """
+
+    name: str
+    description: str
+    prefix: str = ""
+
+    def members(self, variables: Sequence[Variable]) -> dict[str, Variable]:
+        """The variables of the bond by member, in the order of :data:`BOND_MEMBERS`."""
+        named = {v.name: v for v in variables if v.causality is not Causality.PARAMETER}
+        return {member: named[self.prefix + member] for member in BOND_MEMBERS if self.prefix + member in named}
+
+
+@dataclass(frozen=True, slots=True)
+class NextEvent:
+    """Where a component tells when it meets its next event, so that a communication step may end there.
+
+    time: output (s). A step that ends at this time has the event behind it, and the results are the same, bit for bit, however
+        the time is divided into steps. Until the first step it counts from the start, which kernels do not know.
+    while_zero: inputs that must be zero for that to hold.
+    """
+
+    time: str
+    while_zero: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A hidden array: its name, and its length as a function of the sizes."""
+
+    name: str
+    length: Callable[[Sizes], int]
+    integer: bool = False
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the variables and hidden arrays of a component lie. Independent of the sizes it is built with.
+
+    ``scalar``: a named tuple, index in ``w`` of each scalar; ``array``: a named tuple, place in ``k`` of the table entry of
+    each array, variables and hidden arrays alike. Dots in names become underscores: ``scalar.rock_position_x``.
+    Both are constants to numba.
+    """
+
+    variables: tuple[Variable, ...]
+    states: tuple[State, ...] = ()
+    scalar: Any = field(init=False)
+    array: Any = field(init=False)
+
+    def __post_init__(self) -> None:
+        names = [v.name for v in self.variables] + [s.name for s in self.states]
+        if len(set(names)) != len(names):
+            raise ValueError(f"declared twice: {sorted(n for n in set(names) if names.count(n) > 1)}")
+        scalars = [v.name for v in self.variables if v.size is None]
+        arrays = [v.name for v in self.variables if v.size is not None] + [s.name for s in self.states]
+        object.__setattr__(self, "scalar", _constants("Scalar", scalars, 1))
+        object.__setattr__(self, "array", _constants("Array", arrays, 2))
+
+    @property
+    def ordered(self) -> list[Variable]:
+        """The variables in the order they have in ``w``: scalars first."""
+        return [v for v in self.variables if v.size is None] + [v for v in self.variables if v.size is not None]
+
+    def table(self, sizes: Sizes) -> tuple[list[int], int, int, int]:
+        """Offsets and lengths of all arrays, and the lengths of ``w``, ``x`` and ``k`` that they need."""
+        entries: list[int] = []
+        w = sum(v.size is None for v in self.variables)
+        x, k = 0, 2 * len(self.array)
+        for variable in self.ordered:
+            if variable.size is not None:
+                entries += [w, sizes[variable.size]]
+                w += sizes[variable.size]
+        for state in self.states:
+            length = state.length(sizes)
+            entries += [k if state.integer else x, length]
+            k, x = (k + length, x) if state.integer else (k, x + length)
+        return entries, w, x, k
+
+
+def _constants(title: str, names: list[str], stride: int) -> Any:
+    fields = [name.replace(".", "_") for name in names]
+    return namedtuple(title, fields)(*range(0, stride * len(fields), stride))
+
+
+@inlined
+def view(buffer, k, entry):
+    """The array that the table entry ``entry`` of ``k`` describes, as a slice of ``buffer`` (no copy)."""
+    return buffer[k[entry]:k[entry] + k[entry + 1]]

@@ -1,0 +1,1 @@
+"""The contact loop in vectors: the only place with LLVM IR."""

@@ -1,0 +1,1 @@
+"""Declarations to modelDescription.xml and documentation."""

@@ -1,0 +1,156 @@
+"""Kernels as object code without Python, in a process of its own: numba compiles for one processor per process.
+
+``python -m rockshed.fmus.native.kernels < order.json`` writes ``PLATFORM.o`` into the working directory: the functions
+``rockshed_initialise``, ``rockshed_evaluate`` and ``rockshed_step`` over plain pointers. It prints the problems it found as a JSON
+list of texts.
+
+Numba's own calling convention is wrapped, so no function of Python is needed; what a kernel needs besides is checked against a list
+of functions that every C library has.
+"""
+
+import importlib
+import json
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding as llvm
+from llvmlite import ir
+from llvmlite.binding import Linkage
+from numba import njit, typeof, types
+from numba.core.errors import NumbaError
+from rockshed import components
+from rockshed.components.common.component import Component, Instance
+
+from .subset import error_problem, symbol_problems
+
+TRIPLES = {"linux64": "x86_64-unknown-linux-gnu", "win64": "x86_64-w64-windows-gnu", "darwin64": "x86_64-apple-macosx11.0"}
+"""What LLVM calls the platforms of FMI."""
+
+ENTRIES = {name: f"rockshed_{name}" for name in ("initialise", "evaluate", "step")}
+"""Names of the C functions by kernel."""
+
+
+def main() -> None:
+    """Carry out the order on standard input."""
+    order = json.load(sys.stdin)
+    folder = Path(order["folder"])
+    component = load(folder)
+    instance = component.instance(**order["sizes"])
+    problems = compile_problems(component, signatures(instance), folder)
+    if not problems:
+        module = linked(component, instance)
+        problems = symbol_problems(module, folder)
+    if not problems:
+        llvm.initialize_all_targets()
+        llvm.initialize_all_asmprinters()
+        for platform in order["platforms"]:
+            Path(f"{platform}.o").write_bytes(emitted(module, TRIPLES[platform], order["cpu"]))
+    json.dump(problems, sys.stdout)
+
+
+def load(folder: Path) -> Component:
+    """The component of a folder, imported as if it lay among the others."""
+    components.__path__.insert(0, str(folder.parent))
+    component = importlib.import_module(f"{components.__name__}.{folder.name}").COMPONENT
+    assert isinstance(component, Component)
+    return component
+
+
+def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
+    """Types of the arguments of each kernel."""
+    buffers = tuple(map(typeof, (instance.w, instance.x, instance.k)))
+    return {"initialise": buffers, "evaluate": buffers, "step": (types.float64, types.float64, *buffers)}
+
+
+def compile_problems(component: Component, kinds: Mapping[str, tuple[Any, ...]], folder: Path) -> list[str]:
+    """What keeps kernels from being compiled at all."""
+    problems = []
+    for name, signature in kinds.items():
+        kernel: Any = getattr(component, name)
+        try:
+            kernel.compile(signature)
+        except NumbaError as error:
+            problems.append(error_problem(error, name, kernel, folder))
+    return problems
+
+
+def linked(component: Component, instance: Instance) -> Any:
+    """All kernels with everything that they call, as one LLVM module that shows the three entries only."""
+    lengths = [len(instance.w), len(instance.x), len(instance.k)]
+    whole = llvm.parse_assembly("")
+    for name, signature in signatures(instance).items():
+        caller = njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)(_caller(component, name))
+        caller.compile(signature)
+        compiled = caller.overloads[signature]
+        whole.link_in(llvm.parse_assembly(compiled.library.get_llvm_str()))
+        whole.link_in(llvm.parse_assembly(str(entry_module(ENTRIES[name], compiled, lengths))))
+    return shown_only(whole, ENTRIES.values())
+
+
+def _caller(component: Component, name: str) -> Callable[..., int]:
+    """A function that calls a kernel: what numba has in its cache can be linked, but not looked at."""
+    kernel = getattr(component, name)
+    if name == "step":
+        return lambda t, h, w, x, k: kernel(t, h, w, x, k)
+    return lambda w, x, k: kernel(w, x, k)
+
+
+def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
+    """A C function ``int64 entry([double t, double h,] double *w, double *x, int64 *k)`` around a compiled kernel.
+
+    It returns what the kernel returns, or the negative status of numba's calling convention if the kernel raises an exception.
+    """
+    module = ir.Module()
+    descriptor, convention = compiled.fndesc, compiled.target_context.call_conv
+    callee = ir.Function(module, convention.get_function_type(descriptor.restype, descriptor.argtypes), descriptor.llvm_func_name)
+    integer, pointer = ir.IntType(64), ir.IntType(8).as_pointer()
+    times = [ir.DoubleType()] * (len(descriptor.argtypes) - len(lengths))
+    function = ir.Function(module, ir.FunctionType(integer, [*times, pointer, pointer, pointer]), entry)
+    builder = ir.IRBuilder(function.append_basic_block())
+    kinds = callee.function_type.args
+    arguments = [builder.alloca(kinds[0].pointee), builder.alloca(kinds[1].pointee), *function.args[:len(times)]]
+    for buffer, length in zip(function.args[len(times):], lengths):
+        kind = kinds[len(arguments):]
+        arguments += [kind[0](None), kind[1](None), integer(length), integer(8), builder.bitcast(buffer, kind[4]), integer(length),
+                      integer(8)]  # owner, parent, number of elements, bytes of an element, data, shape, strides
+    status = builder.call(callee, arguments)
+    raised = builder.icmp_signed("!=", status, status.type(0))
+    builder.ret(builder.select(raised, builder.sub(integer(0), builder.sext(status, integer)), builder.load(arguments[0])))
+    return module
+
+
+def shown_only(module: Any, names: Iterable[str]) -> Any:
+    """The module without what these functions do not need; nothing of it is visible outside the library."""
+    for function in module.functions:
+        if not function.is_declaration:
+            function.linkage = "external" if function.name in names else "internal"
+            if function.name in names:
+                function.visibility = "hidden"
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = "internal"
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
+    machine = llvm.Target.from_triple(module.triple).create_target_machine()
+    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
+    for number, function in enumerate(module.functions):
+        if function.linkage == Linkage.internal:
+            function.name = f"kernel_{number}"  # numba's own names change from build to build
+    return module
+
+
+def emitted(module: Any, triple: str, cpu: str) -> bytes:
+    """Object code of a module for a platform."""
+    machine = llvm.Target.from_triple(triple).create_target_machine(cpu=cpu, features="", opt=3, reloc="pic", codemodel="default")
+    copy = module.clone()
+    copy.triple = triple
+    copy.data_layout = str(machine.target_data)
+    code = machine.emit_object(copy)
+    assert isinstance(code, bytes)
+    return code
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,393 @@
+"""The slave of every component: what pythonfmu's binary calls.
+
+The binary turns an exception that escapes from here into fmi2Fatal and crashes a few calls later, and of all calls only
+``do_step`` can return a status other than OK. So nothing escapes: a call that is refused is logged with its reason, the slave
+counts as failed, and every step is refused (fmi2Discard) until it is reset or an earlier state is restored.
+"""
+
+import ctypes
+import math
+import struct
+import zlib
+from collections.abc import Callable, Mapping
+from enum import IntEnum
+from functools import wraps
+from typing import Any, ClassVar
+
+import numpy as np
+
+from .foundations import OK, Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
+from .interpreter import let_go_of_interpreter
+from .isolation import ForeignFoldersHidden
+
+LOG_CATEGORIES = {
+    "logStatusWarning": "something that deserves attention; the simulation can go on",
+    "logStatusError": "a call was refused or has failed; the message names the variable, its value and a remedy",
+}
+"""Categories of the messages that a slave logs. pythonfmu's binary compares names only, so ``logAll`` would select nothing."""
+
+_SEAL = struct.Struct("<8sI")
+"""Begins a serialized state: a mark and the checksum of what follows, :data:`_CLOCK` and the state of the component."""
+_CLOCK = struct.Struct("<Id")
+_MARK = b"rockslav"
+_ROUNDING = 1e-6
+"""A communication point may differ from the end of the last step by this part of the step."""
+
+
+class _Phase(IntEnum):
+    INSTANTIATED = 1
+    INITIALISING = 2
+    RUNNING = 3
+    TERMINATED = 4
+    FAILED = 5
+
+
+_RUNNING = _Phase.RUNNING
+
+_REMEDIES = {
+    _Phase.INSTANTIATED: "the slave is not initialised: set up the experiment, then enter and exit the initialization mode",
+    _Phase.INITIALISING: "the initialization mode is not finished: exit it first",
+    _Phase.RUNNING: "the slave is initialised already: reset it first",
+    _Phase.TERMINATED: "the slave is terminated: reset it first",
+    _Phase.FAILED: "an earlier call was refused or has failed, see the log: reset the slave or restore an earlier state",
+}
+
+
+class _Stale(IntEnum):
+    """What has to be computed before an output is read in initialization mode."""
+
+    NOTHING = 0
+    OUTPUTS = 1
+    STATE = 2
+
+
+class _RefusedError(Exception):
+    """A call that the slave refuses, with every reason."""
+
+
+def _guarded(otherwise: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Decorate a call of the binary: what goes wrong is logged and fails the slave, and ``otherwise`` gives the result."""
+
+    def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(method)
+        def call(self: "ComponentSlave", *arguments: Any) -> Any:
+            try:
+                return method(self, *arguments)
+            except BaseException as error:  # KeyboardInterrupt too: the binary crashes on it as on any other
+                self._fail(error)
+                return otherwise(*arguments)
+        return call
+    return decorate
+
+
+_nothing = _guarded(lambda *arguments: None)
+
+
+class ComponentSlave(Fmi2Slave):
+    """FMI 2.0 slave over an instance of a component. The value reference of a variable is its index in the buffer ``w``.
+
+    Subclasses name the component and the sizes it is built with.
+    """
+
+    component: ClassVar[Component]
+    sizes: ClassVar[Mapping[str, int]]
+    log_categories = LOG_CATEGORIES
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        if self.resources is not None:
+            let_go_of_interpreter(self.resources)
+        self._instance = instance = Instance(self.component, self.sizes)
+        self._phase, self._stale, self._previewed = _Phase.INSTANTIATED, _Stale.STATE, False
+        self._time, self._stop_time, self._compiled = math.nan, math.inf, False
+        self._advance: Callable[..., int] = self.component.step
+        self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
+        self._table = [(name, variable) for variable in self.component.layout.ordered
+                       for name in variable.element_names(self.sizes)]
+        self._constants = {len(self._table) + i: value for i, value in enumerate(self.sizes.values())}
+        self._readers: dict[tuple[int, int], tuple[list[int], Callable[[], list[float]]]] = {}
+        self._writers: dict[tuple[int, int], tuple[list[int], Callable[[list[float]], None]]] = {}
+
+    # --- life cycle
+
+    @_nothing
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        """Set the time (s) of the initialisation, and the end that no step may exceed."""
+        self._expect(_Phase.INSTANTIATED, "set up the experiment")
+        if not math.isfinite(start_time) or (stop_time is not None and not stop_time >= start_time):
+            raise _RefusedError(f"start time = {start_time} s, stop time = {stop_time} s: the start must be a finite number, and "
+                                "the stop not before it")
+        self._time, self._stop_time = start_time, math.inf if stop_time is None else stop_time
+
+    @_nothing
+    def enter_initialization_mode(self) -> None:
+        """From now on outputs can be read: they follow from the parameters and inputs set so far."""
+        self._expect(_Phase.INSTANTIATED, "enter the initialization mode")
+        if math.isnan(self._time):
+            raise _RefusedError("the start time is unknown: set up the experiment before entering the initialization mode")
+        self._phase = _Phase.INITIALISING
+
+    @_nothing
+    def exit_initialization_mode(self) -> None:
+        """Fix the parameters and be ready to step."""
+        self._expect(_Phase.INITIALISING, "exit the initialization mode")
+        self._compute()
+        self._compile_step()
+        self._phase = _Phase.RUNNING
+        self._warn_of_unstable_step()
+
+    @_nothing
+    def terminate(self) -> None:
+        """End the simulation; values can still be read."""
+        if self._phase is not _Phase.FAILED:
+            self._expect(_Phase.RUNNING, "terminate")
+            self._phase = _Phase.TERMINATED
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Advance by ``step_size`` (s) with the present inputs. False if that is refused or fails; the log tells why."""
+        try:
+            due = self._phase is _RUNNING and current_time == self._time and 0.0 < step_size < self._stop_time - current_time
+            if not due and (reason := self._why_not(current_time, step_size)):
+                self._log(f"the step of {step_size:.6g} s from t = {current_time:.9g} s is refused: {reason}", Fmi2Status.error)
+                return False
+            instance = self._instance
+            status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
+            if status != OK:
+                raise ComponentError(self.component.name, [f"at t = {current_time:.9g} s {instance.message(status)}"])
+            self._time = current_time + step_size
+            return True
+        except BaseException as error:
+            self._fail(error)
+            return False
+
+    def _why_not(self, time: float, step: float) -> str:
+        if self._phase is not _Phase.RUNNING:
+            return _REMEDIES[self._phase]
+        if not (step > 0.0 and math.isfinite(step)):
+            return "its length must be a positive number"
+        tolerance = _ROUNDING * step + 4.0 * math.ulp(self._time)
+        if not abs(time - self._time) <= tolerance:
+            return f"the slave is at t = {self._time:.9g} s; steps follow one another, and only a restored state leads elsewhere"
+        if time + step > self._stop_time + tolerance:
+            return f"it passes the stop time {self._stop_time:.9g} s that the experiment was set up with"
+        return ""
+
+    def _expect(self, phase: _Phase, what: str) -> None:
+        if self._phase is not phase:
+            raise _RefusedError(f"cannot {what}: {_REMEDIES[self._phase]}")
+
+    def _compute(self) -> None:
+        """Bring outputs at the start up to date; the state, which may be expensive, only if a parameter has changed."""
+        with ForeignFoldersHidden():
+            if self._stale is _Stale.STATE:
+                self._instance.initialise()
+            elif self._stale is _Stale.OUTPUTS:
+                if problems := self._instance.problems():
+                    raise ComponentError(self.component.name, problems)
+                self._instance.evaluate()
+        self._stale = _Stale.NOTHING
+
+    def _compile_step(self) -> None:
+        """Compile the step now or load it from the cache, so that the first step takes no longer than the others."""
+        compiler = getattr(self.component.step, "compile", None)
+        if compiler is not None and not self._compiled:  # there is none with NUMBA_DISABLE_JIT, for debugging
+            with ForeignFoldersHidden():
+                from numba import typeof
+
+                compiler(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
+        self._advance, self._compiled = getattr(self.component.step, "made", self.component.step), True
+
+    def _warn_of_unstable_step(self) -> None:
+        if {"internal_step", "stable_step"} <= self._instance.references.keys():
+            step, stable = self._instance["internal_step"], self._instance["stable_step"]
+            if step > stable:
+                self._log(f"internal_step = {step:.6g} s exceeds stable_step = {stable:.6g} s: the integration will be unstable; "
+                          f"reduce internal_step to {stable:.6g} s or less", Fmi2Status.warning)
+
+    # --- values
+
+    def get_real(self, vrs: list[int]) -> list[float]:
+        """Values of real variables; a block of consecutive references is one slice of the buffer."""
+        try:
+            if vrs and self._stale is _Stale.NOTHING:
+                known = self._readers.get((vrs[0], len(vrs)))
+                if known and known[0] == vrs:
+                    return known[1]()
+            return self._get(Kind.REAL, vrs)
+        except BaseException as error:
+            self._fail(error)
+            return [math.nan] * len(vrs)
+
+    def set_real(self, vrs: list[int], values: list[float]) -> None:
+        """Set real variables; a block of consecutive references is one slice of the buffer."""
+        try:
+            if vrs and self._phase is _Phase.RUNNING:
+                known = self._writers.get((vrs[0], len(vrs)))
+                if known and known[0] == vrs and math.isfinite(sum(values)):
+                    known[1](values)
+                    return
+            self._set(Kind.REAL, vrs, values)
+        except BaseException as error:
+            self._fail(error)
+
+    @_guarded(lambda vrs: [0] * len(vrs))
+    def get_integer(self, vrs: list[int]) -> list[int]:
+        """Values of integer and enumeration variables and of the sizes."""
+        others = iter(self._get(Kind.INTEGER, [r for r in vrs if r not in self._constants]))
+        return [self._constants[r] if r in self._constants else int(next(others)) for r in vrs]
+
+    @_nothing
+    def set_integer(self, vrs: list[int], values: list[int]) -> None:
+        """Set integer and enumeration variables."""
+        self._set(Kind.INTEGER, vrs, values)
+
+    @_guarded(lambda vrs: [False] * len(vrs))
+    def get_boolean(self, vrs: list[int]) -> list[bool]:
+        """Values of boolean variables."""
+        return [bool(value) for value in self._get(Kind.BOOLEAN, vrs)]
+
+    @_nothing
+    def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
+        """Set boolean variables."""
+        self._set(Kind.BOOLEAN, vrs, values)
+
+    @_guarded(lambda vrs: [""] * len(vrs))
+    def get_string(self, vrs: list[int]) -> list[str]:
+        """Refused: no component has a string."""
+        raise _RefusedError(f"value references {vrs} of strings are read; this FMU has no string")
+
+    @_nothing
+    def set_string(self, vrs: list[int], values: list[str]) -> None:
+        """Refused: no component has a string."""
+        raise _RefusedError(f"value references {vrs} of strings are set; this FMU has no string")
+
+    def _variable(self, reference: int, kind: Kind) -> tuple[str, Variable]:
+        if not 0 <= reference < len(self._table):
+            raise _RefusedError(f"value reference {reference} is unknown: allowed is 0 to {len(self._table) - 1}; "
+                                "take it from this FMU's modelDescription.xml")
+        name, variable = self._table[reference]
+        if kind is not (Kind.INTEGER if variable.kind is Kind.ENUMERATION else variable.kind):
+            raise _RefusedError(f"{name} is of type {variable.kind}, not {kind}: use the call of its type")
+        return name, variable
+
+    def _get(self, kind: Kind, vrs: list[int]) -> list[float]:
+        variables = [self._variable(reference, kind)[1] for reference in vrs]
+        if self._phase is _Phase.INITIALISING and any(variable.causality is Causality.OUTPUT for variable in variables):
+            self._preview()
+        if kind is Kind.REAL and vrs:
+            self._readers[vrs[0], len(vrs)] = list(vrs), _reader(self._instance.w, list(vrs))
+        return [self._values[reference] for reference in vrs]
+
+    def _preview(self) -> None:
+        """Compute the outputs before the initialization mode ends; what is wrong with the inputs may still be put right."""
+        try:
+            if not self._previewed:
+                self._compute()
+        except ComponentError as error:
+            self._log(f"the outputs are not valid yet: {'; '.join(error.problems)}", Fmi2Status.warning)
+        self._previewed = True
+
+    def _set(self, kind: Kind, vrs: list[int], values: list[Any]) -> None:
+        if self._phase in (_Phase.TERMINATED, _Phase.FAILED):
+            raise _RefusedError(f"cannot set a variable: {_REMEDIES[self._phase]}")
+        variables = [self._variable(reference, kind) for reference in vrs]
+        if refused := [reason for (name, variable), value in zip(variables, values)
+                       for reason in self._why_not_set(name, variable, float(value))]:
+            raise _RefusedError("; ".join(refused))
+        changed = [variable.causality for (_, variable), r, value in zip(variables, vrs, values) if self._values[r] != value]
+        for reference, value in zip(vrs, values):
+            self._values[reference] = value
+        if self._phase is not _Phase.RUNNING:
+            stale = _Stale.STATE if Causality.PARAMETER in changed else _Stale.OUTPUTS if changed else _Stale.NOTHING
+            self._stale, self._previewed = max(self._stale, stale), self._previewed and not changed
+        elif vrs and all(variable.minimum is None and variable.maximum is None for _, variable in variables):
+            self._writers[vrs[0], len(vrs)] = list(vrs), _writer(self._instance.w, list(vrs))
+
+    def _why_not_set(self, name: str, variable: Variable, value: float) -> list[str]:
+        if variable.causality is Causality.OUTPUT:
+            return [f"{name} = {value:.6g} is refused: it is an output, which the component computes; set parameters or inputs"]
+        if self._phase is not _Phase.RUNNING:
+            return []  # checked all together when the initialization mode ends
+        if variable.causality is Causality.PARAMETER:
+            return [f"{name} = {value:.6g} is refused: a parameter is fixed after the initialisation; reset the slave to change it"]
+        return [f"at t = {self._time:.9g} s: {problem}; correct what sends this value"
+                for problem in value_problems(variable, name, value)]
+
+    # --- complete state
+
+    def _get_fmu_state(self) -> bytes:
+        """The complete state with the time, exact to the bit. It is serialized already: nothing is left that could fail."""
+        try:
+            content = _CLOCK.pack(self._phase, self._time) + self._instance.to_bytes()
+            return _SEAL.pack(_MARK, zlib.crc32(content)) + content
+        except BaseException as error:
+            self._fail(error)
+            return b""
+
+    @_nothing
+    def _set_fmu_state(self, state: bytes) -> None:
+        """Go back to a state, also one of another process. Refused if it is damaged or of another component or size."""
+        self._instance.from_bytes(component_state(state))
+        phase, time = _CLOCK.unpack_from(state, _SEAL.size)
+        self._phase, self._time, self._previewed = _Phase(phase), time, False
+        self._stale = _Stale.STATE if phase in (_Phase.INSTANTIATED, _Phase.INITIALISING) else _Stale.NOTHING
+        if self._phase is _Phase.RUNNING:
+            self._compile_step()
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: bytes) -> bytes:
+        return state
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> bytes:
+        return state
+
+    # --- log
+
+    def _fail(self, error: BaseException) -> None:
+        self._phase = _Phase.FAILED
+        if isinstance(error, ComponentError):
+            text = "; ".join(error.problems)
+        elif isinstance(error, _RefusedError):
+            text = str(error)
+        elif isinstance(error, KeyboardInterrupt):
+            text = "interrupted"
+        else:
+            text = f"unexpected {type(error).__name__}: {error}"
+        self._log(text, Fmi2Status.error)
+
+    def _log(self, text: str, status: Fmi2Status) -> None:
+        """Log with the instance's name. FMI takes a message for a printf format, some tools do not: no percent sign is safe."""
+        self.log(f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent"), status)
+
+
+def component_state(state: bytes) -> bytes:
+    """The part of a slave's serialized state that :meth:`rockshed.components.common.component.Instance.from_bytes` reads.
+
+    Raises:
+        ComponentError: not written by such a slave, or damaged.
+    """
+    if len(state) < _SEAL.size + _CLOCK.size or _SEAL.unpack_from(state) != (_MARK, zlib.crc32(state[_SEAL.size:])):
+        raise ComponentError("FMU state", ["this is no serialized state of a rockshed FMU, or it is damaged: restore another one"])
+    return state[_SEAL.size + _CLOCK.size:]
+
+
+def _is_block(references: list[int]) -> bool:
+    return bool(references) and references == list(range(references[0], references[0] + len(references)))
+
+
+def _reader(buffer: Any, references: list[int]) -> Callable[[], list[float]]:
+    """Function that lists the values at these places of the buffer."""
+    if _is_block(references):
+        return buffer[references[0]:references[0] + len(references)].tolist
+    places = np.array(references)
+    return lambda: buffer[places].tolist()
+
+
+def _writer(buffer: Any, references: list[int]) -> Callable[[list[float]], None]:
+    """Function that puts a list of values to these places of the buffer. ``pack_into`` is faster than assigning a slice."""
+    if _is_block(references):
+        pack, place = struct.Struct(f"{len(references)}d").pack_into, references[0] * buffer.itemsize
+        return lambda values: pack(buffer, place, *values)
+    places = np.array(references)
+    return lambda values: buffer.put(places, values)

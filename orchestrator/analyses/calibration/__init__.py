@@ -1,0 +1,1 @@
+"""E_bar of a sand from static tests."""

@@ -1,0 +1,1 @@
+"""FMUs as the master takes them."""

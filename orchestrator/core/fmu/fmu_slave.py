@@ -1,0 +1,394 @@
+"""FMU files behind the interface of :mod:`rockshed.core.fmu.slave`. The only module that imports fmpy."""
+
+import contextlib
+import ctypes
+import hashlib
+import io
+import itertools
+import os
+import sys
+import tempfile
+import weakref
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+from xml.etree import ElementTree
+
+import fmpy
+import numpy as np
+import pythonfmu  # noqa: F401 (FMUs bring parts of it; the first import serves the whole process, and must be the complete one)
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    calloc,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    free,
+)
+from fmpy.logging import addLoggerProxy
+from fmpy.model_description import ModelDescription, ModelVariable, ValidationError, read_model_description
+
+from ..errors import InputRefused, Problem
+from .description import Description, Port, Unit
+from .slave import BOOLEAN, ERROR, FATAL, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
+
+_DESCRIPTION_FILE = "modelDescription.xml"
+DRIVEN, READABLE = ("2.0",), ("2.0", "3.0")
+"""Versions of FMI that this program drives, and those whose descriptions it can show."""
+_BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+_MESSAGES_KEPT = 1000
+
+
+class FmuFile:
+    """An FMU file."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.origin = {"fmu": str(path)}
+
+    def model_description(self) -> bytes:
+        """The modelDescription.xml of the file, after a look at whether this machine can run the FMU.
+
+        Raises:
+            InputRefused: no such file, not an FMU, or no binary for this platform.
+        """
+        if not self.path.is_file():
+            raise self._refusal("there is no such file", "build the FMU or correct the path")
+        content = self.path.read_bytes()
+        self.origin["sha256"] = hashlib.sha256(content).hexdigest()
+        try:
+            with zipfile.ZipFile(io.BytesIO(content)) as archive:
+                names = archive.namelist()
+                xml = archive.read(_DESCRIPTION_FILE) if _DESCRIPTION_FILE in names else None
+        except zipfile.BadZipFile as error:
+            raise self._refusal("is not an FMU: not a zip archive", "export it again") from error
+        if xml is None:
+            raise self._refusal(f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again")
+        self._check_binary(names, fmpy.platform_tuple if _version(xml).startswith("3") else fmpy.platform)
+        return xml
+
+    def content(self, name: str) -> bytes | None:
+        """A file in the FMU, which has been looked at before; None if it is not in it."""
+        with zipfile.ZipFile(self.path) as archive:
+            return archive.read(name) if name in archive.namelist() else None
+
+    def _check_binary(self, names: list[str], platform: str) -> None:
+        platforms = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and not name.endswith("/")})
+        if platform not in platforms:
+            raise self._refusal(f"has no binary for this machine ({platform}); it has {', '.join(platforms) or 'none'}",
+                                f"export it for {platform}")
+
+    def _refusal(self, what: str, remedy: str) -> InputRefused:
+        return InputRefused([Problem(str(self.path), what, remedy)])
+
+    def instantiate(self, name: str) -> "FmuSlave":
+        """Unpack the file into a temporary folder, load its library and make an instance.
+
+        Raises:
+            InputRefused: the library cannot be loaded, or it makes no instance.
+        """
+        return FmuSlave(self, name)
+
+
+@lru_cache(maxsize=32)
+def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Description:
+    """What ``modelDescription.xml`` says. An array of FMI 3.0 is described by its elements, ``name[1]``, ``name[2]``, ...
+
+    Raises:
+        ValueError: it is for another version of FMI or no co-simulation, or cannot be understood.
+    """
+    _check_kind(xml, versions)
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr(_DESCRIPTION_FILE, xml)
+    warnings: tuple[str, ...] = ()
+    try:
+        model = read_model_description(archive)
+    except ValidationError as error:
+        warnings = tuple(error.problems)
+        model = _read_leniently(archive, error)
+    except Exception as error:  # whatever a broken file does to the reader
+        raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
+    units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
+    interface = model.coSimulation
+    return Description(model.modelName, model.guid, interface.modelIdentifier, model.generationTool or "",
+                       interface.canBeInstantiatedOnlyOncePerProcess,
+                       interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
+                       {port.name: port for v in model.modelVariables for port in _ports(v, units)}, warnings)
+
+
+def _check_kind(xml: bytes, versions: tuple[str, ...]) -> None:
+    try:
+        root = ElementTree.fromstring(xml)
+    except ElementTree.ParseError as error:
+        raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
+    if not (root.get("fmiVersion") or "").startswith(versions):
+        what = "shows FMI 2.0 and 3.0" if versions == READABLE else "drives FMI 2.0"
+        raise ValueError(f"is FMI {root.get('fmiVersion')}; this program {what}")
+    if root.find("CoSimulation") is None:
+        raise ValueError("is for model exchange only; co-simulation is needed")
+
+
+def _version(xml: bytes) -> str:
+    """The version of FMI; empty where the description cannot be read."""
+    try:
+        return ElementTree.fromstring(xml).get("fmiVersion") or ""
+    except ElementTree.ParseError:
+        return ""
+
+
+def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:
+    try:
+        return read_model_description(archive, validate=False)
+    except Exception as error:  # whatever a broken file does to the reader
+        raise ValueError(f"its {_DESCRIPTION_FILE} is not valid: {cause}") from error
+
+
+def _unit(unit: Any) -> Unit:
+    if unit.baseUnit is None:
+        return Unit(unit.name)
+    exponents = {symbol: int(getattr(unit.baseUnit, symbol)) for symbol in _BASE_UNITS}
+    return Unit(unit.name, {symbol: n for symbol, n in exponents.items() if n}, unit.baseUnit.factor, unit.baseUnit.offset)
+
+
+_KINDS_OF_FMI_3 = {"Float32": REAL, "Float64": REAL, "Enumeration": INTEGER, **dict.fromkeys(
+    (f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)), INTEGER)}
+
+
+def _ports(variable: ModelVariable, units: dict[str, Unit]) -> Iterator[Port]:
+    """One port, or as many as an array of fixed size has elements."""
+    port = _port(variable, units)
+    lengths = [int(dimension.start or 1) for dimension in variable.dimensions]
+    if not lengths:
+        yield port
+        return
+    starts = (port.start or "").split()
+    for number, place in enumerate(itertools.product(*(range(1, length + 1) for length in lengths))):
+        start = starts[number] if number < len(starts) else starts[0] if len(starts) == 1 else None
+        yield replace(port, name=f"{port.name}[{','.join(map(str, place))}]", start=start)
+
+
+def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
+    def attribute(name: str) -> Any:
+        own = getattr(variable, name, None)
+        return own if own is not None or variable.declaredType is None else getattr(variable.declaredType, name)
+
+    def bound(name: str) -> float | None:
+        return None if attribute(name) is None else float(attribute(name))
+
+    unit = attribute("unit")
+    items = variable.declaredType.items if variable.declaredType is not None else []
+    return Port(variable.name, variable.valueReference, _KINDS_OF_FMI_3.get(variable.type, variable.type),
+                variable.causality, None if unit is None else units.get(unit, Unit(unit)), bound("min"), bound("max"),
+                {item.name: int(item.value) for item in items}, variable.start, variable.description or "")
+
+
+_slaves: "weakref.WeakValueDictionary[int, FmuSlave]" = weakref.WeakValueDictionary()
+_keys = itertools.count(1)
+
+
+def _log(environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
+    """Give a message of an FMU to the slave it belongs to. One function for all: fmpy's proxy remembers only the last one."""
+    slave = _slaves.get(environment)
+    if slave is not None:
+        del slave.messages[:-_MESSAGES_KEPT]
+        slave.messages.append((status, message.decode("utf-8", "replace") if message else ""))
+
+
+_LOGGER = fmi2CallbackLoggerTYPE(_log)
+
+
+def _made_by_pythonfmu(generation_tool: str) -> bool:
+    return "PythonFMU" in generation_tool
+
+
+def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
+    """Callbacks for one instance. pythonfmu logs plain text where FMI asks for a format: a percent sign in it must not be read."""
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = _LOGGER
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    callbacks.componentEnvironment = environment
+    if not _made_by_pythonfmu(generation_tool):
+        addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
+
+
+def _release_python(library: ctypes.CDLL) -> None:
+    """Let go what pythonfmu's binary would let go a second time when the process ends, which may abort it there.
+
+    Runs when a slave is freed, or else when Python ends, which is before the library's own end.
+    """
+    release = getattr(library, "finalizePythonInterpreter", None)
+    if release is not None:
+        release.restype = None
+        release()
+
+
+_MOVE = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+_STEP = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
+
+
+class FmuSlave:
+    """An instance of an FMU. See :class:`rockshed.core.fmu.slave.Slave`."""
+
+    def __init__(self, file: FmuFile, name: str) -> None:
+        self.name = name
+        self.messages: list[tuple[int, str]] = []
+        self._folder = tempfile.TemporaryDirectory(prefix="rockshed_", ignore_cleanup_errors=True)
+        description = read_description(file.model_description())
+        self._fmu: Any = None
+        key = next(_keys)
+        _slaves[key] = self
+        try:
+            fmpy.extract(file.path, self._folder.name)
+            with contextlib.chdir(os.getcwd()):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
+                self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
+                                      unzipDirectory=self._folder.name)
+            self._release = weakref.finalize(self, _release_python, self._fmu.dll)
+            self._instantiate(_callbacks(key, description.generation_tool), _made_by_pythonfmu(description.generation_tool))
+        except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
+            self._unload()
+            said = "; ".join(text for _, text in self.messages)
+            raise InputRefused([Problem(name, f"no instance of {file.path} can be made: {error} {said}".rstrip(),
+                                        "see whether the FMU runs in another tool")]) from error
+        self.addresses: Addresses | None = self._find_addresses()
+        self._step = _STEP(self.addresses.do_step)
+        self._setters = {kind: _MOVE(address) for kind, address in self.addresses.set.items()}
+        self._getters = {kind: _MOVE(address) for kind, address in self.addresses.get.items()}
+
+    def _instantiate(self, callbacks: fmi2CallbackFunctions, by_pythonfmu: bool) -> None:
+        """Make the instance, as fmpy does but for the location of the resources: of all that is escaped in the URI of a path,
+        pythonfmu's binary knows spaces only, and ends the process where it does not find its files."""
+        location = Path(self._folder.name, "resources").absolute().as_uri()
+        if by_pythonfmu:
+            location = unquote(location)
+            if "%20" in location:  # the binary would read a space
+                raise ValueError(f"the temporary folder {self._folder.name} has %20 in its name: set TMPDIR to another one")
+        self._fmu.callbacks = callbacks
+        self._fmu.component = self._fmu.fmi2Instantiate(
+            self.name.encode(), fmi2CoSimulation, self._fmu.guid.encode(), location.encode(), ctypes.byref(callbacks), 0, 1)
+        if self._fmu.component is None:
+            raise ValueError("fmi2Instantiate returned no instance")
+
+    def _find_addresses(self) -> Addresses:
+        def address(function: str) -> int:
+            return int(ctypes.cast(getattr(self._fmu.dll, function), ctypes.c_void_p).value or 0)
+
+        return Addresses(int(self._fmu.component),
+                         {kind: address(f"fmi2Set{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
+                         {kind: address(f"fmi2Get{kind}") for kind in (REAL, INTEGER, BOOLEAN)}, address("fmi2DoStep"))
+
+    def set(self, references: References, values: Values, kind: str = REAL) -> int:
+        """Set variables of one kind."""
+        if kind != REAL:
+            values = values.astype(np.int32)
+        return int(self._setters[kind](self._fmu.component, references.ctypes.data, references.size, values.ctypes.data))
+
+    def get(self, references: References, out: Values, kind: str = REAL) -> int:
+        """Read variables of one kind into ``out``."""
+        if kind == REAL:
+            return int(self._getters[kind](self._fmu.component, references.ctypes.data, references.size, out.ctypes.data))
+        whole = np.zeros(references.size, np.int32)
+        status = int(self._getters[kind](self._fmu.component, references.ctypes.data, references.size, whole.ctypes.data))
+        out[:] = whole
+        return status
+
+    def set_text(self, reference: int, text: str) -> int:
+        """Set a variable of the kind String."""
+        return self._status(self._fmu.setString, [reference], [text])
+
+    def setup_experiment(self, start: float, stop: float) -> int:
+        """Tell start and end of the run (s)."""
+        return self._status(self._fmu.setupExperiment, None, start, stop)
+
+    def enter_initialisation(self) -> int:
+        """Enter the initialisation mode."""
+        return self._status(self._fmu.enterInitializationMode)
+
+    def exit_initialisation(self) -> int:
+        """Leave the initialisation mode."""
+        return self._status(self._fmu.exitInitializationMode)
+
+    def step(self, time: float, step: float) -> int:
+        """Advance from ``time`` by ``step`` (s)."""
+        return int(self._step(self._fmu.component, time, step, 1))
+
+    def state(self) -> bytes:
+        """The complete state, serialized.
+
+        Raises:
+            RuntimeError: a call failed.
+        """
+        with self._refusals_raised("the state cannot be read"):
+            state = self._fmu.getFMUState()
+            try:
+                return bytes(self._fmu.serializeFMUState(state))
+            finally:
+                self._fmu.freeFMUState(state)
+
+    def restore(self, content: bytes) -> None:
+        """Take over a state of :meth:`state`.
+
+        Raises:
+            RuntimeError: a call failed, or the slave says that this is no state of its own.
+        """
+        with self._refusals_raised("the state cannot be restored"):
+            state = self._fmu.deserializeFMUState(content)
+            try:
+                self._fmu.setFMUState(state)
+            finally:
+                self._fmu.freeFMUState(state)
+
+    @contextlib.contextmanager
+    def _refusals_raised(self, what: str) -> Iterator[None]:
+        """Raise a RuntimeError for a bad status, or for an error that is logged: pythonfmu's binary returns OK for both."""
+        earlier, self.messages = self.messages, []
+        reasons: list[str] = []
+        try:
+            yield
+        except FMICallException as error:
+            reasons.append(str(error))
+        finally:
+            reasons += [text for status, text in self.messages if status >= ERROR]
+            self.messages = earlier + self.messages
+        if reasons:
+            raise RuntimeError(f"{self.name}: {what}: {'; '.join(reasons)}")
+
+    def reset(self) -> int:
+        """Back to the state after instantiation."""
+        return self._status(self._fmu.reset)
+
+    def terminate(self) -> int:
+        """End the run."""
+        return self._status(self._fmu.terminate)
+
+    def free(self) -> None:
+        """Free the instance unless it failed beyond repair, unload the library and remove the unpacked files."""
+        if all(status != FATAL for status, _ in self.messages):
+            self._fmu.fmi2FreeInstance(self._fmu.component)
+        self._unload()
+
+    def _unload(self) -> None:
+        if self._fmu is not None:
+            self._release()
+            self._fmu.freeLibrary()
+        self._folder.cleanup()
+        sys.path[:] = [path for path in sys.path if not path.startswith(self._folder.name)]  # where an FMU's Python code was
+
+    def _status(self, call: Callable[..., Any], *arguments: Any) -> int:
+        """Status of a call of fmpy, which raises an exception for a bad one; the exception is noted where the FMU is silent."""
+        count = len(self.messages)
+        try:
+            return int(call(*arguments) or OK)
+        except FMICallException as error:
+            if len(self.messages) == count:
+                self.messages.append((error.status, f"{error.function} returned {STATUS_NAMES[error.status]}"))
+            return int(error.status)

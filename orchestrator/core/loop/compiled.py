@@ -1,0 +1,267 @@
+"""The exchange loop, compiled: calls the C functions of FMUs by their addresses, whatever the FMUs are.
+
+What numba makes of it is kept as object code (:mod:`rockshed.core.loop.machine_code`), and this module is imported only where there
+is none yet. The global interpreter lock is kept while the loop runs: FMUs with Python inside need it.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import llvmlite.binding as llvm
+from llvmlite import ir
+from numba import from_dtype, njit, types
+from numba.extending import intrinsic
+
+from ..fmu.slave import WARNING
+from ..system.clock import TICKS_PER_SECOND
+from ..system.schedule import Action
+from .tables import CRASHED, ENTRY, KINDS, NOT_FINITE, NUMBERS, REPORTER, REPORTER_LENGTH, Tables
+
+_SET, _STEP = int(Action.SET), int(Action.STEP)
+_WARNING = WARNING
+_TICKS_PER_SECOND = float(TICKS_PER_SECOND)
+
+
+def _compiled(function: Callable[..., Any]) -> Any:
+    """Compile with numba. Nothing is allocated, so arrays need no counted references; counting them would cost 7 us an exchange."""
+    return njit(error_model="numpy", _nrt=False)(function)
+
+
+_intrinsic: Any = intrinsic
+
+
+def _pointer(builder: Any, value: Any) -> Any:
+    return builder.inttoptr(value, ir.IntType(8).as_pointer())
+
+
+@_intrinsic
+def _call_move(_context, function, instance, references, count, values):  # type: ignore[no-untyped-def]
+    """``int function(void* instance, const unsigned* references, size_t count, void* values)`` at an address."""
+    def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        pointer = ir.IntType(8).as_pointer()
+        kind = ir.FunctionType(ir.IntType(32), [pointer, pointer, ir.IntType(64), pointer])
+        f, c, r, n, v = arguments
+        return builder.call(builder.inttoptr(f, kind.as_pointer()),
+                            [_pointer(builder, c), _pointer(builder, r), n, _pointer(builder, v)])
+    return types.int32(*[types.int64] * 5), generate
+
+
+@_intrinsic
+def _call_step(_context, function, instance, time, step):  # type: ignore[no-untyped-def]
+    """``int function(void* instance, double time, double step, int)`` at an address; no earlier state will be asked for."""
+    def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        real, integer = ir.DoubleType(), ir.IntType(32)
+        kind = ir.FunctionType(integer, [ir.IntType(8).as_pointer(), real, real, integer])
+        f, c, t, h = arguments
+        return builder.call(builder.inttoptr(f, kind.as_pointer()), [_pointer(builder, c), t, h, ir.Constant(integer, 1)])
+    return types.int32(types.int64, types.int64, types.float64, types.float64), generate
+
+
+@_compiled
+def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
+    """Enter the work of one exchange.
+
+    The taker moves under the force that it was given at the exchange: force times its own displacement. The giver sees the
+    position jump from one value to the next while its force changes: the mean of both forces times the jump, which is exact
+    for a spring.
+    """
+    for i in range(channels.size):
+        channel = channels[i]
+        position = outputs[channel["position"]]
+        channel["taken"] += inputs[channel["given"]] * (position - channel["last_position"])
+        channel["last_position"] = position
+        if channel["seen"] >= 0:
+            seen, force = inputs[channel["seen"]], outputs[channel["force"]]
+            channel["given_back"] -= 0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
+            channel["last_seen"] = seen
+            channel["last_force"] = force
+
+
+@_compiled
+def _watch(watched, outputs, exchange):  # type: ignore[no-untyped-def]
+    """Enter the values after ``exchange`` exchanges into extremes and integrals (trapezoidal rule)."""
+    for i in range(watched.size):
+        entry = watched[i]
+        value = outputs[entry["place"]]
+        if value > entry["high"]:
+            entry["high"] = value
+            entry["high_at"] = exchange
+        if value < entry["low"]:
+            entry["low"] = value
+            entry["low_at"] = exchange
+        entry["area"] += 0.5 * (entry["last"] + value)
+        entry["last"] = value
+
+
+@_compiled
+def _is_bad(status):  # type: ignore[no-untyped-def]
+    """Whether a run has to end at this status."""
+    return status > _WARNING or status == NOT_FINITE
+
+
+@_compiled
+def _lost(values):  # type: ignore[no-untyped-def]
+    """How many of the values are no finite numbers. Without a way out in between, the compiler takes several at a time."""
+    count = 0
+    for i in range(values.size):
+        count += 0 if math.isfinite(values[i]) else 1
+    return count
+
+
+@_compiled
+def _give(tables, move):  # type: ignore[no-untyped-def]
+    """Set connected inputs of a component to the newest values. Returns the status."""
+    begin, number = move["begin"], move["number"]
+    inputs, source = tables.inputs[begin:begin + number], tables.source[begin:begin + number]
+    for i in range(number):
+        inputs[i] = tables.outputs[source[i]]
+    address = tables.inputs.ctypes.data + 8 * begin
+    if move["whole"]:
+        for i in range(number):
+            tables.integers[i] = int(inputs[i])
+        address = tables.integers.ctypes.data
+    return _call_move(move["function"], move["instance"], move["references"], number, address)
+
+
+@_compiled
+def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
+    """Get outputs of a component into a row of numbers that begins at ``base``. Returns the status, or :data:`NOT_FINITE`."""
+    begin, number = base + move["begin"], move["number"]
+    address = tables.integers.ctypes.data if move["whole"] else values.ctypes.data + 8 * begin
+    status = _call_move(move["function"], move["instance"], move["references"], number, address)
+    if move["whole"]:
+        for i in range(number):
+            values[begin + i] = float(tables.integers[i])
+    if status <= _WARNING and _lost(values[begin:begin + number]) > 0:
+        return NOT_FINITE
+    return status
+
+
+@_compiled
+def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
+    """Carry out an operation of a period that began at the tick ``origin``. Returns the first bad status, or OK."""
+    if operation["action"] == _STEP:
+        time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
+        return _call_step(operation["do_step"], operation["instance"], time, float(operation["length"]) / _TICKS_PER_SECOND)
+    for m in range(operation["first_move"], operation["end_move"]):
+        status = _give(tables, tables.moves[m]) if operation["action"] == _SET else _take(
+            tables, tables.moves[m], tables.outputs, 0)
+        if _is_bad(status):
+            return status
+    return 0
+
+
+@_compiled
+def _record(tables, base):  # type: ignore[no-untyped-def]
+    """Take a snapshot into the row that begins at ``base``. Returns the operation that failed, and its status."""
+    for i in range(tables.outputs.size):
+        tables.snapshots[base + i] = tables.outputs[i]
+    works = base + tables.width - 2 * tables.channels.size
+    for i in range(tables.channels.size):
+        tables.snapshots[works + i] = tables.channels[i]["taken"]
+        tables.snapshots[works + tables.channels.size + i] = tables.channels[i]["given_back"]
+    for o in range(tables.first[tables.first.size - 1], tables.operations.size):
+        tables.journal[1] = o
+        for m in range(tables.operations[o]["first_move"], tables.operations[o]["end_move"]):
+            status = _take(tables, tables.moves[m], tables.snapshots, base)
+            if _is_bad(status):
+                return o, status
+    return 0, 0
+
+
+@_compiled
+def advance(tables, first, count):  # type: ignore[no-untyped-def]
+    """Carry out ``count`` exchanges from exchange number ``first`` on, and take the snapshots that are due.
+
+    Returns (number of exchanges before the one that failed, operation, status): the operation that ended the run early and its
+    status, OK if none did.
+    """
+    period = tables.first.size - 1
+    for n in range(first, first + count):
+        origin = tables.start + n // period * period * tables.exchange
+        tables.journal[0] = n
+        for o in range(tables.first[n % period], tables.first[n % period + 1]):
+            tables.journal[1] = o
+            status = _operate(tables, tables.operations[o], origin)
+            if _is_bad(status):
+                return n - first, o, status
+        _post(tables.channels, tables.inputs, tables.outputs)
+        _watch(tables.watched, tables.outputs, n + 1)
+        if (n + 1) % tables.every == 0:
+            row = tables.row + (n + 1) // tables.every - first // tables.every - 1
+            o, status = _record(tables, row * tables.width)
+            if status != 0:
+                return n - first, o, status
+        tables.journal[1] = -1
+    return count, 0, 0
+
+
+def object_code(target: llvm.TargetMachine) -> bytes:
+    """:func:`advance` as object code for a processor, which needs nothing from outside. Its one C function :data:`ENTRY` takes the
+    address of :func:`rockshed.core.loop.tables.head`, ``first``, ``count``, and the address of three numbers for the result.
+    """
+    arrays = [types.Array(from_dtype(kind), 1, "C") for kind in KINDS.values()]
+    signature = (types.NamedTuple([*[types.int64] * len(NUMBERS), *arrays], Tables), types.int64, types.int64)
+    advance.compile(signature)
+    compiled = advance.overloads[signature]
+    whole = llvm.parse_assembly(compiled.library.get_llvm_str())
+    for module in (_entry(compiled), _handler()):
+        whole.link_in(llvm.parse_assembly(str(module)))
+    for function in whole.functions:
+        if not function.is_declaration and function.name not in (ENTRY, CRASHED):
+            function.linkage = "internal"
+            function.add_function_attribute("alwaysinline")  # a call would pass all tables on, field by field
+    builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(whole, builder)
+    foreign = [f.name for f in whole.functions if f.is_declaration and not f.name.startswith("llvm.")]
+    assert not foreign, f"the loop needs {', '.join(foreign)}"
+    code = target.emit_object(whole)
+    assert isinstance(code, bytes)
+    return code
+
+
+def _entry(compiled: Any) -> ir.Module:
+    """The C function, which calls the compiled one by numba's own convention. Nothing in it raises, so the status says nothing."""
+    module, integer = ir.Module(), ir.IntType(64)
+    descriptor, convention = compiled.fndesc, compiled.target_context.call_conv
+    callee = ir.Function(module, convention.get_function_type(descriptor.restype, descriptor.argtypes), descriptor.llvm_func_name)
+    entry = ir.Function(module, ir.FunctionType(integer, [integer] * 4), ENTRY)
+    builder = ir.IRBuilder(entry.append_basic_block())
+    head, first, count, outcome = entry.args
+    kinds = callee.function_type.args
+
+    def number(address: Any, place: int) -> Any:
+        return builder.gep(builder.inttoptr(address, integer.as_pointer()), [integer(place)])
+
+    arguments = [builder.alloca(kinds[0].pointee), builder.alloca(kinds[1].pointee),
+                 *(builder.load(number(head, place)) for place in range(len(NUMBERS)))]
+    for place, kind in enumerate(KINDS.values()):
+        address, length = (builder.load(number(head, len(NUMBERS) + 2 * place + i)) for i in range(2))
+        fields = kinds[len(arguments):]
+        size = integer(kind.itemsize)
+        arguments += [fields[0](None), fields[1](None), length, size, builder.inttoptr(address, fields[4]), length,
+                      size]  # owner, parent, number of elements, bytes of one, data, shape, strides
+    builder.call(callee, [*arguments, first, count])
+    found = builder.load(arguments[0])
+    for place in range(3):
+        builder.store(builder.extract_value(found, place), number(outcome, place))
+    builder.ret(integer(0))
+    return module
+
+
+def _handler() -> ir.Module:
+    """The handler of signals: ``void rockshed_crashed(int signal)``. It calls nothing that a handler may not call."""
+    module, integer, short = ir.Module(), ir.IntType(64), ir.IntType(32)
+    table = ir.GlobalVariable(module, ir.ArrayType(integer, REPORTER_LENGTH), REPORTER)
+    table.initializer = ir.Constant(table.value_type, [0] * REPORTER_LENGTH)
+    handler = ir.Function(module, ir.FunctionType(ir.VoidType(), [short]), CRASHED)
+    builder = ir.IRBuilder(handler.append_basic_block())
+    execve, *arguments, digits, leave = (builder.load(builder.gep(table, [short(0), short(i)])) for i in range(REPORTER_LENGTH))
+    for place, digit in enumerate((builder.sdiv(handler.args[0], short(10)), builder.srem(handler.args[0], short(10)))):
+        text = builder.inttoptr(digits, ir.IntType(8).as_pointer())
+        builder.store(builder.trunc(builder.add(digit, short(ord("0"))), ir.IntType(8)), builder.gep(text, [short(place)]))
+    builder.call(builder.inttoptr(execve, ir.FunctionType(short, [integer] * 3).as_pointer()), arguments)
+    builder.call(builder.inttoptr(leave, ir.FunctionType(ir.VoidType(), [short]).as_pointer()), [short(1)])
+    builder.ret_void()
+    return module

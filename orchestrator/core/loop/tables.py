@@ -1,0 +1,93 @@
+"""The tables that the exchange loop works on, as it finds them in memory. Addresses, places and ticks are int64, values float64."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Records = NDArray[np.void]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+NOT_FINITE = -1
+"""Outcome of an operation that brought a value that is no finite number."""
+
+
+def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
+    return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in reals.split()])
+
+
+OPERATION = _record("action instance do_step begin length first_move end_move")
+"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks, from the beginning of the period.
+first_move, end_move: rows in the table of moves, for any other action."""
+
+MOVE = _record("function instance references number begin whole")
+"""A bulk call that moves ``number`` values from place ``begin`` of a bus on. function, instance, references: addresses. whole: the
+values travel as 32-bit integers."""
+
+CHANNEL = _record("given seen force position", "last_seen last_force last_position taken given_back")
+"""A force of a power bond. Places as in :class:`rockshed.core.system.plan.Bond`. taken, given_back: work (J) on the taker, and on the
+giver by what it was shown."""
+
+WATCHED = _record("place low_at high_at", "low high last area")
+"""Smallest and largest value of a watched output, and the exchanges after which they were reached; its newest value, and the area
+under it: its integral in units of the exchange step."""
+
+
+class Tables(NamedTuple):
+    """Everything that the loop works on.
+
+    first: operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those after the last of a period read
+    what is recorded. start, exchange: ticks.
+    inputs, outputs: the two buses. source: for each input, the place of the output that feeds it; unsigned, so that numba does not
+    look whether it counts from the end.
+    integers: buffer for values on their way as integers, as long as any row of them.
+    snapshots: rows of :class:`rockshed.core.results.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges, the
+    next one in ``row``. journal: exchange and operation under way, -1 while none is.
+    """
+
+    start: int
+    exchange: int
+    every: int
+    width: int
+    row: int
+    first: Integers
+    operations: Records
+    moves: Records
+    inputs: Floats
+    outputs: Floats
+    source: NDArray[np.uint64]
+    integers: NDArray[np.int32]
+    channels: Records
+    watched: Records
+    snapshots: Floats
+    journal: Integers
+
+
+NUMBERS = ("start", "exchange", "every", "width", "row")
+"""The numbers among the :class:`Tables`, which come first."""
+
+KINDS = {"first": np.dtype(np.int64), "operations": OPERATION, "moves": MOVE, "inputs": np.dtype(np.float64),
+         "outputs": np.dtype(np.float64), "source": np.dtype(np.uint64), "integers": np.dtype(np.int32), "channels": CHANNEL,
+         "watched": WATCHED, "snapshots": np.dtype(np.float64), "journal": np.dtype(np.int64)}
+"""Types of the arrays among the :class:`Tables`, in their order."""
+
+ENTRY, CRASHED, REPORTER = "rockshed_advance", "rockshed_crashed", "rockshed_reporter"
+"""Names in the object code: the loop as a C function; a handler of signals, which makes the process another one; the addresses that
+the handler needs: execve, its three arguments, two digits for the number of the signal, and _exit."""
+REPORTER_LENGTH = 6
+
+
+def head(tables: Tables) -> Integers:
+    """All that the loop is told: numbers, then address and length of each array, which has to stay where it is.
+
+    Raises:
+        ValueError: an array is not of its kind, or not in one piece.
+    """
+    entries = [getattr(tables, name) for name in NUMBERS]
+    for name, kind in KINDS.items():
+        array = getattr(tables, name)
+        if array.dtype != kind or array.ndim != 1 or not array.flags.c_contiguous:
+            raise ValueError(f"the table {name} is no row of {kind}")
+        entries += [array.ctypes.data, array.size]
+    return np.array(entries, np.int64)

@@ -1,0 +1,308 @@
+"""Results of a run: a folder with time series, states, summary and provenance, written so that a killed run can be read.
+
+While a run is going on, everything goes into ``NAME.running`` beside the folder ``NAME``; when it ends, that takes the place of
+``NAME`` as a whole. Rows and states are appended to Arrow streams, which can be read up to the last complete batch whatever
+happens, and are turned into the final files at the end.
+
+==================  =====================================================================================================
+run.json            status (running, complete, interrupted, failed), error, warnings, provenance
+summary.json        list of {name, value, unit}, with {references} where an application knows of any
+timeseries.parquet  columns ``time`` and ``component.variable``; unit and description in the metadata of each field
+timeseries.csv      the same, ``time`` first, one line of names
+columns.csv         name, unit and description of each column
+states.h5           per component: ``time`` (n,), and serialized states ``state/0`` to ``state/n-1`` (bytes as uint8)
+==================  =====================================================================================================
+"""
+
+import csv
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from itertools import chain
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from filelock import FileLock, Timeout
+from numpy.typing import NDArray
+
+from ..errors import InputRefused, Problem
+
+RUN, SUMMARY, COLUMNS = "run.json", "summary.json", "columns.csv"
+PARQUET, CSV, STATES = "timeseries.parquet", "timeseries.csv", "states.h5"
+ROWS_STREAM, STATES_STREAM = "timeseries.arrows", "states.arrows"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the time series."""
+
+    name: str
+    unit: str
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What another source gives for a figure: its value, by how much the figure deviates (figure / value - 1), how it was found."""
+
+    value: float
+    deviation: float
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A headline figure of the summary. references: what others found, by who found it."""
+
+    name: str
+    value: float | int | str
+    unit: str = "1"
+    references: Mapping[str, Beside] = field(default_factory=dict)
+
+    def as_entry(self) -> dict[str, Any]:
+        """As plain data; references only where there are any."""
+        return {key: value for key, value in asdict(self).items() if key != "references" or value}
+
+    @classmethod
+    def from_entry(cls, entry: Mapping[str, Any]) -> "Figure":
+        """The figure in an entry of a summary; what other programs have added to the entry is passed over.
+
+        Raises:
+            KeyError, TypeError: it is no entry of a summary.
+        """
+        references = {who: Beside(found["value"], found["deviation"], found.get("note", ""))
+                      for who, found in entry.get("references", {}).items()}
+        return cls(entry["name"], entry["value"], entry.get("unit", "1"), references)
+
+
+class RunFolder:
+    """The folder of one run, locked against other runs while it is open. A context manager.
+
+    Left before :meth:`begin`, it leaves nothing behind; left between :meth:`begin` and :meth:`finish`, what a killed run leaves.
+
+    Raises:
+        InputRefused: the folder cannot be written, holds something else than a run, or another run is writing it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder.absolute()
+        self.running = running_folder(self.folder)
+        self._old = self.folder.parent / f".{self.folder.name}.old"
+        self._made = [parent for parent in (self.folder.parent, *self.folder.parent.parents) if not parent.exists()]
+        self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
+        self.columns: list[Column] = []
+        self._rows: _Stream | None = None
+        self._states: _Stream | None = None
+
+    def __enter__(self) -> "RunFolder":
+        if self.folder.exists() and not _is_run_or_empty(self.folder):
+            raise self._refusal("is no folder of a run, and would be overwritten", "choose another folder")
+        try:
+            self.folder.parent.mkdir(parents=True, exist_ok=True)
+            self._lock.acquire(timeout=0)
+            for left in filter(Path.exists, (self.running, self._old)):  # by a run that was killed
+                shutil.rmtree(left)
+            self.running.mkdir()
+        except Timeout:
+            if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
+                self._clean()
+                raise self._refusal("cannot be written", "choose another folder") from None
+            raise self._refusal("another run is writing there", "wait for its end or choose another folder") from None
+        except OSError as error:
+            self._clean()
+            raise self._refusal(f"cannot be written: {error.strerror or error}", "choose another folder") from error
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._rows is None:
+            shutil.rmtree(self.running, ignore_errors=True)
+        self._clean()
+
+    def _refusal(self, what: str, remedy: str) -> InputRefused:
+        return InputRefused([Problem(str(self.folder), what, remedy)])
+
+    def _clean(self) -> None:
+        """Release the lock; remove it and folders that were made for nothing."""
+        if self._lock.is_locked:
+            Path(self._lock.lock_file).unlink(missing_ok=True)
+            self._lock.release()
+        for made in self._made:
+            try:
+                made.rmdir()
+            except OSError:
+                return
+
+    # ------------------------------------------------------------------ during the run
+
+    def begin(self, columns: Sequence[Column], provenance: Mapping[str, Any]) -> None:
+        """Write down what is about to run. ``columns`` without the time."""
+        import pyarrow as pa
+
+        self.columns = [Column("time", "s", "simulated time"), *columns]
+        self.write_provenance({"status": "running", **provenance})
+        self._write_columns()
+        self._rows = _Stream(self.running / ROWS_STREAM, schema(self.columns))
+        self._states = _Stream(self.running / STATES_STREAM,
+                               pa.schema([("component", pa.string()), ("time", pa.float64()), ("state", pa.binary())]))
+
+    def write_provenance(self, provenance: Mapping[str, Any]) -> None:
+        """Replace ``run.json``."""
+        self.provenance = dict(provenance)
+        write_json(self.running / RUN, self.provenance)
+
+    def _write_columns(self) -> None:
+        with (self.running / COLUMNS).open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, ["name", "unit", "description"])
+            writer.writeheader()
+            writer.writerows(map(asdict, self.columns))
+
+    def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
+        """Append the values of all columns, a row for each time (s)."""
+        if self._rows is not None:
+            self._rows.append([times, *np.ascontiguousarray(values.T)])
+
+    def frame(self, component: str, at: float, state: bytes) -> None:
+        """Append the serialized state of a component at a time (s)."""
+        if self._states is not None:
+            self._states.append([[component], [at], [state]])
+
+    # ------------------------------------------------------------------ at the end
+
+    def finish(self, status: str, figures: Sequence[Figure], **facts: Any) -> None:
+        """Write the final files and put them in the place of the folder. ``facts`` are added to the provenance."""
+        for stream in filter(None, (self._rows, self._states)):
+            stream.close()
+        self.complete(status, figures, **facts)
+
+    def complete(self, status: str, figures: Sequence[Figure], **facts: Any) -> None:
+        """Turn streams, which may have been cut off, into the final files, and put them in the place of the folder."""
+        write_json(self.running / SUMMARY, [figure.as_entry() for figure in figures])
+        _convert_rows(self.running, self.columns)
+        _convert_states(self.running)
+        self.write_provenance({**self.provenance, "status": status, **facts})
+        self.swap()
+
+    def swap(self) -> None:
+        """The new folder takes the place of the old one. Renaming is one step each for the file system."""
+        if self.folder.exists():
+            self.folder.rename(self._old)
+        self.running.rename(self.folder)
+        shutil.rmtree(self._old, ignore_errors=True)
+
+
+class _Stream:
+    """An Arrow stream in a file; each batch is handed to the operating system as soon as it is written."""
+
+    def __init__(self, path: Path, schema: Any) -> None:
+        import pyarrow as pa
+
+        self._schema, self._file = schema, path.open("wb")
+        self._writer = pa.ipc.new_stream(self._file, schema, options=pa.ipc.IpcWriteOptions(compression="zstd"))
+        self._file.flush()
+
+    def append(self, columns: Sequence[Any]) -> None:
+        """Write a batch, given by columns of equal length."""
+        import pyarrow as pa
+
+        self._writer.write_batch(pa.record_batch([pa.array(c, f.type) for c, f in zip(columns, self._schema, strict=True)],
+                                                 schema=self._schema))
+        self._file.flush()
+
+    def close(self) -> None:
+        """End the stream, so that it is complete."""
+        self._writer.close()
+        self._file.close()
+
+
+def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:
+    """Make what a run has left that crashed the results of a run that failed. False if it had not begun; then nothing is left."""
+    results = RunFolder(folder)
+    (results.folder.parent / f".{results.folder.name}.lock").unlink(missing_ok=True)
+    for left in results.running.glob("journal.*"):
+        left.unlink()
+    if not (results.running / ROWS_STREAM).is_file():
+        shutil.rmtree(results.running, ignore_errors=True)
+        return False
+    results.provenance = json.loads((results.running / RUN).read_text(encoding="utf-8"))
+    results.columns = read_columns(results.running / COLUMNS)
+    results.complete("failed", [], error=error, **facts)
+    return True
+
+
+def running_folder(folder: Path) -> Path:
+    """Where a run writes before it has ended."""
+    return folder.parent / f"{folder.name}.running"
+
+
+def _is_run_or_empty(folder: Path) -> bool:
+    return folder.is_dir() and ((folder / RUN).is_file() or not any(folder.iterdir()))
+
+
+def read_columns(path: Path) -> list[Column]:
+    """The columns in a ``columns.csv``."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return [Column(**entry) for entry in csv.DictReader(file)]
+
+
+def schema(columns: Sequence[Column]) -> Any:
+    """Arrow's schema of the time series."""
+    import pyarrow as pa
+
+    return pa.schema([pa.field(c.name, pa.float64(), metadata={"unit": c.unit, "description": c.description}) for c in columns])
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write a file that is complete at any moment."""
+    beside = path.with_name(path.name + ".new")
+    beside.write_text(json.dumps(content, indent=2, default=str, ensure_ascii=False) + "\n", encoding="utf-8")
+    os.replace(beside, path)
+
+
+def batches(path: Path) -> Iterator[Any]:
+    """The batches of a stream, up to where it was cut off."""
+    import pyarrow as pa
+
+    if not path.is_file():
+        return
+    with path.open("rb") as file:
+        try:
+            yield from pa.ipc.open_stream(file)
+        except (pa.ArrowInvalid, OSError):  # the process was killed while it wrote
+            return
+
+
+def streamed_frames(folder: Path) -> Iterator[tuple[str, float, bytes]]:
+    """Component, time (s) and state of each frame in the stream of a run."""
+    for batch in batches(folder / STATES_STREAM):
+        yield from zip(*(column.to_pylist() for column in batch.columns), strict=True)
+
+
+def _convert_rows(folder: Path, columns: Sequence[Column]) -> None:
+    import pyarrow as pa
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
+    pyarrow.parquet.write_table(table, folder / PARQUET, compression="zstd")
+    pyarrow.csv.write_csv(table, folder / CSV)
+    (folder / ROWS_STREAM).unlink()
+
+
+def _convert_states(folder: Path) -> None:
+    times: dict[str, list[float]] = {}
+    frames = streamed_frames(folder)
+    if (first := next(frames, None)) is not None:
+        import h5py
+
+        with h5py.File(folder / STATES, "w") as file:
+            for component, at, state in chain([first], frames):
+                times.setdefault(component, []).append(at)
+                file.create_dataset(f"{component}/state/{len(times[component]) - 1}", data=np.frombuffer(state, np.uint8),
+                                    compression="gzip", compression_opts=1, shuffle=True)
+            for component, values in times.items():
+                file.create_dataset(f"{component}/time", data=values).attrs["unit"] = "s"
+    (folder / STATES_STREAM).unlink()

@@ -1,0 +1,1 @@
+"""A system as data, and the plan of a run."""

@@ -1,0 +1,238 @@
+"""A system as data: components, connections, shared values, power bonds, and how the run is to be made.
+
+A system is read from a TOML file or built in Python; both are checked for their form here, and against the FMUs in
+:mod:`rockshed.core.system.plan`.
+"""
+
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from ..errors import InputRefused, Problem
+from .names import matches, nearest
+
+Value = bool | int | float | str
+"""Value of a parameter or input. An item of an enumeration may be given by its name or its number."""
+
+Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+
+RESERVED = ("time", "coupling")
+"""Names that a component cannot have: columns of the results begin with them."""
+
+
+def _not_reserved(name: str) -> str:
+    if name in RESERVED:
+        raise ValueError(f"a component cannot be called {name}: columns of the results are; choose another name")
+    return name
+
+
+ComponentName = Annotated[Name, AfterValidator(_not_reserved)]
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class ComponentSpec(_Data):
+    """A subsystem: an FMU and how it takes part.
+
+    fmu: path of the file; in a TOML file, relative to the folder of that file.
+    step: communication step (s); without it, the exchange step.
+    parameters: values of parameters and of unconnected inputs that differ from the FMU's start values. ``name[*]`` sets a
+        whole array.
+    record_states: keep serialized states every ``state_interval``.
+    """
+
+    fmu: str
+    step: Seconds | None = None
+    parameters: dict[str, Value] = {}
+    record_states: bool = False
+
+
+class Connection(_Data):
+    """An output that feeds an input, both written ``component.port``. In TOML: ``"sand.rock.force.x -> rock.force.x"``.
+
+    ``[*]`` stands for all elements of an array, ``[1..24]`` for some; source and target then need the same number of them.
+    """
+
+    source: str
+    target: str
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, data: Any) -> Any:
+        if not isinstance(data, str):
+            return data
+        parts = [part.strip() for part in data.split("->")]
+        if len(parts) != 2 or not all(parts):
+            raise ValueError(f'{data!r} is no connection; write "component.output -> component.input"')
+        return {"source": parts[0], "target": parts[1]}
+
+
+class SharedValue(_Data):
+    """One value that several parameters take: the radius of the rock, for instance. Targets are ``component.parameter``."""
+
+    value: Value
+    targets: list[str] = Field(min_length=1)
+
+
+class PowerBond(_Data):
+    """An interface through which energy flows: the giver computes forces, the taker moves under them.
+
+    force: outputs of ``giver``, force or torque on the taker. position: outputs of ``taker``, one for each force, of the point
+        and direction (or angle) in which it acts.
+    work: output of ``giver`` that counts the energy which this interface brings into it. Without it, the ledger takes the
+        force that the giver computed times the displacement that it was shown.
+    opposed: force and position count in opposite directions, as the compression at a toe and its way downwards do.
+    """
+
+    giver: str
+    force: list[str] = Field(min_length=1)
+    taker: str
+    position: list[str] = Field(min_length=1)
+    work: str | None = None
+    opposed: bool = False
+
+
+class EnergyAlarm(_Data):
+    """Warn when the energy that a coupling made or lost exceeds ``share`` of a reference.
+
+    reference: an energy (J), or the output ``component.port`` whose value at the start is taken.
+    """
+
+    share: float = Field(default=0.01, gt=0.0, allow_inf_nan=False)
+    reference: str | Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+
+
+class System(_Data):
+    """A co-simulation: what takes part, how it is connected and how it is run.
+
+    master: sequential (in ``order``, each component takes the newest values) or jacobi (all take the values of the beginning
+        of the exchange).
+    order: every component once; without it, as they are listed.
+    output_interval: time between two rows of the results (s); without it, the exchange step.
+    state_interval: time between two recorded states (s) of the components with ``record_states``.
+    record: variables in the results, ``component.port``; ``*`` stands for any text, and then selects outputs. Default: all
+        outputs.
+    watch: outputs whose extremes and integral over all exchanges go into the summary, in the same notation.
+    """
+
+    name: str
+    description: str = ""
+    components: dict[ComponentName, ComponentSpec] = Field(min_length=1)
+    connections: list[Connection] = []
+    shared: dict[Name, SharedValue] = {}
+    bonds: dict[Name, PowerBond] = {}
+    energy_alarm: EnergyAlarm | None = None
+    master: Literal["sequential", "jacobi"] = "sequential"
+    order: list[str] = []
+    start_time: float = Field(default=0.0, allow_inf_nan=False)
+    stop_time: float = Field(allow_inf_nan=False)
+    exchange_step: Seconds
+    output_interval: Seconds | None = None
+    state_interval: Seconds | None = None
+    record: list[str] = ["*"]
+    watch: list[str] = []
+
+    def step(self, component: str) -> float:
+        """Communication step of a component (s)."""
+        return self.components[component].step or self.exchange_step
+
+
+def system_from(data: Mapping[str, Any], where: str = "system") -> System:
+    """A system from plain data.
+
+    Raises:
+        InputRefused: unknown or missing keys, values of the wrong type or out of range; each with the path of its key.
+    """
+    try:
+        return System.model_validate(data)
+    except ValidationError as error:
+        found: dict[str, list[str]] = {}
+        for entry in error.errors():
+            found.setdefault(_path(entry["loc"]), []).append(_sentence(entry))
+        raise InputRefused([Problem(f"{where}: {key}", " or ".join(sentences)) for key, sentences in found.items()]) from error
+
+
+def load_system(path: Path) -> System:
+    """The system in a TOML file. Relative paths of FMUs count from the folder of the file.
+
+    Raises:
+        InputRefused: no such file, not TOML, or :func:`system_from` refuses the content.
+    """
+    try:
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise InputRefused([Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]) from error
+    except UnicodeDecodeError as error:
+        raise InputRefused([_not_utf_8(path)]) from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
+    system = system_from(data, str(path))
+    folder = path.resolve().parent
+    return system.model_copy(update={"components": {
+        name: spec.model_copy(update={"fmu": str(folder / spec.fmu)}) for name, spec in system.components.items()}})
+
+
+def _not_utf_8(path: Path) -> Problem:
+    utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
+    return Problem(str(path), f"is {'written in UTF-16' if utf_16 else 'no text in UTF-8'}, and TOML is UTF-8",
+                   "save it again with the encoding UTF-8")
+
+
+def with_values(system: System, values: Mapping[str, Value]) -> System:
+    """The system with other values, by ``component.parameter`` or by the name of a shared value.
+
+    A value that is shared changes for all its targets.
+
+    Raises:
+        InputRefused: no such component, or two different values for one shared value. Names of parameters are not checked
+            here: only the FMU knows them.
+    """
+    parameters = {name: dict(spec.parameters) for name, spec in system.components.items()}
+    shared: dict[str, dict[str, Value]] = {}
+    problems = []
+    for name, value in values.items():
+        component, _, parameter = name.partition(".")
+        owners = [key for key, entry in system.shared.items() if name == key or any(matches(t, name) for t in entry.targets)]
+        if owners:
+            shared.setdefault(owners[0], {})[name] = value
+        elif component in parameters and parameter:
+            parameters[component][parameter] = value
+        else:
+            problems.append(Problem(name, "is neither component.parameter nor a shared value",
+                                    nearest(component, [*system.components, *system.shared])))
+    problems += [Problem(key, "is one value for all its targets, and is given several: "
+                         + ", ".join(f"{n} = {v}" for n, v in given.items()), "give one of them")
+                 for key, given in shared.items() if len(set(map(str, given.values()))) > 1]
+    if problems:
+        raise InputRefused(problems)
+    return system.model_copy(update={
+        "components": {name: spec.model_copy(update={"parameters": parameters[name]}) for name, spec in system.components.items()},
+        "shared": {key: entry.model_copy(update={"value": next(iter(shared[key].values()))}) if key in shared else entry
+                   for key, entry in system.shared.items()}})
+
+
+def _path(location: tuple[int | str, ...]) -> str:
+    """``components.rock.step``; the names that pydantic gives to the alternatives of a type are left out."""
+    kept = [part for part in location if not (isinstance(part, str) and re.fullmatch(r"bool|int|float|str|constrained-.*", part))]
+    return ".".join(map(str, kept))
+
+
+def _sentence(error: Any) -> str:
+    if error["type"] == "extra_forbidden":
+        return f"there is no such key; {nearest(str(error['loc'][-1]), _KEYS)}"
+    if error["type"] == "missing":
+        return "is missing"
+    given = "" if isinstance(error["input"], dict | list) or error["type"] == "value_error" else f" (given: {error['input']!r})"
+    message = str(error["msg"]).removeprefix("Value error, ")
+    return message[0].lower() + message[1:] + given
+
+
+_KEYS = sorted({key for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, System)
+                for key in model.model_fields})

@@ -1,0 +1,83 @@
+"""Values for parameters and inputs: from what a person writes to what a port takes."""
+
+import math
+
+from ..fmu.description import Port
+from ..fmu.slave import BOOLEAN, INTEGER, REAL, STRING
+from .system import Value
+
+_TRUE, _FALSE = ("true", "1", "on", "yes"), ("false", "0", "off", "no")
+
+
+def value_for(port: Port, value: Value) -> float | str:
+    """The value as the port takes it. Text is read as a number, a word or an item of an enumeration, whatever the port is.
+
+    Raises:
+        ValueError: it does not fit; the text says what is allowed.
+    """
+    if port.kind == STRING:
+        return str(value)
+    number = _item(port, value) if port.items else _number(port, value)
+    unit = "" if port.unit is None or port.unit_name == "1" else f" {port.unit_name}"
+    low = -math.inf if port.minimum is None else port.minimum
+    high = math.inf if port.maximum is None else port.maximum
+    if not math.isfinite(number):
+        raise ValueError("must be a finite number")
+    if not low <= number <= high:
+        raise ValueError(f"allowed is {_range(low, high, unit)}")
+    return number
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    if math.isinf(high):
+        return f"{low:g}{unit} or more"
+    return f"{high:g}{unit} or less" if math.isinf(low) else f"{low:g} to {high:g}{unit}"
+
+
+def _item(port: Port, value: Value) -> float:
+    """Number of an enumeration's item, given by name or number."""
+    if str(value) in port.items:
+        return float(port.items[str(value)])
+    numbers = {str(number): number for number in port.items.values()}
+    if isinstance(value, bool) or str(value) not in numbers:
+        raise ValueError(f"choose one of {', '.join(port.items)}")
+    return float(numbers[str(value)])
+
+
+def _number(port: Port, value: Value) -> float:
+    if port.kind == BOOLEAN:
+        return _truth(value)
+    if isinstance(value, bool):
+        raise ValueError("must be a number, not true or false")
+    try:
+        number = float(value)
+    except ValueError:
+        raise ValueError("must be a number") from None
+    if port.kind == INTEGER and number != math.floor(number):
+        raise ValueError("must be a whole number")
+    return number
+
+
+def _truth(value: Value) -> float:
+    word = str(value).lower().removesuffix(".0")
+    if word not in _TRUE + _FALSE:
+        raise ValueError("must be true or false")
+    return float(word in _TRUE)
+
+
+def written(port: Port, number: float) -> Value:
+    """A number as a person would write it: the name of an item, true or false, a whole number."""
+    if port.items:
+        return next((name for name, n in port.items.items() if n == number), number)
+    if port.kind == BOOLEAN:
+        return bool(number)
+    return number if port.kind == REAL else int(number)
+
+
+def finite_number(text: str) -> float | None:
+    """The number that a field of a text file says; None if it is none, or not finite."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

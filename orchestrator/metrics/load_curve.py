@@ -1,0 +1,54 @@
+"""Static loading: the load on a driven rock over its penetration, and what is read from that curve."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from rockshed.components.common.units import cm, mm
+
+DEPTH = 4 * cm
+"""Penetration (m) at which the load is read: Sonoda et al. 1993, sec. 2 (2) and fig. 13."""
+WINDOW = 0.5 * mm
+"""A load is the mean over so much penetration (m): discs that slip let it jump."""
+
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LoadCurve:
+    """Load (N) on the rock, upwards, at rising penetrations (m)."""
+
+    depth: Values
+    load: Values
+
+    def reaches(self, depth: float) -> bool:
+        """Whether the load at a penetration (m) can be told."""
+        return self.depth.size > 1 and bool(self.depth[0] <= depth - 0.5 * WINDOW and depth + 0.5 * WINDOW <= self.depth[-1])
+
+    def at(self, depth: Values | float) -> Values:
+        """Load (N) at penetrations (m): work over the :data:`WINDOW` around them / the way; at the ends over what there is."""
+        parts = 0.5 * (self.load[1:] + self.load[:-1]) * np.diff(self.depth)
+        work = np.concatenate(([0.0], np.cumsum(parts)))
+        low = np.clip(np.asarray(depth) - 0.5 * WINDOW, self.depth[0], self.depth[-1])
+        high = np.clip(np.asarray(depth) + 0.5 * WINDOW, self.depth[0], self.depth[-1])
+        return (np.interp(high, self.depth, work) - np.interp(low, self.depth, work)) / (high - low)
+
+    def departure(self, depth: float) -> float:
+        """How far the load is from the secant line up to ``depth`` (m): root mean square over the penetration / largest load.
+
+        Infinite where the sand carries nothing.
+        """
+        places = np.linspace(0.0, depth, round(depth / WINDOW) + 1)[1:]
+        loads, end = self.at(places), float(self.at(depth))
+        largest = float(loads.max())
+        return float(np.sqrt(np.mean((loads - end * places / depth) ** 2))) / largest if largest > 0.0 else np.inf
+
+
+def load_curve(series: Mapping[str, Values], sand: str) -> LoadCurve | None:
+    """The curve of a run with a driven rock, from the rows in which it sinks; None if the results have no such columns."""
+    depth, load = series.get(f"{sand}.penetration"), series.get(f"{sand}.rock.force.y")
+    if depth is None or load is None:
+        return None
+    sinking = np.concatenate(([True], depth[1:] > np.maximum.accumulate(depth)[:-1]))
+    return LoadCurve(depth[sinking], load[sinking])

@@ -1,0 +1,133 @@
+"""Impacts at full scale as tasks: models of the sand, each with one assumption more or another than the one before, and seeds."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rockshed.components.common.units import cm, kgf, ms, tf
+
+from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
+from ...cases.sand_models import LOOSE
+from ...metrics.headlines import SETTLED_CUT_OFF, low_pass
+from ...runs.job import Request
+from ..study import COMPLETE, Outcome, Task
+from .laboratory import LATTICE_SHIFT, ONE_LAW
+from .laboratory import MODELS as LABORATORY
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model of the sand and of what stands on the girders.
+
+    settings: ``sand.parameter=value``. girders: ``beam.parameter=value``, on girders only. pack: discs are a random pack and a seed
+    gives another one; if not, a seed shifts the lattice. quick: whether a quick reproduction has it. law: a model of the sand by
+    name, which says where the rock starts.
+    """
+
+    name: str
+    settings: Sequence[str] = ()
+    girders: Sequence[str] = ()
+    pack: bool = True
+    quick: bool = False
+    law: str | None = None
+
+
+FREE = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.disc.spread=0.25", "sand.settling.time=8")
+PACK = (*FREE, "sand.packing=random")
+"""A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
+ROLLING = (*PACK, "sand.rolling_resistance=0.3")
+POURED = (*FREE, "sand.packing=prepared", "sand.solid_fraction=0.74", "sand.rolling_resistance=0.3")
+"""The same brought to the solid fraction of poured sand, so that no pack is looser than another."""
+BULK = "sand.unit_weight_of=layer"
+"""0.0018 kgf/cm3 as the unit weight of the layer instead of that of a disc."""
+UNLOADING = "sand.unloading_ratio=3"
+"""Unloading stiffness / loading stiffness of the contacts (Walton and Braun)."""
+COHESION = f"sand.cohesion={0.05 * kgf / cm**2:.6g}"
+"""0.05 kgf/cm2, by capillary bridges (Rumpf)."""
+DECK_AND_BOX = ("beam.deck.mass=200", "beam.box.mass=2000")
+"""Assumed; the paper says nothing of them."""
+
+MODELS = (
+    Model("calibrated", LABORATORY["calibrated"], pack=False, quick=True),
+    Model("literal", LABORATORY["literal"], pack=False, quick=True),
+    Model("random pack", PACK),
+    Model("random pack, rolling", ROLLING),
+    Model("poured", POURED, quick=True),
+    Model("poured, bulk weight", (*POURED, BULK)),
+    Model("poured, deck and box", POURED, DECK_AND_BOX),
+    Model("poured, unloading 3", (*POURED, UNLOADING)),
+    Model("poured, cohesion", (*POURED, COHESION)),
+    Model("poured, all together", (*POURED, BULK, UNLOADING, COHESION), DECK_AND_BOX),
+    Model("one-law", law=ONE_LAW, quick=True),
+    Model("one-law, elastic", ("sand.unloading_ratio=1",), law=ONE_LAW),
+    Model("one-law, deck and box", (), DECK_AND_BOX, law=ONE_LAW),
+    Model("one-law, as poured", (f"sand.solid_fraction={LOOSE}",), law=ONE_LAW),
+    Model("one-law, dry", ("sand.cohesion=0",), law=ONE_LAW),
+)
+"""One line a model."""
+SEEDS = range(1, 9)
+
+_FREE_HEIGHT = 1.25
+"""Height (m) above the base, from which a rock does not start inside a random pack."""
+
+
+def models(quick: bool, on_girders: bool) -> list[Model]:
+    """The models of a reproduction; on a rigid base without those that differ in the girders only."""
+    return [model for model in MODELS if (model.quick or not quick) and (on_girders or not model.girders)]
+
+
+ONE_SAND = "crushed"
+"""The sand on the rigid base with which packings are computed; to a law with a modulus of its own all three are one."""
+
+
+def sands(model: Model, all_sands: Sequence[str]) -> Sequence[str]:
+    """The sands on the rigid base that are computed with a model."""
+    return [ONE_SAND] if model.pack else all_sands
+
+
+def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task]:
+    """One impact for each seed; in a quick study one, on the undisturbed lattice or a single pack."""
+    on_girders = case.startswith("girders")
+
+    def task(seed: int | None) -> Task:
+        higher = _above_pack() if model.pack and not model.law else ()
+        settings = [*model.settings, *(model.girders if on_girders else ()), *higher]
+        if seed is not None:
+            settings += [f"sand.seed={seed}", *([] if model.pack else [f"sand.lattice_shift={LATTICE_SHIFT:g}"])]
+        request = Request(case, settings, coupling="impulse", options={"stop_time": stop_time}, model=model.law)
+        return Task(request, model.name, seed)
+
+    if quick:
+        return [task(SEEDS[0] if model.pack else None)]
+    return [task(seed) for seed in SEEDS]
+
+
+def _above_pack() -> Sequence[str]:
+    """The rock starts so high that it is above every pack, and so fast that it has its speed where the lattice ends."""
+    fallen = 2.0 * GRAVITY * (_FREE_HEIGHT - LAYER)
+    return (f"rock.position0.y={_FREE_HEIGHT + ROCK_RADIUS:.6g}", f"rock.velocity0.y={-math.sqrt(ROCK_SPEED**2 - fallen):.8g}")
+
+
+def plot_forces(axes: "Axes", outcome: Outcome) -> None:
+    """Transmitted and rock force (tf) over time (ms) of a run: as computed, thin, and settled."""
+    from ...pictures.style import ROCK, TRANSMITTED
+
+    for column, colour, name in (("transmitted_force", TRANSMITTED, "transmitted"), ("rock.force.y", ROCK, "on the rock")):
+        if outcome.status == COMPLETE:
+            time, force = outcome.series["time"], outcome.series[f"sand.{column}"]
+            smooth = low_pass(time, force, outcome.figures[SETTLED_CUT_OFF])
+            axes.plot(time / ms, force / tf, color=colour, linewidth=0.5, alpha=0.55)
+            if smooth is not None:
+                axes.plot(time / ms, smooth / tf, color=colour, linewidth=1.4, label=name)
+    axes.set_xlim(0.0, None)
+
+
+SEED_NOTE = (f"Mean and standard deviation over {len(SEEDS)} seeds: random packs, or a lattice shifted by {LATTICE_SHIFT:g} "
+             "diameters. With --quick one run, and fewer models.")
+STEP_NOTE = ("Sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms, sand every 0.05 ms, girders every 0.01 ms. "
+             "With calibrated sand force and energy are within 0.3 % of those with exchanges every 0.05 ms, and of those with all "
+             "steps doubled; packs are chaotic, their seeds tell how much.")

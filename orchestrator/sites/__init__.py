@@ -1,0 +1,1 @@
+"""Sites as people describe them in files."""

@@ -1,0 +1,1 @@
+"""A driven pile, its hammer and its soil, from a file."""

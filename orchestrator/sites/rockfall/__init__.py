@@ -1,0 +1,1 @@
+"""A slope, its ground and its barriers, from a file."""
