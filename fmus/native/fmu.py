@@ -192,9 +192,9 @@ def _compile(component: Component, sizes: Sizes, platforms: Sequence[str], work:
     """
     order = {"folder": str(component.folder), "sizes": dict(sizes), "platforms": list(platforms), "cpu": CPU.name}
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
-    folders = [os.path.abspath(folder) for folder in (str(_HERE.parent), *sys.path)]
+    folders = [os.path.abspath(folder) for folder in sys.path]
     settings = {"NUMBA_CPU_NAME": CPU.name, "NUMBA_CPU_FEATURES": "", "PYTHONPATH": os.pathsep.join(folders)}
-    done = subprocess.run([sys.executable, "-m", f"{__package__}.native_kernels"], input=json.dumps(order), cwd=work, text=True,
+    done = subprocess.run([sys.executable, "-m", f"{__package__}.kernels"], input=json.dumps(order), cwd=work, text=True,
                           env=inherited | settings | environment, capture_output=True, check=False)
     if done.returncode:
         raise BuildError(f"{component.name}: compiling its kernels failed: {done.stderr.strip() or done.returncode}")

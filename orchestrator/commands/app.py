@@ -213,7 +213,7 @@ def _simulate(request: "Request", output_dir: Path | None, allow_unstable: bool,
         if is_cold(job.components):
             progress.describe(COLD_START)
         try:
-            with reported([sys.executable, "-m", f"{__package__}.cli", "crashed", str(folder.absolute())]):
+            with reported([sys.executable, "-m", f"{__package__}.app", "crashed", str(folder.absolute())]):
                 done = simulate(job.system, folder, sources=job.sources, allow_unstable=allow_unstable, progress=progress,
                                 facts=job.facts)
         except RunFailed:

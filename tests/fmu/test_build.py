@@ -28,10 +28,10 @@ def test_builds_are_equal_byte_for_byte_in_other_processes(fmus, python, tmp_pat
 
 def test_a_build_from_another_directory_is_equal(fmus, python, tmp_path):
     copy = tmp_path / "a copy"
-    for package in ("components", "fmus"):
-        shutil.copytree(ROOT / package, copy / package, ignore=shutil.ignore_patterns("__pycache__", "dist"))
+    for folder, place in (("orchestrator", ""), ("components", "components"), ("fmus", "fmus")):
+        shutil.copytree(ROOT / folder, copy / "rockshed" / place, ignore=shutil.ignore_patterns("__pycache__", "dist"))
     script = f"import sys; sys.path.insert(0, {str(copy)!r})\n" \
-             f"import fmus; assert fmus.__file__.startswith({str(copy)!r})\n" + BUILD
+             f"import rockshed; assert rockshed.__file__.startswith({str(copy)!r})\n" + BUILD
     assert python(script, "FallingRock", tmp_path).strip() == hashlib.sha256(fmus["FallingRock"].read_bytes()).hexdigest()
 
 

@@ -76,7 +76,7 @@ def foreign(tmp_path_factory):
     def make(python, imports=""):
         source = tmp_path_factory.mktemp("source")
         (source / "foreign.py").write_text(FOREIGN.format(imports=imports))
-        for package in ("components", "fmus", "orchestrator"):
+        for package in ("components", "fmus", "rockshed"):
             (source / package).mkdir()
             (source / package / "__init__.py").write_text("FACTOR = 2.0\n")
         (source / "components" / "helper.py").write_text("FACTOR = 3.0\n")
@@ -172,7 +172,7 @@ def test_an_old_python_is_told(monkeypatch):
 ALONE = """
 import sys
 from tests.fmu.host import Host
-for name in ("components", "fmus", "orchestrator", "pythonfmu", "markdown_it", "filelock", "scipy"):
+for name in ("rockshed", "pythonfmu", "markdown_it", "filelock", "scipy"):
     sys.modules[name] = None
 for file in sys.argv[1:]:
     host = Host(file)

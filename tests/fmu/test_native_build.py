@@ -166,7 +166,7 @@ def test_zig_builds_what_runs_here(monkeypatch, probe, tmp_path):
 def test_the_shim_compiles_without_a_warning(native_fmus, probe, tmp_path, shim):
     (tmp_path / "model.h").write_bytes(model_header(probe, probe.with_sizes(), "{0}"))
     command = [*compiler("linux64"), "-std=gnu11", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-c", "-I", tmp_path,
-               "-o", tmp_path / "shim.o", native_fmu.__file__.replace("native_fmu.py", shim)]
+               "-o", tmp_path / "shim.o", str(Path(native_fmu.__file__).with_name(shim))]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.stderr == ""
     assert done.returncode == 0
