@@ -6,5 +6,9 @@ ROOMS = {"rockshed": "orchestrator", "rockshed.components": "components", "rocks
 
 setup(
     package_dir=ROOMS,
-    packages=[f"{room}{'.' if name else ''}{name}" for room, folder in ROOMS.items() for name in ("", *find_packages(folder))],
+    packages=[
+        f"{room}{'.' if name else ''}{name}"
+        for room, folder in ROOMS.items()
+        for name in ("", *find_packages(folder))
+    ],
 )

@@ -12,28 +12,67 @@ from pathlib import Path
 
 import pythonfmu
 from filelock import FileLock
+
 from rockshed.components.catalogue import component as catalogued
 from rockshed.components.common.component import Component
 
 from .description.fmi2 import model_description
 from .native.fmu import native_files
-from .parts import DESCRIPTION, BuildError, Files, Fmi, Runtime, archive, component_sources, digest, documentation, picture, replace
+from .parts import (
+    DESCRIPTION,
+    BuildError,
+    Files,
+    Fmi,
+    Runtime,
+    archive,
+    component_sources,
+    digest,
+    documentation,
+    picture,
+    replace,
+)
 from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, folder_name, native_is_fresh
 from .python.script import SCRIPT
 
-__all__ = ["FOLDER_VARIABLE", "BuildError", "Fmi", "Runtime", "build", "build_component", "build_if_needed", "file_name",
-           "fmu_content", "fmu_files", "fmu_folder", "folder_name", "native_is_fresh", "store"]
+__all__ = [
+    "FOLDER_VARIABLE",
+    "BuildError",
+    "Fmi",
+    "Runtime",
+    "build",
+    "build_component",
+    "build_if_needed",
+    "file_name",
+    "fmu_content",
+    "fmu_files",
+    "fmu_folder",
+    "folder_name",
+    "native_is_fresh",
+    "store",
+]
 
 ONLY_NATIVE = "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes them; for FMI 3.0 there are native ones"
 
 _HERE = Path(__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
-_PYTHONFMU_PARTS = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
+_PYTHONFMU_PARTS = (
+    "_version.py",
+    "default_experiment.py",
+    "enums.py",
+    "fmi2slave.py",
+    "logmsg.py",
+    "variables.py",
+)
 _SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "slave.py")
 
 
-def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-          runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
+def build(
+    name: str,
+    sizes: Mapping[str, int] | None = None,
+    destination: Path | None = None,
+    runtime: Runtime = Runtime.PYTHON,
+    fmi: Fmi = Fmi.TWO,
+) -> Path:
     """Build the FMU of a component of the catalogue; return its file.
 
     sizes: numbers that differ from the defaults, ``{"elements": 48}``; they then are part of the file's name.
@@ -47,23 +86,49 @@ def build(name: str, sizes: Mapping[str, int] | None = None, destination: Path |
     return build_component(catalogued(name), sizes, destination, runtime=runtime, fmi=fmi)
 
 
-def build_if_needed(name: str, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-                    runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
+def build_if_needed(
+    name: str,
+    sizes: Mapping[str, int] | None = None,
+    destination: Path | None = None,
+    runtime: Runtime = Runtime.PYTHON,
+    fmi: Fmi = Fmi.TWO,
+) -> Path:
     """Like :func:`build`, but leave a file alone that is what would be built."""
-    return build_component(catalogued(name), sizes, destination, keep=True, runtime=runtime, fmi=fmi)
+    return build_component(
+        catalogued(name), sizes, destination, keep=True, runtime=runtime, fmi=fmi
+    )
 
 
-def build_component(component: Component, sizes: Mapping[str, int] | None = None, destination: Path | None = None,
-                    keep: bool = False, runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
+def build_component(
+    component: Component,
+    sizes: Mapping[str, int] | None = None,
+    destination: Path | None = None,
+    keep: bool = False,
+    runtime: Runtime = Runtime.PYTHON,
+    fmi: Fmi = Fmi.TWO,
+) -> Path:
     """Build the FMU of any component; ``keep`` leaves a file alone that is what would be built."""
     chosen = component.with_sizes(sizes)
     if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination, fmi):
         return fmu_file(component, chosen, runtime, destination, fmi)
-    return store(component, chosen, fmu_content(component, chosen, runtime, fmi=fmi), destination, runtime, keep, fmi)
+    return store(
+        component,
+        chosen,
+        fmu_content(component, chosen, runtime, fmi=fmi),
+        destination,
+        runtime,
+        keep,
+        fmi,
+    )
 
 
-def fmu_content(component: Component, sizes: Mapping[str, int], runtime: Runtime = Runtime.PYTHON,
-                platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO) -> bytes:
+def fmu_content(
+    component: Component,
+    sizes: Mapping[str, int],
+    runtime: Runtime = Runtime.PYTHON,
+    platforms: Sequence[str] = (),
+    fmi: Fmi = Fmi.TWO,
+) -> bytes:
     """The FMU as bytes. platforms: of a native one, by default this machine's.
 
     Raises:
@@ -76,8 +141,15 @@ def fmu_content(component: Component, sizes: Mapping[str, int], runtime: Runtime
     return archive(fmu_files(component, sizes))
 
 
-def store(component: Component, sizes: Mapping[str, int], content: bytes, destination: Path | None = None,
-          runtime: Runtime = Runtime.PYTHON, keep: bool = False, fmi: Fmi = Fmi.TWO) -> Path:
+def store(
+    component: Component,
+    sizes: Mapping[str, int],
+    content: bytes,
+    destination: Path | None = None,
+    runtime: Runtime = Runtime.PYTHON,
+    keep: bool = False,
+    fmi: Fmi = Fmi.TWO,
+) -> Path:
     """Write an FMU to its place, as a whole or not at all; ``keep`` leaves a file alone that has this content.
 
     Raises:
@@ -90,9 +162,14 @@ def store(component: Component, sizes: Mapping[str, int], content: bytes, destin
             if not (keep and file.is_file() and file.read_bytes() == content):
                 replace(file, content)
     except OSError as error:
-        remedy = (f"name a folder that can be written in the environment variable {FOLDER_VARIABLE}" if destination is None
-                  else "name another folder")
-        raise BuildError(f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}") from error
+        remedy = (
+            f"name a folder that can be written in the environment variable {FOLDER_VARIABLE}"
+            if destination is None
+            else "name another folder"
+        )
+        raise BuildError(
+            f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}"
+        ) from error
     return file
 
 
@@ -101,16 +178,23 @@ def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
     library = _library_files(component)
     library_name = f"rockshed_{digest(library)[:16]}_lib"
     files = {f"resources/{library_name}/{path}": content for path, content in library.items()}
-    files |= dict(_binaries(component)) | documentation(component, sizes) | picture(component, "model.png")
+    files |= (
+        dict(_binaries(component))
+        | documentation(component, sizes)
+        | picture(component, "model.png")
+    )
     files["documentation/licenses/pythonfmu.txt"] = _pythonfmu_license()
     stamp = digest(files | _stamped_files(component, sizes, library_name, "0" * 64))
     return files | _stamped_files(component, sizes, library_name, stamp)
 
 
-def _stamped_files(component: Component, sizes: Mapping[str, int], library: str, stamp: str) -> Files:
+def _stamped_files(
+    component: Component, sizes: Mapping[str, int], library: str, stamp: str
+) -> Files:
     module = f"rockshed_{stamp[:16]}"
     script = SCRIPT.substitute(
-        name=component.name, library=library, package=component.folder.name, sizes=repr(dict(sizes)))
+        name=component.name, library=library, package=component.folder.name, sizes=repr(dict(sizes))
+    )
     return {
         DESCRIPTION: model_description(component, sizes, f"{{{uuid.UUID(stamp[:32])}}}"),
         "resources/slavemodule.txt": module.encode(),
@@ -120,9 +204,16 @@ def _stamped_files(component: Component, sizes: Mapping[str, int], library: str,
 
 def _library_files(component: Component) -> Files:
     """The package that runs inside the FMU: slave, component with what the components share, and parts of pythonfmu."""
-    paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {name: _HERE / "python" / name for name in _SLAVE_PARTS}
+    paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {
+        name: _HERE / "python" / name for name in _SLAVE_PARTS
+    }
     files = component_sources(component) | {name: path.read_bytes() for name, path in paths.items()}
-    files["foundations.py"] = re.sub(rb"^from (?:rockshed\.)?(components|pythonfmu)\.", rb"from .\1.", files["foundations.py"], flags=re.MULTILINE)
+    files["foundations.py"] = re.sub(
+        rb"^from (?:rockshed\.)?(components|pythonfmu)\.",
+        rb"from .\1.",
+        files["foundations.py"],
+        flags=re.MULTILINE,
+    )
     return files | {"__init__.py": b"", "pythonfmu/__init__.py": b""}
 
 
@@ -133,5 +224,9 @@ def _binaries(component: Component) -> Iterator[tuple[str, bytes]]:
 
 def _pythonfmu_license() -> bytes:
     """Its text has to accompany every copy."""
-    texts = [file.read_binary() for file in distribution("pythonfmu").files or () if file.name == "LICENSE"]
+    texts = [
+        file.read_binary()
+        for file in distribution("pythonfmu").files or ()
+        if file.name == "LICENSE"
+    ]
     return b"\n".join(texts)

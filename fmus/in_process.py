@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.component import Component
 
 from .build import fmu_files
@@ -27,7 +28,10 @@ class InProcess:
 
     def __init__(self, component: Component, sizes: Mapping[str, int] | None = None) -> None:
         self._component, self._sizes = component, component.with_sizes(sizes)
-        self.origin = {"component": component.name, **{name: str(value) for name, value in self._sizes.items()}}
+        self.origin = {
+            "component": component.name,
+            **{name: str(value) for name, value in self._sizes.items()},
+        }
 
     def model_description(self) -> bytes:
         """The ``modelDescription.xml`` of the component's FMU."""
@@ -57,15 +61,29 @@ class InProcessSlave:
         self.messages: list[tuple[int, str]] = []
         self.reset()
 
-    def set(self, references: NDArray[np.uint32], values: NDArray[np.float64], kind: str = "Real") -> int:
+    def set(
+        self, references: NDArray[np.uint32], values: NDArray[np.float64], kind: str = "Real"
+    ) -> int:
         """Set variables of one kind: Real, Integer (also enumerations) or Boolean."""
         convert = {"Real": float, "Integer": int, "Boolean": bool}[kind]
-        setter = {"Real": self._slave.set_real, "Integer": self._slave.set_integer, "Boolean": self._slave.set_boolean}[kind]
-        return self._call(setter, references.tolist(), [convert(value) for value in values.tolist()])[1]
+        setter = {
+            "Real": self._slave.set_real,
+            "Integer": self._slave.set_integer,
+            "Boolean": self._slave.set_boolean,
+        }[kind]
+        return self._call(
+            setter, references.tolist(), [convert(value) for value in values.tolist()]
+        )[1]
 
-    def get(self, references: NDArray[np.uint32], out: NDArray[np.float64], kind: str = "Real") -> int:
+    def get(
+        self, references: NDArray[np.uint32], out: NDArray[np.float64], kind: str = "Real"
+    ) -> int:
         """Read variables of one kind into ``out``."""
-        getter = {"Real": self._slave.get_real, "Integer": self._slave.get_integer, "Boolean": self._slave.get_boolean}[kind]
+        getter = {
+            "Real": self._slave.get_real,
+            "Integer": self._slave.get_integer,
+            "Boolean": self._slave.get_boolean,
+        }[kind]
         out[:], status = self._call(getter, references.tolist())
         return status
 

@@ -40,10 +40,15 @@ class BuildError(Exception):
 
 def component_sources(component: Component) -> Files:
     """The component with what the components share: everything that its kernels and declarations follow from."""
-    paths = {f"components/{path.relative_to(COMPONENTS).as_posix()}": path
-             for path in (COMPONENTS / "__init__.py", *COMPONENTS.glob("common/**/*.py"))}
-    paths |= {f"components/{path.relative_to(component.folder.parent).as_posix()}": path
-              for path in component.folder.rglob("*") if path.is_file() and path.suffix not in _NOT_FROZEN}
+    paths = {
+        f"components/{path.relative_to(COMPONENTS).as_posix()}": path
+        for path in (COMPONENTS / "__init__.py", *COMPONENTS.glob("common/**/*.py"))
+    }
+    paths |= {
+        f"components/{path.relative_to(component.folder.parent).as_posix()}": path
+        for path in component.folder.rglob("*")
+        if path.is_file() and path.suffix not in _NOT_FROZEN
+    }
     return {name: path.read_bytes() for name, path in paths.items()}
 
 

@@ -11,7 +11,16 @@ from rockshed.components.common.component import Component
 from .native.fmu import own_binary, stamp
 from .parts import DESCRIPTION, BuildError, Fmi, Runtime
 
-__all__ = ["FOLDER_VARIABLE", "Fmi", "Runtime", "file_name", "fmu_file", "fmu_folder", "folder_name", "native_is_fresh"]
+__all__ = [
+    "FOLDER_VARIABLE",
+    "Fmi",
+    "Runtime",
+    "file_name",
+    "fmu_file",
+    "fmu_folder",
+    "folder_name",
+    "native_is_fresh",
+]
 
 FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
 """Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python``, ``native`` and
@@ -32,21 +41,39 @@ def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
 
 def file_name(component: Component, sizes: Mapping[str, int]) -> str:
     """``Name.fmu`` with default sizes, otherwise all sizes are named: ``SandCushion-discs360-elements24.fmu``."""
-    suffix = "" if dict(sizes) == component.with_sizes() else "".join(f"-{name}{value}" for name, value in sizes.items())
+    suffix = (
+        ""
+        if dict(sizes) == component.with_sizes()
+        else "".join(f"-{name}{value}" for name, value in sizes.items())
+    )
     return f"{component.name}{suffix}.fmu"
 
 
-def fmu_file(component: Component, sizes: Mapping[str, int], runtime: Runtime, destination: Path | None = None,
-             fmi: Fmi = Fmi.TWO) -> Path:
+def fmu_file(
+    component: Component,
+    sizes: Mapping[str, int],
+    runtime: Runtime,
+    destination: Path | None = None,
+    fmi: Fmi = Fmi.TWO,
+) -> Path:
     """The file that the FMU of a component has, built or not; ``destination``: another folder than that of built FMUs."""
-    return (fmu_folder(runtime, fmi) if destination is None else Path(destination)) / file_name(component, sizes)
+    return (fmu_folder(runtime, fmi) if destination is None else Path(destination)) / file_name(
+        component, sizes
+    )
 
 
-def native_is_fresh(component: Component, sizes: Mapping[str, int], destination: Path | None = None, fmi: Fmi = Fmi.TWO) -> bool:
+def native_is_fresh(
+    component: Component,
+    sizes: Mapping[str, int],
+    destination: Path | None = None,
+    fmi: Fmi = Fmi.TWO,
+) -> bool:
     """Whether the native FMU of a component is there, is what would be built now, and has a binary for this machine."""
     try:
         with zipfile.ZipFile(fmu_file(component, sizes, Runtime.NATIVE, destination, fmi)) as found:
-            return own_binary(component, fmi) in found.namelist() and _guid(found.read(DESCRIPTION)) == stamp(component, sizes, fmi)
+            return own_binary(component, fmi) in found.namelist() and _guid(
+                found.read(DESCRIPTION)
+            ) == stamp(component, sizes, fmi)
     except (OSError, KeyError, zipfile.BadZipFile, BuildError):
         return False
 

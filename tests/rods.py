@@ -1,6 +1,7 @@
 """Rods for tests."""
 
 import numpy as np
+
 from rockshed.components.catalogue import component
 from rockshed.components.pile_rod.st_venant import StVenant
 
@@ -17,9 +18,14 @@ def named(instance, parameters):
 
 def rod(segments=50, sections=1, ground_segments=1, fraction=1, **parameters):
     """An initialised rod. fraction: parts of the critical step for masses and springs."""
-    made = named(ROD.instance(segments=segments, sections=sections, ground_segments=ground_segments), parameters)
+    made = named(
+        ROD.instance(segments=segments, sections=sections, ground_segments=ground_segments),
+        parameters,
+    )
     speeds = np.sqrt(made["section.modulus"] / made["section.density"])
-    made["internal_step"] = float(np.sum(made["section.length"] / speeds)) / segments / fraction * (1.0 + 1e-12)
+    made["internal_step"] = (
+        float(np.sum(made["section.length"] / speeds)) / segments / fraction * (1.0 + 1e-12)
+    )
     made.initialise()
     return made
 
@@ -36,10 +42,20 @@ def march(instance, steps, *names, force=lambda n: 0.0):
 
 def reflecting(alpha, **parameters):
     """Parameters of a rod struck by the ram of the standard penetration test, with this reflection at the toe."""
-    return {"ram__mass": 63.5, "toe__condition": "reflection", "toe__reflection": alpha, **parameters}
+    return {
+        "ram__mass": 63.5,
+        "toe__condition": "reflection",
+        "toe__reflection": alpha,
+        **parameters,
+    }
 
 
 def closed_form(instance):
     """St. Venant's solution for a rod with a ram and a reflecting toe."""
-    return StVenant(instance["ram.mass"], instance["ram.velocity"], instance["head.impedance"], instance["travel_time"],
-                    instance["toe.reflection"])
+    return StVenant(
+        instance["ram.mass"],
+        instance["ram.velocity"],
+        instance["head.impedance"],
+        instance["travel_time"],
+        instance["toe.reflection"],
+    )

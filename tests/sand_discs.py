@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.component import Instance
 from rockshed.components.falling_rock import COMPONENT as FALLING_ROCK
 from rockshed.components.sand_cushion import COMPONENT
@@ -15,8 +16,17 @@ Pairs = Sequence[tuple[float, float]] | NDArray[np.float64]
 
 RADIUS = 0.005
 """Radius of a sand disc by default (m)."""
-EMPTY_SPACE = {"base": "floor", "gravity": 0.0, "settling.time": 0.0, "box.left": -5.0, "box.width": 10.0, "base.y": -5.0,
-               "rock.position.y": 50.0, "rotation": "free", "stiffness_factor": 1.0}
+EMPTY_SPACE = {
+    "base": "floor",
+    "gravity": 0.0,
+    "settling.time": 0.0,
+    "box.left": -5.0,
+    "box.width": 10.0,
+    "base.y": -5.0,
+    "rock.position.y": 50.0,
+    "rotation": "free",
+    "stiffness_factor": 1.0,
+}
 """No gravity; floor, walls and rock far away: discs on their own."""
 SMALL_BOX = {"base": "floor", "box.left": 0.0, "box.width": 0.1, "rock.position.y": 1.0}
 """A box ten discs wide on the floor, the rock out of the way; the beam discs, if any, begin at its left wall."""
@@ -35,8 +45,12 @@ def cushion(parameters: Mapping[str, Any], discs: int = 60, elements: int = 4) -
     return instance
 
 
-def discs_at(positions: Pairs, velocities: Pairs | None = None, spins: Sequence[float] | NDArray[np.float64] | None = None,
-             parameters: Mapping[str, Any] | None = None) -> Instance:
+def discs_at(
+    positions: Pairs,
+    velocities: Pairs | None = None,
+    spins: Sequence[float] | NDArray[np.float64] | None = None,
+    parameters: Mapping[str, Any] | None = None,
+) -> Instance:
     """Discs at given centres (m) with given velocities (m/s) and spins (rad/s), in empty space unless parameters say otherwise."""
     instance = cushion({**EMPTY_SPACE, **(parameters or {})}, len(positions))
     body = rows(instance)
@@ -51,14 +65,16 @@ def discs_at(positions: Pairs, velocities: Pairs | None = None, spins: Sequence[
 
 def stirred(instance: Instance, speed: float, seed: int = 1) -> Instance:
     """Give the discs random velocities of about ``speed`` (m/s)."""
-    rows(instance)[:, 2:4] = np.random.default_rng(seed).normal(0.0, speed, (instance.sizes["discs"], 2))
+    rows(instance)[:, 2:4] = np.random.default_rng(seed).normal(
+        0.0, speed, (instance.sizes["discs"], 2)
+    )
     instance.evaluate()
     return instance
 
 
 def rows(instance: Instance) -> NDArray[np.float64]:
     """The sand discs' rows of the state, a view: x, y, vx, vy, omega * radius, radius, 1/mass, sqrt(mass) / 2."""
-    view: NDArray[np.float64] = instance.state("body").reshape(-1, ROW)[:instance.sizes["discs"]]
+    view: NDArray[np.float64] = instance.state("body").reshape(-1, ROW)[: instance.sizes["discs"]]
     return view
 
 
@@ -99,7 +115,7 @@ def restitution(damping_ratio: float) -> float:
 
 def contact_duration(damping_ratio: float, frequency: float) -> float:
     """Time (s) until the force of that contact is zero; frequency = sqrt(k / m_eff) (rad/s)."""
-    beta, difference = damping_ratio, 1.0 - damping_ratio ** 2
+    beta, difference = damping_ratio, 1.0 - damping_ratio**2
     if difference > 0.0:
         omega = math.sqrt(difference)
         return math.atan2(2.0 * beta * omega, beta * beta - omega * omega) / omega / frequency
@@ -110,8 +126,14 @@ def contact_duration(damping_ratio: float, frequency: float) -> float:
 class RockOnSand:
     """A falling rock and a sand cushion that exchange every ``step`` (s), the sand first, inputs held: the paper's scheme."""
 
-    def __init__(self, sand: Instance, position: tuple[float, float], velocity: tuple[float, float], step: float,
-                 gravity: float = 0.0) -> None:
+    def __init__(
+        self,
+        sand: Instance,
+        position: tuple[float, float],
+        velocity: tuple[float, float],
+        step: float,
+        gravity: float = 0.0,
+    ) -> None:
         self.sand, self.rock, self.step, self.steps = sand, FALLING_ROCK.instance(), step, 0
         self.rock["position0.x"], self.rock["position0.y"] = position
         self.rock["velocity0.x"], self.rock["velocity0.y"] = velocity
@@ -122,7 +144,14 @@ class RockOnSand:
         sand.evaluate()
 
     def _tell_sand(self) -> None:
-        for name in ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity"):
+        for name in (
+            "position.x",
+            "position.y",
+            "angle",
+            "velocity.x",
+            "velocity.y",
+            "angular_velocity",
+        ):
             self.sand[f"rock.{name}"] = self.rock[name]
 
     def advance(self, duration: float) -> None:
@@ -130,7 +159,10 @@ class RockOnSand:
         for _ in range(round(duration / self.step)):
             time = self.steps * self.step
             self.sand.step(time, self.step)
-            self.rock["force.x"], self.rock["force.y"] = self.sand["rock.force.x"], self.sand["rock.force.y"]
+            self.rock["force.x"], self.rock["force.y"] = (
+                self.sand["rock.force.x"],
+                self.sand["rock.force.y"],
+            )
             self.rock["torque"] = self.sand["rock.torque"]
             self.rock.step(time, self.step)
             self._tell_sand()

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from numba import njit
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.counter_random import stream
 from rockshed.components.slope_rockfall.declarations import BODY
@@ -12,8 +13,15 @@ from rockshed.components.slope_rockfall.trajectory import BARRIER, OUTCOME, PASS
 
 SLOPE = component("SlopeRockfall")
 G = 9.80665
-NO_CHANCE = {"limit_speed.mean": 1e6, "limit_speed.deviation": 0.0, "tilt": 0.0, "tilt_deviation": 0.0, "roughness": 0.0,
-             "roughness_deviation": 0.0, "resistance": 0.0}
+NO_CHANCE = {
+    "limit_speed.mean": 1e6,
+    "limit_speed.deviation": 0.0,
+    "tilt": 0.0,
+    "tilt_deviation": 0.0,
+    "roughness": 0.0,
+    "roughness_deviation": 0.0,
+    "resistance": 0.0,
+}
 MODES = ("flight", "rolling", "sliding", "spinning", "rest", "received")
 
 
@@ -23,7 +31,10 @@ def slope(points, start=True, **values):
     instance = SLOPE.instance(cells=len(points) - 1)
     instance["profile.x"], instance["profile.y"] = points[0]
     instance["end.x"][:], instance["end.y"][:] = points[1:].T
-    for name, value in {**NO_CHANCE, **{name.replace("__", "."): value for name, value in values.items()}}.items():
+    for name, value in {
+        **NO_CHANCE,
+        **{name.replace("__", "."): value for name, value in values.items()},
+    }.items():
         if name in instance.references or isinstance(value, str):
             instance[name] = value
         else:
@@ -37,8 +48,15 @@ def plane(angle, speed=0.0, spin=0.0, length=1000.0, **values):
     """A rock on a plane that descends to the right by ``angle`` (rad), with this speed down the plane; spin = omega r (m/s)."""
     across, down = length * math.cos(angle), length * math.sin(angle)
     radius = values.get("radius", 0.5)
-    return slope([(-across, down), (across, -down)], on_slope=1.0, position0__x=0.0, velocity0__x=speed * math.cos(angle),
-                 velocity0__y=-speed * math.sin(angle), angular_velocity0=spin / radius, **values)
+    return slope(
+        [(-across, down), (across, -down)],
+        on_slope=1.0,
+        position0__x=0.0,
+        velocity0__x=speed * math.cos(angle),
+        velocity0__y=-speed * math.sin(angle),
+        angular_velocity0=spin / radius,
+        **values,
+    )
 
 
 def mode(instance):
@@ -50,15 +68,45 @@ def along(instance, angle):
     return instance["velocity.x"] * math.cos(angle) - instance["velocity.y"] * math.sin(angle)
 
 
-def run_trials(instance, count, first=0, seed=1, left=-1e9, right=1e9, lines=(), barriers=None, stations=0,
-               station_distance=1.0):
+def run_trials(
+    instance,
+    count,
+    first=0,
+    seed=1,
+    left=-1e9,
+    right=1e9,
+    lines=(),
+    barriers=None,
+    stations=0,
+    station_distance=1.0,
+):
     """Passages, peaks and outcomes of consecutive trials."""
     lines = np.array(lines, float).reshape(-1, 4)
-    passages, peaks = np.zeros((count, len(lines), len(PASSAGE))), np.zeros((count, stations, len(PEAK)))
+    passages, peaks = (
+        np.zeros((count, len(lines), len(PASSAGE))),
+        np.zeros((count, stations, len(PEAK))),
+    )
     outcomes = np.zeros((count, len(OUTCOME)))
-    stops = np.full((len(lines), len(BARRIER)), -1.0) if barriers is None else np.array(barriers, float)
-    trials(seed, first, left, right, lines, stops, instance["profile.x"], station_distance, instance.w, instance.x, instance.k,
-           np.zeros(len(BODY)), passages, peaks, outcomes)
+    stops = (
+        np.full((len(lines), len(BARRIER)), -1.0) if barriers is None else np.array(barriers, float)
+    )
+    trials(
+        seed,
+        first,
+        left,
+        right,
+        lines,
+        stops,
+        instance["profile.x"],
+        station_distance,
+        instance.w,
+        instance.x,
+        instance.k,
+        np.zeros(len(BODY)),
+        passages,
+        peaks,
+        outcomes,
+    )
     return passages, peaks, outcomes
 
 
@@ -70,7 +118,9 @@ def clearance(nodes, x, y, radius):
         dx, dy = nodes[i + 1, 0] - nodes[i, 0], nodes[i + 1, 1] - nodes[i, 1]
         share = ((x - nodes[i, 0]) * dx + (y - nodes[i, 1]) * dy) / (dx * dx + dy * dy)
         share = min(1.0, max(0.0, share))
-        nearest = min(nearest, math.hypot(x - nodes[i, 0] - share * dx, y - nodes[i, 1] - share * dy))
+        nearest = min(
+            nearest, math.hypot(x - nodes[i, 0] - share * dx, y - nodes[i, 1] - share * dy)
+        )
     return nearest - radius
 
 

@@ -76,7 +76,9 @@ class Component:
     def __post_init__(self) -> None:
         for bond in self.bonds:
             if len({v.causality for v in bond.members(self.layout.variables).values()}) < 2:
-                raise ValueError(f"{self.name}: bond {bond.name!r} needs motion and force, one of them an input, one an output")
+                raise ValueError(
+                    f"{self.name}: bond {bond.name!r} needs motion and force, one of them an input, one an output"
+                )
 
     def with_sizes(self, sizes: Mapping[str, int] | None = None) -> dict[str, int]:
         """The sizes to build with: the defaults, overridden by ``sizes``.
@@ -85,12 +87,18 @@ class Component:
             ComponentError: a size that the component has not, or that is out of its range.
         """
         given = dict(sizes or {})
-        problems = [f"has no size {name!r}; its sizes are: {', '.join(self.sizes) or 'none'}"
-                    for name in given if name not in self.sizes]
+        problems = [
+            f"has no size {name!r}; its sizes are: {', '.join(self.sizes) or 'none'}"
+            for name in given
+            if name not in self.sizes
+        ]
         chosen = {name: given.get(name, size.default) for name, size in self.sizes.items()}
-        problems += [f"{name} = {value}: allowed is {self.sizes[name].minimum} to {self.sizes[name].maximum} "
-                     f"({self.sizes[name].description})" for name, value in chosen.items()
-                     if not self.sizes[name].minimum <= value <= self.sizes[name].maximum]
+        problems += [
+            f"{name} = {value}: allowed is {self.sizes[name].minimum} to {self.sizes[name].maximum} "
+            f"({self.sizes[name].description})"
+            for name, value in chosen.items()
+            if not self.sizes[name].minimum <= value <= self.sizes[name].maximum
+        ]
         if problems:
             raise ComponentError(self.name, problems)
         return chosen
@@ -113,7 +121,7 @@ class Instance:
         self.w: Buffer = np.zeros(n_w)
         self.x: Buffer = _on_cache_lines(n_x)
         self.k: NDArray[np.int64] = np.zeros(n_k, np.int64)
-        self.k[:len(entries)] = entries
+        self.k[: len(entries)] = entries
         for index, (variable, number) in enumerate(self._elements()):
             if variable.causality is not Causality.OUTPUT:
                 self.w[index] = variable.start_at(number, sizes)
@@ -153,14 +161,17 @@ class Instance:
     def _choice(self, name: str, word: str) -> float:
         variable = next(v for v in self.component.layout.variables if v.name == name)
         if word not in variable.choices:
-            raise ComponentError(self.component.name, [f"{name} = {word}: choose one of {', '.join(variable.choices)}"])
+            raise ComponentError(
+                self.component.name,
+                [f"{name} = {word}: choose one of {', '.join(variable.choices)}"],
+            )
         return float(variable.choices.index(word) + 1)
 
     def state(self, name: str) -> NDArray[Any]:
         """View of a hidden array."""
         entry = getattr(self.component.layout.array, name.replace(".", "_"))
         integer = next(s.integer for s in self.component.layout.states if s.name == name)
-        return (self.k if integer else self.x)[self.k[entry]:self.k[entry] + self.k[entry + 1]]
+        return (self.k if integer else self.x)[self.k[entry] : self.k[entry] + self.k[entry + 1]]
 
     def problems(self) -> list[str]:
         """Everything that is wrong with the present parameters and inputs: not a number, out of range, or refused together."""
@@ -211,7 +222,15 @@ class Instance:
     @property
     def kind(self) -> bytes:
         """16 bytes that only instances with the same variables and sizes share."""
-        content = repr((self.component.name, sorted(self.sizes.items()), list(self.references), self.x.size, self.k.size))
+        content = repr(
+            (
+                self.component.name,
+                sorted(self.sizes.items()),
+                list(self.references),
+                self.x.size,
+                self.k.size,
+            )
+        )
         return hashlib.sha256(content.encode()).digest()[:16]
 
     def to_bytes(self) -> bytes:
@@ -226,10 +245,15 @@ class Instance:
             ComponentError: not such a state, of another component or size, or cut short.
         """
         expected = HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
-        if content[:HEADER.size] != expected or len(content) != len(expected) + 8 * (self.w.size + self.x.size + self.k.size):
-            raise ComponentError(self.component.name, ["this is no serialized state of this component with these sizes"])
+        if content[: HEADER.size] != expected or len(content) != len(expected) + 8 * (
+            self.w.size + self.x.size + self.k.size
+        ):
+            raise ComponentError(
+                self.component.name,
+                ["this is no serialized state of this component with these sizes"],
+            )
         values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
-        self.w[:], self.x[:] = values[:self.w.size], values[self.w.size:]
+        self.w[:], self.x[:] = values[: self.w.size], values[self.w.size :]
         self.k[:] = np.frombuffer(content, np.int64, self.k.size, len(expected) + values.nbytes)
 
 
@@ -237,7 +261,7 @@ def _on_cache_lines(length: int) -> Buffer:
     """Zeros that begin where a cache line begins: states whose rows are cache lines are read faster so."""
     room = np.zeros(length + 8)
     begin = -room.ctypes.data // 8 % 8
-    return room[begin:begin + length]
+    return room[begin : begin + length]
 
 
 def value_problems(variable: Variable, name: str, value: float) -> list[str]:
@@ -247,7 +271,9 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
     if not np.isfinite(value):
         return [f"{name} = {value}: must be a finite number ({variable.description})"]
     if not low <= value <= high:
-        return [f"{name} = {value:.6g}{_suffix(variable)}: allowed is {allowed_range(variable)} ({variable.description})"]
+        return [
+            f"{name} = {value:.6g}{_suffix(variable)}: allowed is {allowed_range(variable)} ({variable.description})"
+        ]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
         return [f"{name} = {value}: must be a whole number ({variable.description})"]
     return []

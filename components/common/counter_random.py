@@ -50,7 +50,10 @@ def shuffled(number, count, key):
     while True:
         left, right = place >> half, place & mask
         for turn in range(_TURNS):
-            left, right = right, left ^ (mix(np.uint64(key) + right * _STREAM + np.uint64(turn)) & mask)
+            left, right = (
+                right,
+                left ^ (mix(np.uint64(key) + right * _STREAM + np.uint64(turn)) & mask),
+            )
         place = (left << half) | right
         if place < np.uint64(count):
             return int(place)

@@ -25,19 +25,26 @@ CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
 _PACKAGE = Path(__file__).parents[1]
 _SHARED = Path(__file__).parent.name
 
+
 @cache
 def source_stamp(component: str | None) -> str:
     """Hash of the Python sources that kernels of a component (its folder's name) follow from; None: of all components."""
     digest = hashlib.sha256(__name__.encode())
-    for path in sorted({*_PACKAGE.glob(f"{_SHARED}/**/*.py"), *_PACKAGE.glob(f"{component or '*'}/**/*.py")}):
-        digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    for path in sorted(
+        {*_PACKAGE.glob(f"{_SHARED}/**/*.py"), *_PACKAGE.glob(f"{component or '*'}/**/*.py")}
+    ):
+        digest.update(
+            path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0"
+        )
     return digest.hexdigest()
 
 
 @cache
 def cache_directory() -> Path | None:
     """Folder of what was compiled, made if need be; None where no such folder can be written (then nothing is kept)."""
-    root = os.environ.get(CACHE_VARIABLE) or os.path.join(os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed")
+    root = os.environ.get(CACHE_VARIABLE) or os.path.join(
+        os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed"
+    )
     folder = Path(root).expanduser()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -69,7 +76,9 @@ class Deferred:
     Everything that is asked of it is asked of what ``make`` gives; compiled functions may call it like any other.
     """
 
-    def __init__(self, function: Callable[..., Any], make: Callable[[Callable[..., Any]], Any]) -> None:
+    def __init__(
+        self, function: Callable[..., Any], make: Callable[[Callable[..., Any]], Any]
+    ) -> None:
         update_wrapper(self, function)
         self._function, self._make = function, make
 
@@ -128,6 +137,7 @@ def released(function: Callable[..., Any]) -> Any:
 
 def intrinsic(function: Callable[..., Any]) -> Any:
     """A function that writes the code of a call itself, instruction by instruction: ``numba.extending.intrinsic``."""
+
     def make(function: Callable[..., Any]) -> Any:
         from numba.core.registry import cpu_target
         from numba.extending import intrinsic
@@ -140,7 +150,9 @@ def intrinsic(function: Callable[..., Any]) -> Any:
 
 
 def _compiled(function: Callable[..., Any], inline: str, nogil: bool = False) -> Deferred:
-    source_stamp(component_of(function.__module__))  # now: the folder that an FMU was unpacked to may be gone when it is needed
+    source_stamp(
+        component_of(function.__module__)
+    )  # now: the folder that an FMU was unpacked to may be gone when it is needed
 
     def make(function: Callable[..., Any]) -> Any:
         from numba import njit

@@ -46,7 +46,9 @@ class _PackageLocator:
 
     def get_disambiguator(self) -> str:
         """Part of the file's name that tells functions of one name apart."""
-        return hashlib.sha256(f"{self._function.__module__}:{self._function.__code__.co_firstlineno}".encode()).hexdigest()[:12]
+        return hashlib.sha256(
+            f"{self._function.__module__}:{self._function.__code__.co_firstlineno}".encode()
+        ).hexdigest()[:12]
 
 
 class _PackageCacheImpl(CompileResultCacheImpl):

@@ -74,7 +74,9 @@ class Variable:
 
     def __post_init__(self) -> None:
         if self.unit not in UNITS:
-            raise ValueError(f"{self.name}: unknown unit {self.unit!r}; known are {', '.join(UNITS)}")
+            raise ValueError(
+                f"{self.name}: unknown unit {self.unit!r}; known are {', '.join(UNITS)}"
+            )
         if (self.kind is Kind.ENUMERATION) != bool(self.choices):
             raise ValueError(f"{self.name}: an enumeration has choices, and nothing else has")
 
@@ -94,21 +96,37 @@ def param(name: str, description: str, start: Start, unit: str = "1", **rest: An
     return Variable(name, Causality.PARAMETER, description, unit, start, **rest)
 
 
-def choice(name: str, description: str, choices: Sequence[str], start: str, **rest: Any) -> Variable:
+def choice(
+    name: str, description: str, choices: Sequence[str], start: str, **rest: Any
+) -> Variable:
     """Declare a parameter that selects one of ``choices``; kernels see its number, counted from 1."""
     number = float(choices.index(start) + 1)
-    return Variable(name, Causality.PARAMETER, description, "1", number, 1.0, float(len(choices)), Kind.ENUMERATION,
-                    tuple(choices), **rest)
+    return Variable(
+        name,
+        Causality.PARAMETER,
+        description,
+        "1",
+        number,
+        1.0,
+        float(len(choices)),
+        Kind.ENUMERATION,
+        tuple(choices),
+        **rest,
+    )
 
 
 def switch(name: str, description: str, start: bool, **rest: Any) -> Variable:
     """Declare a parameter that is on or off."""
-    return Variable(name, Causality.PARAMETER, description, "1", float(start), kind=Kind.BOOLEAN, **rest)
+    return Variable(
+        name, Causality.PARAMETER, description, "1", float(start), kind=Kind.BOOLEAN, **rest
+    )
 
 
 def count(name: str, description: str, start: int, **rest: Any) -> Variable:
     """Declare an integer parameter."""
-    return Variable(name, Causality.PARAMETER, description, "1", float(start), kind=Kind.INTEGER, **rest)
+    return Variable(
+        name, Causality.PARAMETER, description, "1", float(start), kind=Kind.INTEGER, **rest
+    )
 
 
 def inp(name: str, description: str, unit: str = "1", start: Start = 0.0, **rest: Any) -> Variable:
@@ -121,7 +139,17 @@ def out(name: str, description: str, unit: str = "1", **rest: Any) -> Variable:
     return Variable(name, Causality.OUTPUT, description, unit, **rest)
 
 
-BOND_MEMBERS = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "force.x", "force.y", "torque")
+BOND_MEMBERS = (
+    "position.x",
+    "position.y",
+    "angle",
+    "velocity.x",
+    "velocity.y",
+    "angular_velocity",
+    "force.x",
+    "force.y",
+    "torque",
+)
 """Names of what a power bond may carry, in this order."""
 
 
@@ -142,7 +170,11 @@ class Bond:
     def members(self, variables: Sequence[Variable]) -> dict[str, Variable]:
         """The variables of the bond by member, in the order of :data:`BOND_MEMBERS`."""
         named = {v.name: v for v in variables if v.causality is not Causality.PARAMETER}
-        return {member: named[self.prefix + member] for member in BOND_MEMBERS if self.prefix + member in named}
+        return {
+            member: named[self.prefix + member]
+            for member in BOND_MEMBERS
+            if self.prefix + member in named
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,16 +216,22 @@ class Layout:
     def __post_init__(self) -> None:
         names = [v.name for v in self.variables] + [s.name for s in self.states]
         if len(set(names)) != len(names):
-            raise ValueError(f"declared twice: {sorted(n for n in set(names) if names.count(n) > 1)}")
+            raise ValueError(
+                f"declared twice: {sorted(n for n in set(names) if names.count(n) > 1)}"
+            )
         scalars = [v.name for v in self.variables if v.size is None]
-        arrays = [v.name for v in self.variables if v.size is not None] + [s.name for s in self.states]
+        arrays = [v.name for v in self.variables if v.size is not None] + [
+            s.name for s in self.states
+        ]
         object.__setattr__(self, "scalar", _constants("Scalar", scalars, 1))
         object.__setattr__(self, "array", _constants("Array", arrays, 2))
 
     @property
     def ordered(self) -> list[Variable]:
         """The variables in the order they have in ``w``: scalars first."""
-        return [v for v in self.variables if v.size is None] + [v for v in self.variables if v.size is not None]
+        return [v for v in self.variables if v.size is None] + [
+            v for v in self.variables if v.size is not None
+        ]
 
     def table(self, sizes: Sizes) -> tuple[list[int], int, int, int]:
         """Offsets and lengths of all arrays, and the lengths of ``w``, ``x`` and ``k`` that they need."""
@@ -219,4 +257,4 @@ def _constants(title: str, names: list[str], stride: int) -> Any:
 @inlined
 def view(buffer, k, entry):
     """The array that the table entry ``entry`` of ``k`` describes, as a slice of ``buffer`` (no copy)."""
-    return buffer[k[entry]:k[entry] + k[entry + 1]]
+    return buffer[k[entry] : k[entry] + k[entry + 1]]

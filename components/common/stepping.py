@@ -11,14 +11,24 @@ _ROUNDING = 1e-9
 
 def internal_step(start: float) -> Variable:
     """Declare the component's own time step."""
-    return param("internal_step", "largest time step inside the component; a communication step is divided into equal parts not "
-                 "longer than it", start, "s", minimum=1e-12)
+    return param(
+        "internal_step",
+        "largest time step inside the component; a communication step is divided into equal parts not "
+        "longer than it",
+        start,
+        "s",
+        minimum=1e-12,
+    )
 
 
 def stable_step() -> Variable:
     """Declare the output that tells the largest stable internal step."""
-    return out("stable_step", "largest internal step with which the integration is stable, computed from the parameters", "s",
-               initial_dependencies=None)
+    return out(
+        "stable_step",
+        "largest internal step with which the integration is stable, computed from the parameters",
+        "s",
+        initial_dependencies=None,
+    )
 
 
 @kernel

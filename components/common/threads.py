@@ -32,7 +32,9 @@ def shared_among_threads(work: Any) -> Any:
         work.compile(kinds)
         compiled = work.overloads[kinds]
 
-        def generate(context: Any, builder: ir.IRBuilder, _: Any, values: list[ir.Value]) -> ir.Value:
+        def generate(
+            context: Any, builder: ir.IRBuilder, _: Any, values: list[ir.Value]
+        ) -> ir.Value:
             context.add_linking_libs([compiled.library])
             worker = _worker(context, builder, compiled, values[2].type)
             _share(builder, worker, *values)
@@ -55,16 +57,29 @@ def _worker(context: Any, caller: ir.IRBuilder, compiled: Any, arguments: ir.Typ
     worker.linkage = "internal"
     builder = ir.IRBuilder(worker.append_basic_block())
     share = builder.bitcast(worker.args[0], _share_type(arguments).as_pointer())
-    first, distance, parts, given = (builder.load(cgutils.gep_inbounds(builder, share, 0, place)) for place in range(4))
+    first, distance, parts, given = (
+        builder.load(cgutils.gep_inbounds(builder, share, 0, place)) for place in range(4)
+    )
     kernel = context.declare_function(module, compiled.fndesc)
     with cgutils.for_range_slice(builder, first, parts, distance) as (part, _):
-        context.call_conv.call_function(builder, kernel, compiled.fndesc.restype, compiled.fndesc.argtypes,
-                                        [part, *cgutils.unpack_tuple(builder, given)])
+        context.call_conv.call_function(
+            builder,
+            kernel,
+            compiled.fndesc.restype,
+            compiled.fndesc.argtypes,
+            [part, *cgutils.unpack_tuple(builder, given)],
+        )
     builder.ret(_BYTES(None))
     return worker
 
 
-def _share(builder: ir.IRBuilder, worker: ir.Function, threads: ir.Value, parts: ir.Value, arguments: ir.Value) -> None:
+def _share(
+    builder: ir.IRBuilder,
+    worker: ir.Function,
+    threads: ir.Value,
+    parts: ir.Value,
+    arguments: ir.Value,
+) -> None:
     """Start all threads but one, be the last one, and wait for the others."""
     shares = cgutils.alloca_once(builder, _share_type(arguments.type), size=_NUMBER(MOST))
     handles = cgutils.alloca_once(builder, _NUMBER, size=_NUMBER(MOST))
@@ -96,18 +111,24 @@ def _least(builder: ir.IRBuilder, *numbers: ir.Value) -> ir.Value:
     return least
 
 
-def _start(builder: ir.IRBuilder, worker: ir.Function, share: ir.Value, handle: ir.Value) -> ir.Value:
+def _start(
+    builder: ir.IRBuilder, worker: ir.Function, share: ir.Value, handle: ir.Value
+) -> ir.Value:
     """Start a thread. Returns whether it runs."""
     if not _HAS_THREADS:
         return ir.IntType(1)(0)
     integer = ir.IntType(32)
     kind = ir.FunctionType(integer, [handle.type, _BYTES, worker.type, _BYTES])
     create = cgutils.get_or_insert_function(builder.module, kind, "pthread_create")
-    return builder.icmp_signed("==", builder.call(create, [handle, _BYTES(None), worker, share]), integer(0))
+    return builder.icmp_signed(
+        "==", builder.call(create, [handle, _BYTES(None), worker, share]), integer(0)
+    )
 
 
 def _wait(builder: ir.IRBuilder, handle: ir.Value) -> None:
     """Wait for the end of a thread."""
     if _HAS_THREADS:
-        join = cgutils.get_or_insert_function(builder.module, ir.FunctionType(ir.IntType(32), [_NUMBER, _BYTES]), "pthread_join")
+        join = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(ir.IntType(32), [_NUMBER, _BYTES]), "pthread_join"
+        )
         builder.call(join, [handle, _BYTES(None)])

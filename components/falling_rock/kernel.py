@@ -37,14 +37,25 @@ def move(mass, moment_of_inertia, gravity, force_x, force_y, torque, dt, w):
     w[V.position_x] += w[V.velocity_x] * dt
     w[V.position_y] += w[V.velocity_y] * dt
     w[V.angle] += w[V.angular_velocity] * dt
-    return 0.5 * dt * (force_x * (vx + w[V.velocity_x]) + force_y * (vy + w[V.velocity_y])
-                       + torque * (omega + w[V.angular_velocity]))
+    return (
+        0.5
+        * dt
+        * (
+            force_x * (vx + w[V.velocity_x])
+            + force_y * (vy + w[V.velocity_y])
+            + torque * (omega + w[V.angular_velocity])
+        )
+    )
 
 
 @kernel
 def drive(dt, w):
     """One step dt (s) with constant velocities. What force, torque and weight do to the rock, the machine undoes."""
-    contact = dt * (w[V.force_x] * w[V.velocity_x] + w[V.force_y] * w[V.velocity_y] + w[V.torque] * w[V.angular_velocity])
+    contact = dt * (
+        w[V.force_x] * w[V.velocity_x]
+        + w[V.force_y] * w[V.velocity_y]
+        + w[V.torque] * w[V.angular_velocity]
+    )
     w[V.position_x] += w[V.velocity_x] * dt
     w[V.position_y] += w[V.velocity_y] * dt
     w[V.angle] += w[V.angular_velocity] * dt
@@ -94,6 +105,19 @@ def step(t, h, w, x, k):
         if w[V.motion] == DRIVEN:
             drive(dt, w)
             continue
-        w[V.energy_work_contact] += move(w[V.mass], moment_of_inertia, w[V.gravity], w[V.force_x], w[V.force_y], w[V.torque], dt, w)
+        w[V.energy_work_contact] += move(
+            w[V.mass],
+            moment_of_inertia,
+            w[V.gravity],
+            w[V.force_x],
+            w[V.force_y],
+            w[V.torque],
+            dt,
+            w,
+        )
     energies(w)
-    return OK if math.isfinite(w[V.position_x] + w[V.position_y] + w[V.angle] + w[V.energy_work_contact]) else DIVERGED
+    return (
+        OK
+        if math.isfinite(w[V.position_x] + w[V.position_y] + w[V.angle] + w[V.energy_work_contact])
+        else DIVERGED
+    )

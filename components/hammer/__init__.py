@@ -16,10 +16,10 @@ COMPONENT = Component(
     folder=Path(__file__).parent,
     faults={
         kernel.RIGID_NEEDS_WAVES: "a rigid ram (cushion.stiffness = 0) finds its force from the wave of the rod, not from "
-                                  "the motion of the head: set port = waves or give cushion.stiffness",
+        "the motion of the head: set port = waves or give cushion.stiffness",
         kernel.NO_IMPEDANCE: "head.impedance = {head.impedance} N s/m: connect it with the impedance of the rod, which is positive",
         kernel.DIVERGED: "position or force is no longer a finite number: the force on the head was {force} N; reduce the exchange "
-                         "step below the step_limit of the rod",
+        "step below the step_limit of the rod",
     },
     default_step=1e-5,
 )

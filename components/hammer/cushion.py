@@ -28,14 +28,18 @@ def mean_force(start, way, largest, stiffness, restitution):
     if way == 0.0:
         return cushion_force(start, largest, stiffness, restitution)
     unloading = _work(start, start + way, slack, largest, largest, stiffness, restitution)
-    return (unloading + _work(start, start + way, largest, math.inf, largest, stiffness, restitution)) / way
+    return (
+        unloading + _work(start, start + way, largest, math.inf, largest, stiffness, restitution)
+    ) / way
 
 
 @kernel
 def _work(start, end, low, high, largest, stiffness, restitution):
     """Work (J) from start to end (m), of what lies between low and high, where the force is linear."""
     begun, done = min(max(start, low), high), min(max(end, low), high)
-    forces = (cushion_force(begun, largest, stiffness, restitution) + cushion_force(done, largest, stiffness, restitution))
+    forces = cushion_force(begun, largest, stiffness, restitution) + cushion_force(
+        done, largest, stiffness, restitution
+    )
     return 0.5 * forces * (done - begun)
 
 
@@ -46,8 +50,10 @@ def met(start, free, yielding, largest, stiffness, restitution):
     Newton's method between bounds: the force never falls with the way, so there is one solution.
     """
     high = free
-    low = free - yielding * max(cushion_force(start, largest, stiffness, restitution),
-                                cushion_force(start + free, largest, stiffness, restitution))
+    low = free - yielding * max(
+        cushion_force(start, largest, stiffness, restitution),
+        cushion_force(start + free, largest, stiffness, restitution),
+    )
     way, force, change = high, 0.0, math.inf
     for _ in range(_ROUNDS):
         force = mean_force(start, way, largest, stiffness, restitution)
@@ -55,7 +61,9 @@ def met(start, free, yielding, largest, stiffness, restitution):
         low, high = (low, way) if excess > 0.0 else (way, high)
         rise = 0.5 * steeper(stiffness, restitution)
         if way != 0.0:
-            rise = max((cushion_force(start + way, largest, stiffness, restitution) - force) / way, 0.0)
+            rise = max(
+                (cushion_force(start + way, largest, stiffness, restitution) - force) / way, 0.0
+            )
         after = way - excess / (1.0 + yielding * rise)
         if not low <= after <= high or abs(after - way) > 0.5 * abs(change):
             after = 0.5 * (low + high)

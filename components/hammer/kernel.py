@@ -29,7 +29,12 @@ def initialise(w, x, k):
     w[V.touching] = 1.0 if w[V.gap] == 0.0 and w[V.impact_velocity] > 0.0 else 0.0
     w[V.separation], w[V.blows], w[V.stable_step] = -1.0, 1.0, UNBOUNDED_STEP
     w[V.force], w[V.end_force] = 0.0, 0.0
-    w[V.energy_supplied], w[V.energy_cushion_loss], w[V.energy_contact], w[V.energy_work_head] = 0.0, 0.0, 0.0, 0.0
+    w[V.energy_supplied], w[V.energy_cushion_loss], w[V.energy_contact], w[V.energy_work_head] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     return OK
 
 
@@ -60,10 +65,14 @@ def step(t, h, w, x, k):
         now = t + i * dt
         if w[V.blow_interval] > 0.0 and now >= w[V.blows] * w[V.blow_interval] - _ROUNDING * dt:
             _strike_again(w, x, k)
-        impulse += dt * (_rigid(now, dt, w) if w[V.cushion_stiffness] == 0.0 else _cushioned(now, dt, w, x, k))
+        impulse += dt * (
+            _rigid(now, dt, w) if w[V.cushion_stiffness] == 0.0 else _cushioned(now, dt, w, x, k)
+        )
     w[V.force] = impulse / (n * dt)
     if w[V.cushion_stiffness] == 0.0:
-        w[V.end_force] = w[V.touching] * max(0.0, w[V.head_impedance] * w[V.velocity] - w[V.head_wave])
+        w[V.end_force] = w[V.touching] * max(
+            0.0, w[V.head_impedance] * w[V.velocity] - w[V.head_wave]
+        )
     else:
         w[V.end_force] = view(x, k, A.ends)[0]
     publish(w, x, k)
@@ -88,7 +97,11 @@ def _cushion_energy(w, x, k):
 @kernel
 def _place_head(w, x, k):
     """Put the head where it is given. The cushion follows; the work of the jump is that of the mean of both forces."""
-    largest, stiffness, restitution = view(x, k, A.largest), w[V.cushion_stiffness], w[V.cushion_restitution]
+    largest, stiffness, restitution = (
+        view(x, k, A.largest),
+        w[V.cushion_stiffness],
+        w[V.cushion_restitution],
+    )
     way, kept = w[V.head_position] - w[V.head_reached], _cushion_energy(w, x, k)
     before = cushion_force(_compression(w), largest[0], stiffness, restitution)
     w[V.head_reached] = w[V.head_position]
@@ -111,8 +124,11 @@ def _strike_again(w, x, k):
 
 @kernel
 def _mechanical(w, x, k):
-    return (0.5 * w[V.mass] * w[V.velocity] * w[V.velocity] - w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
-            + _cushion_energy(w, x, k))
+    return (
+        0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
+        - w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
+        + _cushion_energy(w, x, k)
+    )
 
 
 @kernel
@@ -141,8 +157,17 @@ def _rigid(now, dt, w):
 @kernel
 def _cushioned(now, dt, w, x, k):
     """A step of the ram on its cushion. Returns the mean force on the head (N)."""
-    largest, stiffness, restitution = view(x, k, A.largest), w[V.cushion_stiffness], w[V.cushion_restitution]
-    drive, before, kept, start = w[V.mass] * w[V.gravity] * w[V.weight], w[V.velocity], _cushion_energy(w, x, k), _compression(w)
+    largest, stiffness, restitution = (
+        view(x, k, A.largest),
+        w[V.cushion_stiffness],
+        w[V.cushion_restitution],
+    )
+    drive, before, kept, start = (
+        w[V.mass] * w[V.gravity] * w[V.weight],
+        w[V.velocity],
+        _cushion_energy(w, x, k),
+        _compression(w),
+    )
     given, compliance = w[V.head_velocity], 0.0
     if w[V.port] == WAVES:
         given, compliance = w[V.head_wave] / w[V.head_impedance], 1.0 / w[V.head_impedance]
@@ -160,7 +185,9 @@ def _cushioned(now, dt, w, x, k):
         w[V.separation] = now + dt
     w[V.touching] = 1.0 if at_end > 0.0 else 0.0
     w[V.energy_work_head] -= force * head * dt
-    w[V.energy_cushion_loss] += force * (_compression(w) - start) - (_cushion_energy(w, x, k) - kept)
+    w[V.energy_cushion_loss] += force * (_compression(w) - start) - (
+        _cushion_energy(w, x, k) - kept
+    )
     return force
 
 
@@ -171,5 +198,13 @@ def publish(w, x, k):
     w[V.energy_kinetic] = 0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
     w[V.energy_gravity] = -w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
     w[V.energy_cushion] = _cushion_energy(w, x, k)
-    w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_gravity] + w[V.energy_cushion] + w[V.energy_cushion_loss]
-                            + w[V.energy_contact] - w[V.energy_work_head] - w[V.energy_supplied] - w[V.energy_start])
+    w[V.energy_residual] = (
+        w[V.energy_kinetic]
+        + w[V.energy_gravity]
+        + w[V.energy_cushion]
+        + w[V.energy_cushion_loss]
+        + w[V.energy_contact]
+        - w[V.energy_work_head]
+        - w[V.energy_supplied]
+        - w[V.energy_start]
+    )

@@ -18,7 +18,7 @@ COMPONENT = Component(
     faults={
         **kernel.FAULTS,
         kernel.DIVERGED: "settlement or work is no longer a finite number (force.y = {force.y} N, toe.velocity = {toe.velocity} "
-                         "m/s, toe.wave = {toe.wave} N): reduce the exchange step or the step of the component that computes them",
+        "m/s, toe.wave = {toe.wave} N): reduce the exchange step or the step of the component that computes them",
     },
     default_step=1e-5,
 )

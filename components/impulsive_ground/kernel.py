@@ -31,14 +31,14 @@ PLATE_OUTSIDE, NO_MASS, NO_RESISTANCE, OVERLOADED, NO_IMPEDANCE, MOVING_AT_START
 DIVERGED = 20
 FAULTS = {
     PLATE_OUTSIDE: "the plate of plate.radius = {plate.radius} m does not fit into the box of box.width = {box.width} m: reduce "
-                   "its radius, or set box.width = 0 for open ground",
+    "its radius, or set box.width = 0 for open ground",
     NO_MASS: "nothing moves: plate.mass = {plate.mass} kg and the sand (soil.depth = {soil.depth} m, soil.density = {soil.density}"
-             " kg/m3) together have no mass: give one of them",
+    " kg/m3) together have no mass: give one of them",
     NO_RESISTANCE: "resistance.start and resistance.end are both 0, and nothing stops the plate: give one of them",
     OVERLOADED: "preload = {preload} N is more than the ground bears at rest: raise ultimate_resistance = {ultimate_resistance} N "
-                "(law smith) or resistance.start = {resistance.start} N (law mogami)",
+    "(law smith) or resistance.start = {resistance.start} N (law mogami)",
     NO_IMPEDANCE: "toe.impedance = {toe.impedance} N s/m: the wave port needs the positive impedance of its rod: connect it, or "
-                  "set it",
+    "set it",
     MOVING_AT_START: "impulse0 = {impulse0} N s needs a plate with mass: law mogami, or the port settlement",
 }
 """Messages of the refusals, by number."""
@@ -58,7 +58,9 @@ def has_fault(fault, w):
     if fault == NO_RESISTANCE:
         return w[V.law] == MOGAMI and w[V.resistance_start] + w[V.resistance_end] <= 0.0
     if fault == OVERLOADED:
-        return w[V.preload] > (w[V.ultimate_resistance] if w[V.law] == SMITH else w[V.resistance_start])
+        return w[V.preload] > (
+            w[V.ultimate_resistance] if w[V.law] == SMITH else w[V.resistance_start]
+        )
     if fault == NO_IMPEDANCE:
         return w[V.port] == WAVE and w[V.toe_impedance] <= 0.0
     return w[V.impulse0] > 0.0 and massless
@@ -66,20 +68,35 @@ def has_fault(fault, w):
 
 def problems(instance: "Instance") -> list[str]:
     """Every fault of the parameters, in words. The impedance may still come from a rod: the initialisation sees to that."""
-    return [instance.message(fault) for fault in FAULTS if fault != NO_IMPEDANCE and has_fault(fault, instance.w)]
+    return [
+        instance.message(fault)
+        for fault in FAULTS
+        if fault != NO_IMPEDANCE and has_fault(fault, instance.w)
+    ]
 
 
 @kernel
 def virtual_mass(w):
     """Mass (kg) of plate and sand."""
-    return w[V.plate_mass] + soil_mass(w[V.plate_radius], w[V.soil_depth], w[V.soil_spread], w[V.soil_density], w[V.soil_mass_form])
+    return w[V.plate_mass] + soil_mass(
+        w[V.plate_radius], w[V.soil_depth], w[V.soil_spread], w[V.soil_density], w[V.soil_mass_form]
+    )
 
 
 @kernel
 def ground(w):
     """The constants that follow from the parameters."""
-    return Ground(virtual_mass(w), w[V.ultimate_resistance] / w[V.quake], w[V.ultimate_resistance], w[V.damping],
-                  w[V.resistance_start], w[V.resistance_end], w[V.resistance_time], w[V.contact_stiffness], w[V.preload])
+    return Ground(
+        virtual_mass(w),
+        w[V.ultimate_resistance] / w[V.quake],
+        w[V.ultimate_resistance],
+        w[V.damping],
+        w[V.resistance_start],
+        w[V.resistance_end],
+        w[V.resistance_time],
+        w[V.contact_stiffness],
+        w[V.preload],
+    )
 
 
 @kernel
@@ -97,7 +114,12 @@ def initialise(w, x, k):
     w[V.stable_step] = UNBOUNDED_STEP
     if w[V.law] == MOGAMI and w[V.port] == KINEMATICS:
         w[V.stable_step] = 2.0 * math.sqrt(g.mass / g.contact)
-    w[V.energy_plastic], w[V.energy_damping], w[V.energy_work_contact], w[V.energy_start] = 0.0, 0.0, 0.0, 0.0
+    w[V.energy_plastic], w[V.energy_damping], w[V.energy_work_contact], w[V.energy_start] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     publish(g, w, b)
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
     return OK
@@ -145,7 +167,11 @@ def step(t, h, w, x, k):
         w[V.energy_work_contact] += work - g.preload * (b[BODY.settlement] - b[BODY.gap] - toe)
     w[V.toe_mean_force] = impulse / (n * dt) - g.preload
     publish(g, w, b)
-    return OK if math.isfinite(w[V.position_y] + w[V.velocity_y] + impulse + w[V.energy_work_contact]) else DIVERGED
+    return (
+        OK
+        if math.isfinite(w[V.position_y] + w[V.velocity_y] + impulse + w[V.energy_work_contact])
+        else DIVERGED
+    )
 
 
 @kernel
@@ -170,7 +196,11 @@ def advance(g, dt, w, b):
     """One internal step. Returns impulse (N s) and work (J) of the load, preload included."""
     if w[V.port] == SETTLEMENT:
         load = g.preload - w[V.force_y]
-        return load_plate_on_soil(g, load, dt, w, b) if w[V.law] == SMITH else push_plate(g, load, 0.0, dt, w, b)
+        return (
+            load_plate_on_soil(g, load, dt, w, b)
+            if w[V.law] == SMITH
+            else push_plate(g, load, 0.0, dt, w, b)
+        )
     if w[V.port] == WAVE:
         load = g.preload + w[V.toe_wave]
         if w[V.law] == SMITH:
@@ -181,6 +211,7 @@ def advance(g, dt, w, b):
 
 
 # --- what the outside sees ---
+
 
 @kernel
 def contact_energy(g, b):
@@ -229,11 +260,22 @@ def publish(g, w, b):
     elif w[V.port] == KINEMATICS:
         springs = contact_energy(g, b)
     moving = w[V.law] == MOGAMI or w[V.port] == SETTLEMENT
-    w[V.settlement], w[V.position_y], w[V.velocity_y] = b[BODY.settlement], -b[BODY.settlement], -b[BODY.velocity]
+    w[V.settlement], w[V.position_y], w[V.velocity_y] = (
+        b[BODY.settlement],
+        -b[BODY.settlement],
+        -b[BODY.velocity],
+    )
     w[V.toe_force] = force_on_toe(g, w, b) - g.preload
     w[V.resistance] = resisting_force(g, w, b)
     w[V.energy_kinetic] = 0.5 * g.mass * b[BODY.velocity] * b[BODY.velocity] if moving else 0.0
     w[V.energy_elastic] = springs
     w[V.energy_preload] = -g.preload * (b[BODY.settlement] - b[BODY.gap])
-    w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_preload] + w[V.energy_plastic]
-                            + w[V.energy_damping] - w[V.energy_work_contact] - w[V.energy_start])
+    w[V.energy_residual] = (
+        w[V.energy_kinetic]
+        + w[V.energy_elastic]
+        + w[V.energy_preload]
+        + w[V.energy_plastic]
+        + w[V.energy_damping]
+        - w[V.energy_work_contact]
+        - w[V.energy_start]
+    )

@@ -30,6 +30,7 @@ def resistance(g, clock):
 
 # --- Mogami's plate ---
 
+
 @kernel
 def push_plate(g, load, impedance, dt, w, b):
     """The plate for dt (s) under the load c - Z v. At rest it sticks until c exceeds the resistance it has reached; unloaded below
@@ -53,7 +54,9 @@ def push_plate(g, load, impedance, dt, w, b):
         w[V.energy_plastic] += lost
         b[BODY.velocity] = max(0.0, end) if time == span else 0.0
         b[BODY.settlement] += way
-        b[BODY.clock] = g.rise if rising and time == g.rise - b[BODY.clock] else b[BODY.clock] + time
+        b[BODY.clock] = (
+            g.rise if rising and time == g.rise - b[BODY.clock] else b[BODY.clock] + time
+        )
         left -= time
         if left <= 0.0:
             return impulse, work
@@ -103,7 +106,15 @@ def free_gap(g, toe, time, b):
     now = resistance(g, b[BODY.clock])
     rate = (g.r1 - g.r0) / g.rise if b[BODY.clock] < g.rise else 0.0
     first = min(time, g.rise - b[BODY.clock]) if b[BODY.clock] < g.rise else time
-    end, way, _ = slide(stop(first, b[BODY.velocity], g.mass, 0.0, 0.0, now, rate), b[BODY.velocity], g.mass, 0.0, 0.0, now, rate)
+    end, way, _ = slide(
+        stop(first, b[BODY.velocity], g.mass, 0.0, 0.0, now, rate),
+        b[BODY.velocity],
+        g.mass,
+        0.0,
+        0.0,
+        now,
+        rate,
+    )
     if first < time and end > 0.0 and g.r1 > 0.0:
         rest = min(time - first, end * g.mass / g.r1)
         way += (end - 0.5 * g.r1 / g.mass * rest) * rest
@@ -138,6 +149,7 @@ def contact_force(g, b):
 
 
 # --- Smith's soil ---
+
 
 @kernel
 def move_toe(g, way, w, b):
@@ -176,7 +188,9 @@ def strike_soil(g, load, impedance, dt, w, b):
         if torn:
             time, way, square = leave(g, load / impedance, left, spring)
         else:
-            time, way, square = relax(left, load, impedance, damping, spring, slack, g.stiffness, g.ultimate)
+            time, way, square = relax(
+                left, load, impedance, damping, spring, slack, g.stiffness, g.ultimate
+            )
         area = move_toe(g, way, w, b)
         w[V.energy_damping] += -area if torn else damping * square
         impulse += load * time - impedance * way
@@ -195,7 +209,9 @@ def mean_spring(g, left, load, impedance, spring, slack):
     """Mean force (N) of the spring over the way of the next piece, found with the damping of its beginning."""
     if g.damping == 0.0:
         return 0.0
-    _, way, _ = relax(left, load, impedance, g.damping * spring, spring, slack, g.stiffness, g.ultimate)
+    _, way, _ = relax(
+        left, load, impedance, g.damping * spring, spring, slack, g.stiffness, g.ultimate
+    )
     return mean_force(way, spring, slack, g.stiffness, g.ultimate)
 
 
@@ -261,4 +277,3 @@ def excess(g, u, free, inertia, dt, b):
     """inertia (u - free) + force of the soil over the way u dt (N)."""
     mean = mean_force(u * dt, b[BODY.spring], b[BODY.slack], g.stiffness, g.ultimate)
     return inertia * (u - free) + mean * max(0.0, 1.0 + g.damping * u)
-

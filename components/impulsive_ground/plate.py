@@ -72,7 +72,11 @@ def stop(t, v, mass, load, impedance, resistance, rise):
 def work_of_load(t, v, mass, load, impedance, resistance, rise):
     """Work (J) of the load c - Z v on the plate in t (s), by Gauss's rule of three points: exact for Z = 0 and for short t."""
     total = 0.0
-    for place, weight in ((0.1127016653792583, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.8872983346207417, 5.0 / 18.0)):
+    for place, weight in (
+        (0.1127016653792583, 5.0 / 18.0),
+        (0.5, 4.0 / 9.0),
+        (0.8872983346207417, 5.0 / 18.0),
+    ):
         u = velocity(place * t, v, mass, load, impedance, resistance, rise)
         total += weight * (load - impedance * u) * u
     return total * t

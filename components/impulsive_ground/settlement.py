@@ -29,7 +29,13 @@ def soil_mass(radius, depth, spread, density, form):
     """
     wider = depth * math.tan(spread)
     square = 12.0 if form == DERIVED else 3.0
-    return math.pi * density * depth / 24.0 * (square * radius * radius + 8.0 * radius * wider + 2.0 * wider * wider)
+    return (
+        math.pi
+        * density
+        * depth
+        / 24.0
+        * (square * radius * radius + 8.0 * radius * wider + 2.0 * wider * wider)
+    )
 
 
 def initial_velocity(impulse: float, mass: float) -> float:

@@ -64,4 +64,8 @@ def relax(left, load, impedance, damping, spring, slack, stiffness, ultimate):
     elif load < 0.0:
         time = min(left, math.log((spring - load) / -load) / rate)
     v = (load - spring) / total
-    return time, -v * math.expm1(-rate * time) / rate, -0.5 * v * v * math.expm1(-2.0 * rate * time) / rate
+    return (
+        time,
+        -v * math.expm1(-rate * time) / rate,
+        -0.5 * v * v * math.expm1(-2.0 * rate * time) / rate,
+    )

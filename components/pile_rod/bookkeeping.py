@@ -14,14 +14,22 @@ def shaft_soil(i, w, x, k):
     stretch, n = view(x, k, A.soil), k[A.impedance + 1]
     at = min(max(i - 1, 0), n - 1)
     resistance = view(w, k, A.shaft_resistance)[at] if 0 < i <= n else 0.0
-    return Soil(stretch[i], view(w, k, A.shaft_quake)[at], resistance, view(w, k, A.shaft_damping)[at], True)
+    return Soil(
+        stretch[i], view(w, k, A.shaft_quake)[at], resistance, view(w, k, A.shaft_damping)[at], True
+    )
 
 
 @kernel
 def toe_soil(at_toe, w, x, k):
     """The soil under the toe; elsewhere one without resistance."""
     there = at_toe and w[V.toe_condition] == SOIL
-    return Soil(view(x, k, A.toe_soil)[0], w[V.toe_quake], w[V.toe_resistance] if there else 0.0, w[V.toe_damping], False)
+    return Soil(
+        view(x, k, A.toe_soil)[0],
+        w[V.toe_quake],
+        w[V.toe_resistance] if there else 0.0,
+        w[V.toe_damping],
+        False,
+    )
 
 
 @kernel

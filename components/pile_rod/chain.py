@@ -17,7 +17,12 @@ V, A = LAYOUT.scalar, LAYOUT.array
 @kernel
 def advance(time, dt, head_force, toe_force, w, x, k):
     """One step dt (s), from time (s) on, with the forces (N) of the ports: downwards on the head, upwards on the toe."""
-    place, rate, n, last = view(x, k, A.place), view(x, k, A.rate), k[A.impedance + 1], view(k, k, A.free)[2]
+    place, rate, n, last = (
+        view(x, k, A.place),
+        view(x, k, A.rate),
+        k[A.impedance + 1],
+        view(k, k, A.free)[2],
+    )
     w[V.energy_contact] += contact_energy(dt, w, x, k)
     before = _soil_energy(dt, w, x, k)
     for i in range(last + 1):
@@ -72,7 +77,11 @@ def _strike(time, dt, force, below, w, x, k):
     w[V.energy_work_head] += force * mean * dt
     w[V.energy_work_gravity] += load * mean * dt
     if w[V.ram_mass] > 0.0:
-        if ram[RAM.touching] > 0.0 and below <= 0.0 and view(x, k, A.place)[0] < view(x, k, A.place)[1]:
+        if (
+            ram[RAM.touching] > 0.0
+            and below <= 0.0
+            and view(x, k, A.place)[0] < view(x, k, A.place)[1]
+        ):
             w[V.ram_separation] = time + dt
         ram[RAM.touching] = 1.0 if below > 0.0 else 0.0
         w[V.energy_contact] += below * mean * dt
@@ -84,15 +93,25 @@ def _strike(time, dt, force, below, w, x, k):
 @kernel
 def _push(i, net, dt, toe_force, w, x, k):
     """Change the velocity of node i under the springs' net force (N, downwards). Returns the work on the static soil (J)."""
-    rate, mass, n, last = view(x, k, A.rate), view(x, k, A.mass), k[A.impedance + 1], view(k, k, A.free)[2]
+    rate, mass, n, last = (
+        view(x, k, A.rate),
+        view(x, k, A.mass),
+        k[A.impedance + 1],
+        view(k, k, A.free)[2],
+    )
     shaft, toe, was = shaft_soil(i, w, x, k), toe_soil(i == n, w, x, k), rate[i]
     on_shaft, under_toe = static(shaft, shaft.stretch), static(toe, toe.stretch)
-    in_soil, standing = drag(shaft, on_shaft) + drag(toe, under_toe), _dashpot(w, x, k) if i == last else 0.0
+    in_soil, standing = (
+        drag(shaft, on_shaft) + drag(toe, under_toe),
+        _dashpot(w, x, k) if i == last else 0.0,
+    )
     load = mass[i] * w[V.gravity] if i <= n else 0.0
     pushed = toe_force if i == n and w[V.toe_condition] == PORT else 0.0
     half = 0.5 * dt / mass[i]
     damped = half * (in_soil + standing)
-    rate[i] = (was * (1.0 - damped) + 2.0 * half * (net + load - on_shaft - under_toe - pushed)) / (1.0 + damped)
+    rate[i] = (was * (1.0 - damped) + 2.0 * half * (net + load - on_shaft - under_toe - pushed)) / (
+        1.0 + damped
+    )
     mean = 0.5 * (was + rate[i])
     w[V.energy_work_gravity] += load * mean * dt
     w[V.energy_work_toe] -= pushed * mean * dt
@@ -101,8 +120,9 @@ def _push(i, net, dt, toe_force, w, x, k):
     if i == 1 and w[V.ram_mass] > 0.0:
         w[V.energy_contact] -= spring_force(0, w, x, k) * mean * dt
     if i == n:
-        w[V.toe_contact_force] = (under_toe + pushed + (drag(toe, under_toe) + standing) * mean
-                                  + spring_force(n, w, x, k))
+        w[V.toe_contact_force] = (
+            under_toe + pushed + (drag(toe, under_toe) + standing) * mean + spring_force(n, w, x, k)
+        )
     return (on_shaft + under_toe) * mean * dt
 
 
@@ -117,7 +137,12 @@ def _dashpot(w, x, k):
 @kernel
 def _move_soil(dt, w, x, k):
     """The soil goes with the nodes of the rod, up to its quake."""
-    rate, stretch, toe, n = view(x, k, A.rate), view(x, k, A.soil), view(x, k, A.toe_soil), k[A.impedance + 1]
+    rate, stretch, toe, n = (
+        view(x, k, A.rate),
+        view(x, k, A.soil),
+        view(x, k, A.toe_soil),
+        k[A.impedance + 1],
+    )
     for i in range(1, n + 1):
         stretch[i] = stretched(shaft_soil(i, w, x, k), rate[i] * dt)
     toe[0] = stretched(toe_soil(True, w, x, k), rate[n] * dt)

@@ -41,7 +41,11 @@ def run(time, h, w, x, k):
             head_mean = (clock[CLOCK.head_impulse] + on_head * part) / dt
             toe_mean = (clock[CLOCK.toe_impulse] + on_toe * part) / dt
             left -= part
-            clock[CLOCK.waiting], clock[CLOCK.head_impulse], clock[CLOCK.toe_impulse] = 0.0, 0.0, 0.0
+            clock[CLOCK.waiting], clock[CLOCK.head_impulse], clock[CLOCK.toe_impulse] = (
+                0.0,
+                0.0,
+                0.0,
+            )
         else:
             left -= dt
         if w[V.scheme] == CHARACTERISTICS:
@@ -82,7 +86,9 @@ def _mean(begin, end, n, at_head, w, x, k):
     first, last = _cell(begin + _ROUNDING, n), _cell(end - _ROUNDING, n)
     if last <= first:
         return _arriving(first, n, at_head, w, x, k)
-    total = (first + 1 - begin) * _arriving(first, n, at_head, w, x, k) + (end - last) * _arriving(last, n, at_head, w, x, k)
+    total = (first + 1 - begin) * _arriving(first, n, at_head, w, x, k) + (end - last) * _arriving(
+        last, n, at_head, w, x, k
+    )
     for j in range(first + 1, last):
         total += _arriving(j, n, at_head, w, x, k)
     return total / (end - begin)

@@ -10,12 +10,28 @@ from .bookkeeping import shaft_soil, toe_soil
 from .chain import spring_energy, spring_force
 from .declarations import CHARACTERISTICS, LAYOUT, RAM, SOIL, WAVES
 from .exchange import gives_waves, publish_waves, run, waves_known
-from .segments import divide, find_free_stretches, gauge_segment, head_sign, lump, publish_limits, rod_length, stable_limit
+from .segments import (
+    divide,
+    find_free_stretches,
+    gauge_segment,
+    head_sign,
+    lump,
+    publish_limits,
+    rod_length,
+    stable_limit,
+)
 from .soil import static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-WAVES_NEED_CHARACTERISTICS, WAVES_AND_RAM, GAUGE_BELOW_TOE, STEP_TOO_LONG, WAVES_UNKNOWN, DIVERGED = 1, 2, 3, 4, 5, 6
+(
+    WAVES_NEED_CHARACTERISTICS,
+    WAVES_AND_RAM,
+    GAUGE_BELOW_TOE,
+    STEP_TOO_LONG,
+    WAVES_UNKNOWN,
+    DIVERGED,
+) = 1, 2, 3, 4, 5, 6
 
 
 @kernel
@@ -58,10 +74,20 @@ def _clear(w, k):
     compression, tension = view(w, k, A.stress_compression), view(w, k, A.stress_tension)
     for i in range(len(compression)):
         compression[i], tension[i] = 0.0, 0.0
-    w[V.energy_radiated], w[V.energy_plastic], w[V.energy_damping], w[V.energy_contact] = 0.0, 0.0, 0.0, 0.0
+    w[V.energy_radiated], w[V.energy_plastic], w[V.energy_damping], w[V.energy_contact] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     w[V.energy_work_head], w[V.energy_work_toe], w[V.energy_work_gravity] = 0.0, 0.0, 0.0
     w[V.energy_head], w[V.energy_transferred], w[V.energy_start] = 0.0, 0.0, 0.0
-    w[V.head_contact_force], w[V.toe_contact_force], w[V.exchange_step], w[V.lag] = 0.0, 0.0, 0.0, 0.0
+    w[V.head_contact_force], w[V.toe_contact_force], w[V.exchange_step], w[V.lag] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     w[V.ram_separation] = -1.0
 
 
@@ -86,7 +112,11 @@ def step(t, h, w, x, k):
         return WAVES_UNKNOWN
     publish_waves(h, w, x, k)
     publish(w, x, k)
-    return OK if math.isfinite(w[V.energy_kinetic] + w[V.energy_elastic] + w[V.head_position]) else DIVERGED
+    return (
+        OK
+        if math.isfinite(w[V.energy_kinetic] + w[V.energy_elastic] + w[V.head_position])
+        else DIVERGED
+    )
 
 
 @kernel
@@ -99,15 +129,32 @@ def publish(w, x, k):
     _publish_ends(w, x, k)
     _publish_soil(w, x, k)
     _publish_gauge(w, x, k)
-    w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_ram] + w[V.energy_soil] + w[V.energy_ground]
-                            + w[V.energy_radiated] + w[V.energy_plastic] + w[V.energy_damping] + w[V.energy_contact]
-                            - w[V.energy_work_head] - w[V.energy_work_toe] - w[V.energy_work_gravity] - w[V.energy_start])
+    w[V.energy_residual] = (
+        w[V.energy_kinetic]
+        + w[V.energy_elastic]
+        + w[V.energy_ram]
+        + w[V.energy_soil]
+        + w[V.energy_ground]
+        + w[V.energy_radiated]
+        + w[V.energy_plastic]
+        + w[V.energy_damping]
+        + w[V.energy_contact]
+        - w[V.energy_work_head]
+        - w[V.energy_work_toe]
+        - w[V.energy_work_gravity]
+        - w[V.energy_start]
+    )
 
 
 @kernel
 def _publish_waves_inside(w, x, k):
     """Forces, velocities and energies of the segments from their two waves."""
-    down, up, impedance, dt = view(x, k, A.down), view(x, k, A.up), view(x, k, A.impedance), w[V.time_step]
+    down, up, impedance, dt = (
+        view(x, k, A.down),
+        view(x, k, A.up),
+        view(x, k, A.impedance),
+        w[V.time_step],
+    )
     force, velocity = view(w, k, A.force), view(w, k, A.velocity)
     kinetic, elastic = 0.0, 0.0
     for i in range(len(impedance)):
@@ -123,7 +170,12 @@ def _publish_waves_inside(w, x, k):
 @kernel
 def _publish_chain(w, x, k):
     """Forces, velocities and energies of masses and springs."""
-    rate, mass, n, last = view(x, k, A.rate), view(x, k, A.mass), k[A.impedance + 1], view(k, k, A.free)[2]
+    rate, mass, n, last = (
+        view(x, k, A.rate),
+        view(x, k, A.mass),
+        k[A.impedance + 1],
+        view(k, k, A.free)[2],
+    )
     force, velocity = view(w, k, A.force), view(w, k, A.velocity)
     for i in range(n):
         force[i], velocity[i] = spring_force(i, w, x, k), rate[i + 1]
@@ -146,15 +198,29 @@ def _publish_chain(w, x, k):
 
 @kernel
 def _publish_ends(w, x, k):
-    place, rate, ram, n, sign = view(x, k, A.place), view(x, k, A.rate), view(x, k, A.ram_state), k[A.impedance + 1], head_sign(w)
+    place, rate, ram, n, sign = (
+        view(x, k, A.place),
+        view(x, k, A.rate),
+        view(x, k, A.ram_state),
+        k[A.impedance + 1],
+        head_sign(w),
+    )
     head, speed = place[0], rate[0]
     if w[V.ram_mass] > 0.0 and w[V.scheme] != CHARACTERISTICS:
         ram[RAM.position], ram[RAM.velocity] = place[0], rate[0]
         if ram[RAM.touching] == 0.0:
             head, speed = place[1], rate[1]
-    w[V.head_position], w[V.head_velocity], w[V.head_zv] = sign * head, sign * speed, w[V.head_impedance] * speed
+    w[V.head_position], w[V.head_velocity], w[V.head_zv] = (
+        sign * head,
+        sign * speed,
+        w[V.head_impedance] * speed,
+    )
     w[V.toe_position], w[V.toe_velocity] = place[n], rate[n]
-    w[V.ram_position], w[V.ram_speed], w[V.ram_touching] = ram[RAM.position], ram[RAM.velocity], ram[RAM.touching]
+    w[V.ram_position], w[V.ram_speed], w[V.ram_touching] = (
+        ram[RAM.position],
+        ram[RAM.velocity],
+        ram[RAM.touching],
+    )
     w[V.energy_ram] = 0.5 * w[V.ram_mass] * ram[RAM.velocity] * ram[RAM.velocity]
 
 
@@ -180,5 +246,9 @@ def _publish_gauge(w, x, k):
     force = view(w, k, A.force)
     for j in range(len(stress)):
         stress[j] = force[j] / area[j]
-    w[V.gauge_force], w[V.gauge_velocity], w[V.gauge_stress] = force[i], view(w, k, A.velocity)[i], stress[i]
+    w[V.gauge_force], w[V.gauge_velocity], w[V.gauge_stress] = (
+        force[i],
+        view(w, k, A.velocity)[i],
+        stress[i],
+    )
     w[V.gauge_zv] = view(x, k, A.impedance)[i] * w[V.gauge_velocity]

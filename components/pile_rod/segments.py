@@ -4,7 +4,19 @@ import math
 
 from ..common.kernels import kernel
 from ..common.ports import view
-from .declarations import CHARACTERISTICS, DOWN, FIXED, LAYOUT, PORT, REFLECTION, REPAIRED, SEQUENTIAL, SMITH, SOIL, WAVES
+from .declarations import (
+    CHARACTERISTICS,
+    DOWN,
+    FIXED,
+    LAYOUT,
+    PORT,
+    REFLECTION,
+    REPAIRED,
+    SEQUENTIAL,
+    SMITH,
+    SOIL,
+    WAVES,
+)
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -21,7 +33,11 @@ def divide(w, x, k):
     The rod is divided in equal travel times, not lengths. The impedance of a segment is the mean over its travel time: its mass is
     then that of the rod there.
     """
-    length, modulus, density = view(w, k, A.section_length), view(w, k, A.section_modulus), view(w, k, A.section_density)
+    length, modulus, density = (
+        view(w, k, A.section_length),
+        view(w, k, A.section_modulus),
+        view(w, k, A.section_density),
+    )
     n, sections = k[A.impedance + 1], len(length)
     total = 0.0
     for s in range(sections):
@@ -65,7 +81,11 @@ def rod_length(w, k):
 @kernel
 def gauge_segment(w, k):
     """Segment (from 0) in which the gauge is; the length of the rod above it is counted through the sections."""
-    length, modulus, density = view(w, k, A.section_length), view(w, k, A.section_modulus), view(w, k, A.section_density)
+    length, modulus, density = (
+        view(w, k, A.section_length),
+        view(w, k, A.section_modulus),
+        view(w, k, A.section_density),
+    )
     left, time = w[V.gauge_depth], 0.0
     for s in range(len(length)):
         part = min(left, length[s])
@@ -139,12 +159,24 @@ def stable_limit(dt, w, x, k):
 @kernel
 def find_free_stretches(w, x, k):
     """Numbers of segments from head and toe through which waves travel without reflection."""
-    impedance, shaft, free = view(x, k, A.impedance), view(w, k, A.shaft_resistance), view(k, k, A.free)
+    impedance, shaft, free = (
+        view(x, k, A.impedance),
+        view(w, k, A.shaft_resistance),
+        view(k, k, A.free),
+    )
     n = len(impedance)
     free[0], free[1] = 1, 1
-    while free[0] < n and shaft[free[0] - 1] == 0.0 and _equal(impedance[free[0] - 1], impedance[free[0]]):
+    while (
+        free[0] < n
+        and shaft[free[0] - 1] == 0.0
+        and _equal(impedance[free[0] - 1], impedance[free[0]])
+    ):
         free[0] += 1
-    while free[1] < n and shaft[n - free[1] - 1] == 0.0 and _equal(impedance[n - free[1]], impedance[n - free[1] - 1]):
+    while (
+        free[1] < n
+        and shaft[n - free[1] - 1] == 0.0
+        and _equal(impedance[n - free[1]], impedance[n - free[1] - 1])
+    ):
         free[1] += 1
     if shaft[n - 1] > 0.0:
         free[1] = 0
@@ -164,11 +196,16 @@ def publish_limits(dt, w, x, k):
     if w[V.head_port] == WAVES:
         w[V.head_step_limit] = share * free[0] * dt
     else:
-        w[V.head_step_limit] = plain_limit(w[V.head_impedance], w[V.head_partner_stiffness], w[V.head_partner_mass])
+        w[V.head_step_limit] = plain_limit(
+            w[V.head_impedance], w[V.head_partner_stiffness], w[V.head_partner_mass]
+        )
     w[V.toe_step_limit] = UNBOUNDED
     if w[V.toe_condition] == PORT:
-        w[V.toe_step_limit] = (share * free[1] * dt if w[V.toe_port] == WAVES
-                               else plain_limit(w[V.toe_impedance], w[V.toe_partner_stiffness], 0.0))
+        w[V.toe_step_limit] = (
+            share * free[1] * dt
+            if w[V.toe_port] == WAVES
+            else plain_limit(w[V.toe_impedance], w[V.toe_partner_stiffness], 0.0)
+        )
     w[V.step_limit] = min(w[V.head_step_limit], w[V.toe_step_limit])
 
 
@@ -192,4 +229,6 @@ def head_sign(w):
 @kernel
 def toe_is_fixed(w):
     """Whether the toe does not move."""
-    return w[V.toe_condition] == FIXED or (w[V.toe_condition] == REFLECTION and w[V.toe_reflection] == -1.0)
+    return w[V.toe_condition] == FIXED or (
+        w[V.toe_condition] == REFLECTION and w[V.toe_reflection] == -1.0
+    )

@@ -66,13 +66,19 @@ def gripped(impedance, drive, shaft, toe, dt):
     for _ in range(2):
         damping = drag(shaft, on_shaft) + drag(toe, on_toe)
         total = impedance + damping
-        low, high, change = (drive - shaft.resistance - toe.resistance) / total, (drive + shaft.resistance) / total, math.inf
+        low, high, change = (
+            (drive - shaft.resistance - toe.resistance) / total,
+            (drive + shaft.resistance) / total,
+            math.inf,
+        )
         for _ in range(_ROUNDS):
             way = dt * velocity
             on_shaft, on_toe = mean_static(shaft, way), mean_static(toe, way)
             excess = total * velocity + on_shaft + on_toe - drive
             low, high = (low, min(high, velocity)) if excess > 0.0 else (max(low, velocity), high)
-            after = velocity - excess / (total + dt * (_slope(shaft, way, on_shaft) + _slope(toe, way, on_toe)))
+            after = velocity - excess / (
+                total + dt * (_slope(shaft, way, on_shaft) + _slope(toe, way, on_toe))
+            )
             if not low <= after <= high or abs(after - velocity) > 0.5 * abs(change):
                 after = 0.5 * (low + high)
             change = after - velocity

@@ -44,8 +44,12 @@ class StVenant:
         for n in range(self._reflections(float(times.max(initial=0.0))) + 1):
             since = times - n * period
             there = since >= 0.0
-            term = (-self.reflection) ** n * np.exp(-rate * since, where=there, out=np.zeros_like(times))
-            total += np.where(there, term * eval_laguerre(n, 2.0 * rate * np.maximum(since, 0.0)), 0.0)
+            term = (-self.reflection) ** n * np.exp(
+                -rate * since, where=there, out=np.zeros_like(times)
+            )
+            total += np.where(
+                there, term * eval_laguerre(n, 2.0 * rate * np.maximum(since, 0.0)), 0.0
+            )
         return self.speed * total
 
     def force(self, time: ArrayLike) -> NDArray[np.float64]:
@@ -67,10 +71,22 @@ class StVenant:
             below = np.flatnonzero(forces <= 0.0)
             if below.size:
                 ends = times[below[0] - 1], times[below[0]]
-                return float(brentq(lambda time: float(self.force(time)), *ends, xtol=1e-15 * period, rtol=1e-14))
+                return float(
+                    brentq(
+                        lambda time: float(self.force(time)), *ends, xtol=1e-15 * period, rtol=1e-14
+                    )
+                )
             last = (n + 1) * period * (1.0 - 1e-12)
             if self.force(last) <= 0.0:
-                return float(brentq(lambda time: float(self.force(time)), times[-1], last, xtol=1e-15 * period, rtol=1e-14))
+                return float(
+                    brentq(
+                        lambda time: float(self.force(time)),
+                        times[-1],
+                        last,
+                        xtol=1e-15 * period,
+                        rtol=1e-14,
+                    )
+                )
         return None
 
     def rebound(self) -> float | None:

@@ -29,10 +29,16 @@ def chain(w, k):
     """The constants that follow from the parameters."""
     n = k[A.force_x + 1]
     spacing = w[V.span] / n
-    return Chain(n, w[V.supports] == FIXED, spacing,
-                 w[V.elastic_modulus] * w[V.section_second_moment] / (spacing * spacing),
-                 w[V.elastic_modulus] * w[V.section_area] / spacing,
-                 w[V.damping_mass], w[V.damping_stiffness], w[V.gravity])
+    return Chain(
+        n,
+        w[V.supports] == FIXED,
+        spacing,
+        w[V.elastic_modulus] * w[V.section_second_moment] / (spacing * spacing),
+        w[V.elastic_modulus] * w[V.section_area] / spacing,
+        w[V.damping_mass],
+        w[V.damping_stiffness],
+        w[V.gravity],
+    )
 
 
 @kernel
@@ -65,8 +71,22 @@ def deform(c, displacement_factor, rate_factor, w, x, k):
 
     (1, 0) gives the elastic moments, (0, 1) their rates, (1, viscosity) the elastic and viscous ones together.
     """
-    _shape_discs(c.n, displacement_factor, rate_factor, view(x, k, A.u), view(x, k, A.u_rate), view(x, k, A.u_shape))
-    _shape_discs(c.n, displacement_factor, rate_factor, view(x, k, A.v), view(x, k, A.v_rate), view(x, k, A.v_shape))
+    _shape_discs(
+        c.n,
+        displacement_factor,
+        rate_factor,
+        view(x, k, A.u),
+        view(x, k, A.u_rate),
+        view(x, k, A.u_shape),
+    )
+    _shape_discs(
+        c.n,
+        displacement_factor,
+        rate_factor,
+        view(x, k, A.v),
+        view(x, k, A.v_rate),
+        view(x, k, A.v_shape),
+    )
     u, v, n = view(x, k, A.u_shape), view(x, k, A.v_shape), c.n
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
     u[0], u[n + 1] = -u[1], -u[n] if c.fixed else u[n]
@@ -107,7 +127,9 @@ def wall_moments(c, x, k):
 def reactions(c, w, x, k):
     """Forces of the beam on the left and right support (N, upwards), from the moment equilibrium of the end half-bars."""
     moment, torque, n = view(x, k, A.hinge_moment), view(w, k, A.torque), c.n
-    return -(moment[1] - moment[0] + torque[0]) / c.spacing, (moment[n + 1] - moment[n] + torque[n - 1]) / c.spacing
+    return -(moment[1] - moment[0] + torque[0]) / c.spacing, (
+        moment[n + 1] - moment[n] + torque[n - 1]
+    ) / c.spacing
 
 
 @kernel
@@ -127,7 +149,12 @@ def hold(c, w, x, k):
 @kernel
 def potential(c, w, x, k):
     """Work (J) that the held loads do on the way from the undeformed beam to its present place."""
-    u, v, load_x, load_y = view(x, k, A.u), view(x, k, A.v), view(x, k, A.load_x), view(x, k, A.load_y)
+    u, v, load_x, load_y = (
+        view(x, k, A.u),
+        view(x, k, A.v),
+        view(x, k, A.load_x),
+        view(x, k, A.load_y),
+    )
     torque, height = view(w, k, A.torque), view(x, k, A.support_height)
     total = (torque[c.n - 1] * height[1] - torque[0] * height[0]) / c.spacing
     for i in range(c.n):
@@ -147,10 +174,30 @@ def set_kicks(c, dt, x, k):
 def move(c, dt, w, x, k):
     """One step dt (s), semi-implicit Euler: rates from the shape and its moments, then displacements with the new rates."""
     kick, keep = view(x, k, A.kick), 1.0 - c.drag * dt
-    _move_discs(c.n, dt, kick, keep, 0.0, c.axial, view(x, k, A.u_shape), view(x, k, A.load_x),
-                view(x, k, A.u_rate), view(x, k, A.u))
-    _move_discs(c.n, dt, kick, keep, c.gravity * dt, -1.0 / c.spacing, view(x, k, A.hinge_moment), view(x, k, A.load_y),
-                view(x, k, A.v_rate), view(x, k, A.v))
+    _move_discs(
+        c.n,
+        dt,
+        kick,
+        keep,
+        0.0,
+        c.axial,
+        view(x, k, A.u_shape),
+        view(x, k, A.load_x),
+        view(x, k, A.u_rate),
+        view(x, k, A.u),
+    )
+    _move_discs(
+        c.n,
+        dt,
+        kick,
+        keep,
+        c.gravity * dt,
+        -1.0 / c.spacing,
+        view(x, k, A.hinge_moment),
+        view(x, k, A.load_y),
+        view(x, k, A.v_rate),
+        view(x, k, A.v),
+    )
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
     height[0] += dt * speed[0]
     height[1] += dt * speed[1]
@@ -203,4 +250,7 @@ def bending_energy(c, x, k):
 def dissipation(c, w, x, k):
     """Power (W) that the damping takes now. Leaves the rates as the shape."""
     deform(c, 0.0, 1.0, w, x, k)
-    return 2.0 * (c.drag * kinetic_energy(c, x, k) + c.viscosity * (axial_energy(c, x, k) + bending_energy(c, x, k)))
+    return 2.0 * (
+        c.drag * kinetic_energy(c, x, k)
+        + c.viscosity * (axial_energy(c, x, k) + bending_energy(c, x, k))
+    )

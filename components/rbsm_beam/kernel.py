@@ -46,7 +46,12 @@ def evaluate(w, x, k):
     _place(view(x, k, A.support_height), view(w, k, A.support_position_y))
     rest(c, w, x, k)
     hold(c, w, x, k)
-    w[V.energy_damping], w[V.energy_work_contact], w[V.energy_work_support], w[V.energy_start] = 0.0, 0.0, 0.0, 0.0
+    w[V.energy_damping], w[V.energy_work_contact], w[V.energy_work_support], w[V.energy_start] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     status = publish(w, x, k)
     w[V.midspan_start_strain], w[V.energy_strain_estimate] = w[V.midspan_strain], 0.0
     _place(view(w, k, A.support_mean_force_y), view(w, k, A.support_force_y))
@@ -133,7 +138,11 @@ def publish(w, x, k):
     _publish_midspan(c, w, x, k)
     _publish_energies(c, w, x, k)
     limit = 0.5 * w[V.span]
-    return OK if _within(c.n, limit, view(x, k, A.u)) and _within(c.n, limit, view(x, k, A.v)) else DIVERGED
+    return (
+        OK
+        if _within(c.n, limit, view(x, k, A.u)) and _within(c.n, limit, view(x, k, A.v))
+        else DIVERGED
+    )
 
 
 @kernel
@@ -157,7 +166,9 @@ def _publish_rates(c, w, x, k):
 
 @kernel
 def _publish_places(c, w, x, k):
-    _publish_axis(c.n, w[V.axis_x] + 0.5 * c.spacing, c.spacing, view(x, k, A.u), view(w, k, A.position_x))
+    _publish_axis(
+        c.n, w[V.axis_x] + 0.5 * c.spacing, c.spacing, view(x, k, A.u), view(w, k, A.position_x)
+    )
     _publish_axis(c.n, w[V.axis_y], 0.0, view(x, k, A.v), view(w, k, A.position_y))
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.hinge_moment), view(w, k, A.moment))
     _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_shape), view(w, k, A.angle))
@@ -200,8 +211,15 @@ def _publish_energies(c, w, x, k):
     w[V.energy_axial], w[V.energy_bending] = axial_energy(c, x, k), bending_energy(c, x, k)
     w[V.energy_elastic] = w[V.energy_axial] + w[V.energy_bending]
     w[V.energy_gravity] = c.gravity * lifted
-    w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_gravity] + w[V.energy_damping]
-                            - w[V.energy_work_contact] - w[V.energy_work_support] - w[V.energy_start])
+    w[V.energy_residual] = (
+        w[V.energy_kinetic]
+        + w[V.energy_elastic]
+        + w[V.energy_gravity]
+        + w[V.energy_damping]
+        - w[V.energy_work_contact]
+        - w[V.energy_work_support]
+        - w[V.energy_start]
+    )
 
 
 @kernel

@@ -13,7 +13,12 @@ POWER_ITERATIONS = 80
 @kernel
 def rest(c, w, x, k):
     """Put the chain at rest in equilibrium with its weights and with the supports where they stand."""
-    u, u_rate, v_rate, height = view(x, k, A.u), view(x, k, A.u_rate), view(x, k, A.v_rate), view(x, k, A.support_height)
+    u, u_rate, v_rate, height = (
+        view(x, k, A.u),
+        view(x, k, A.u_rate),
+        view(x, k, A.v_rate),
+        view(x, k, A.support_height),
+    )
     for i in range(c.n + 2):
         u[i] = u_rate[i] = v_rate[i] = 0.0
     rise = height[1] - height[0]
@@ -93,7 +98,9 @@ def stable_step(c, w, x, k):
     which more mass can only lower. It is exact without a box or with one that leaves no disc free.
     """
     mass = _lightest(c, x, k)
-    bending = _fixed_frequency2(c, mass, w, x, k) if c.fixed else 16.0 * c.bending / (mass * c.spacing)
+    bending = (
+        _fixed_frequency2(c, mass, w, x, k) if c.fixed else 16.0 * c.bending / (mass * c.spacing)
+    )
     omega2 = max(_axial_frequency2(c, mass), bending)
     decay = c.drag + c.viscosity * omega2
     return 4.0 / (decay + math.sqrt(decay * decay + 4.0 * omega2))
@@ -119,7 +126,9 @@ def _axial_frequency2(c, mass):
 @kernel
 def _fixed_frequency2(c, mass, w, x, k):
     """Square of the highest bending frequency with fixed supports: symmetric and antisymmetric modes apart, as they lie close."""
-    return max(_highest_frequency2(c, mass, 1.0, w, x, k), _highest_frequency2(c, mass, -1.0, w, x, k))
+    return max(
+        _highest_frequency2(c, mass, 1.0, w, x, k), _highest_frequency2(c, mass, -1.0, w, x, k)
+    )
 
 
 @kernel

@@ -114,15 +114,21 @@ def sort_into_cells(body, n, cell_start, cell_disc, disc_cell, left, bottom, siz
 
 
 @kernel
-def disc_partners(i, lowest, end, body, cell_start, cell_disc, disc_cell, columns, rows, skin, pair, at):
+def disc_partners(
+    i, lowest, end, body, cell_start, cell_disc, disc_cell, columns, rows, skin, pair, at
+):
     """List the discs near disc i whose numbers are at least ``lowest`` and less than ``end``. Returns the end of the list, or -1
     where there is no room."""
     xi, yi, ri = body[ROW * i], body[ROW * i + 1], body[ROW * i + RADIUS]
     line, column = disc_cell[i] // columns, disc_cell[i] % columns
     for near in range(max(0, line - 1), min(rows, line + 2)):
-        for c in range(near * columns + max(0, column - 1), near * columns + min(columns, column + 2)):
+        for c in range(
+            near * columns + max(0, column - 1), near * columns + min(columns, column + 2)
+        ):
             # after the backwards sort, entry c + 1 of cell_start is the begin of cell c
-            for q in range(cell_start[c + 1], disc_cell.size if c + 2 > columns * rows else cell_start[c + 2]):
+            for q in range(
+                cell_start[c + 1], disc_cell.size if c + 2 > columns * rows else cell_start[c + 2]
+            ):
                 j = cell_disc[q]
                 if lowest <= j < end:
                     dx, dy = body[ROW * j] - xi, body[ROW * j + 1] - yi
@@ -153,7 +159,11 @@ def boundary_partners(i, w, body, n, m, skin, partner, at):
     for b in range(n if i < n else n + 1, n + m + 1):
         if b > n and w[V.base] != BEAM_DISCS:
             break
-        dx, dy, distance = body[ROW * b] - xi, body[ROW * b + 1] - yi, reach + body[ROW * b + RADIUS]
+        dx, dy, distance = (
+            body[ROW * b] - xi,
+            body[ROW * b + 1] - yi,
+            reach + body[ROW * b + RADIUS],
+        )
         if dx * dx + dy * dy < distance * distance:
             partner[at] = b
             at += 1
@@ -197,14 +207,23 @@ def inherit_pairs(n, spring, spring_before, k):
     """:func:`inherit` for the pairs of discs."""
     pair, before = view(k, k, A.pair), view(k, k, A.pair_before)
     inherit(n, view(k, k, A.row), pair, spring, view(k, k, A.row_before), before, spring_before)
-    inherit(n, view(k, k, A.across), pair, spring, view(k, k, A.across_before), before, spring_before)
+    inherit(
+        n, view(k, k, A.across), pair, spring, view(k, k, A.across_before), before, spring_before
+    )
 
 
 @kernel
 def inherit_edges(n, spring, spring_before, k):
     """:func:`inherit` for the contacts with all else."""
-    inherit(n + 1, view(k, k, A.edge_row), view(k, k, A.edge_partner), spring, view(k, k, A.edge_row_before),
-            view(k, k, A.edge_partner_before), spring_before)
+    inherit(
+        n + 1,
+        view(k, k, A.edge_row),
+        view(k, k, A.edge_partner),
+        spring,
+        view(k, k, A.edge_row_before),
+        view(k, k, A.edge_partner_before),
+        spring_before,
+    )
 
 
 @kernel
@@ -248,15 +267,29 @@ def list_discs(w, x, k):
     """Make the list of pairs of discs anew. Returns False where the room for it does not suffice."""
     n, m = disc_count(k), beam_count(k)
     body = view(x, k, A.body)
-    cell_start, cell_disc, disc_cell = view(k, k, A.cell_start), view(k, k, A.cell_disc), view(k, k, A.disc_cell)
+    cell_start, cell_disc, disc_cell = (
+        view(k, k, A.cell_start),
+        view(k, k, A.cell_disc),
+        view(k, k, A.disc_cell),
+    )
     skin = listed_gap(w)
     size = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) + skin
     bottom = base_top(w, body, n, m) if w[V.base] != BEAM_DISCS else body[ROW * (n + 1) + 1]
     cells = cell_start.size - 1
     columns = min(cells, max(1, int(w[V.box_width] / size)))
     rows = max(1, cells // columns)
-    sort_into_cells(body, n, cell_start, cell_disc, disc_cell, w[V.box_left], bottom, max(size, w[V.box_width] / columns),
-                    columns, rows)
+    sort_into_cells(
+        body,
+        n,
+        cell_start,
+        cell_disc,
+        disc_cell,
+        w[V.box_left],
+        bottom,
+        max(size, w[V.box_width] / columns),
+        columns,
+        rows,
+    )
     pair, part = view(k, k, A.pair), view(k, k, A.part)
     parts = part.size - 1
     at = 0
@@ -267,8 +300,20 @@ def list_discs(w, x, k):
                 row[i] = at
                 if between and part[c + 1] == n:
                     continue  # the last part
-                at = disc_partners(i, part[c + 1] if between else i + 1, n if between else part[c + 1], body, cell_start, cell_disc,
-                                   disc_cell, columns, rows, skin, pair, at)
+                at = disc_partners(
+                    i,
+                    part[c + 1] if between else i + 1,
+                    n if between else part[c + 1],
+                    body,
+                    cell_start,
+                    cell_disc,
+                    disc_cell,
+                    columns,
+                    rows,
+                    skin,
+                    pair,
+                    at,
+                )
                 if at < 0:
                     return False
             if not between:

@@ -59,7 +59,10 @@ PLANES = 3
 Kind = namedtuple("Kind", "sand rock base wall rock_base rock_wall")
 KIND = Kind(*range(6))
 """Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
-Law = namedtuple("Law", "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge softness")
+Law = namedtuple(
+    "Law",
+    "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge softness",
+)
 LAW = Law(*range(11))
 """Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance,
 unloading stiffness (N/m), part of the overlap that stays, capillary force / distance of centres (N/m), longest bridge / distance
@@ -69,7 +72,10 @@ Column = namedtuple("Column", "x y vx vy spin reach root")
 COLUMN = Column(*range(7))
 """Columns of the block of pairs. The law leaves force to the right and upwards, tangential and normal force in the first four."""
 
-Tally = namedtuple("Tally", "elastic stretched normal_dashpot tangential_dashpot sliding released plastic capillary")
+Tally = namedtuple(
+    "Tally",
+    "elastic stretched normal_dashpot tangential_dashpot sliding released plastic capillary",
+)
 TALLY = Tally(*range(8))
 """Energies that add up over the pairs of a step, a number for each lane of the vectors: those of normal and tangential springs, of
 the dashpots, of sliding, of springs of contacts that opened, of yielding and of capillary bridges. Most are still to be scaled."""
@@ -78,8 +84,11 @@ Roll = namedtuple("Roll", "elastic lost")
 ROLL = Roll(*range(2))
 """Energies (J) of rolling resistance that add up over the pairs of a step."""
 
-Sum = namedtuple("Sum", "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam transmitted "
-                        "travelled beam_key")
+Sum = namedtuple(
+    "Sum",
+    "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam transmitted "
+    "travelled beam_key",
+)
 SUM = Sum(*range(12))
 """Running sums that a kernel keeps between two steps in ``sums``."""
 
@@ -115,74 +124,266 @@ LAYOUT = Layout(
     variables=(
         # the cushion
         param("box.left", "x of the left side wall's inner face", 41.5 * cm, "m"),
-        param("box.width", "distance of the side walls", 37 * cm, "m", minimum=1e-6, source="Sonoda et al. 1993, fig. 2"),
-        param("box.wall_height", "height of the side walls for the rock, above base.y, or above the beam's top where they stand on "
-              "it; for sand they have no end", UNBOUNDED, "m", minimum=0.0),
-        param("box.wall_thickness", "thickness of the side walls for the rock", 0.2, "m", minimum=1e-6),
-        param("base.y", "y of the floor, used when base = floor; side walls fixed in space count their height from it", 0.0, "m"),
-        param("disc.radius", "radius of a sand disc (mean radius of a random packing)", 0.5 * cm, "m", minimum=1e-9,
-              source="Sonoda et al. 1993, sec. 3 (2): diameter 1.0 cm"),
-        param("disc.spread", "random packing: radii are uniform within radius * (1 - spread, 1 + spread)", 0.0,
-              minimum=0.0, maximum=0.5),
-        param("depth", "effective depth dL of the cushion, into the picture", 10 * cm, "m", minimum=1e-6,
-              source="Sonoda et al. 1993, sec. 3 (2)"),
-        param("unit_weight", "mass density of a disc, or of the layer with its voids (unit_weight_of)",
-              0.0018 * kgf / cm ** 3 / kgf, "kg/m3", minimum=1e-6, source=_TABLE_3),
-        choice("unit_weight_of", "what unit_weight is the density of: a disc; or the layer, discs are then heavier by 1 / "
-               "solid_fraction", ("disc", "layer"), "disc"),
-        param("solid_fraction", "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion "
-              "and unit_weight_of = layer. The default is that of a square lattice", math.pi / 4.0, minimum=0.5, maximum=0.9),
+        param(
+            "box.width",
+            "distance of the side walls",
+            37 * cm,
+            "m",
+            minimum=1e-6,
+            source="Sonoda et al. 1993, fig. 2",
+        ),
+        param(
+            "box.wall_height",
+            "height of the side walls for the rock, above base.y, or above the beam's top where they stand on "
+            "it; for sand they have no end",
+            UNBOUNDED,
+            "m",
+            minimum=0.0,
+        ),
+        param(
+            "box.wall_thickness", "thickness of the side walls for the rock", 0.2, "m", minimum=1e-6
+        ),
+        param(
+            "base.y",
+            "y of the floor, used when base = floor; side walls fixed in space count their height from it",
+            0.0,
+            "m",
+        ),
+        param(
+            "disc.radius",
+            "radius of a sand disc (mean radius of a random packing)",
+            0.5 * cm,
+            "m",
+            minimum=1e-9,
+            source="Sonoda et al. 1993, sec. 3 (2): diameter 1.0 cm",
+        ),
+        param(
+            "disc.spread",
+            "random packing: radii are uniform within radius * (1 - spread, 1 + spread)",
+            0.0,
+            minimum=0.0,
+            maximum=0.5,
+        ),
+        param(
+            "depth",
+            "effective depth dL of the cushion, into the picture",
+            10 * cm,
+            "m",
+            minimum=1e-6,
+            source="Sonoda et al. 1993, sec. 3 (2)",
+        ),
+        param(
+            "unit_weight",
+            "mass density of a disc, or of the layer with its voids (unit_weight_of)",
+            0.0018 * kgf / cm**3 / kgf,
+            "kg/m3",
+            minimum=1e-6,
+            source=_TABLE_3,
+        ),
+        choice(
+            "unit_weight_of",
+            "what unit_weight is the density of: a disc; or the layer, discs are then heavier by 1 / "
+            "solid_fraction",
+            ("disc", "layer"),
+            "disc",
+        ),
+        param(
+            "solid_fraction",
+            "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion "
+            "and unit_weight_of = layer. The default is that of a square lattice",
+            math.pi / 4.0,
+            minimum=0.5,
+            maximum=0.9,
+        ),
         param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
-        choice("packing", "arrangement of the discs at the start; random: as they settle, prepared: settled until they have "
-               "solid_fraction", ("square", "hexagonal", "random", "prepared"), "square"),
-        param("lattice_shift", "square and hexagonal packing: each disc is moved at random by up to this part of its diameter", 0.0,
-              minimum=0.0, maximum=0.5),
-        count("seed", "random packing and lattice shift: number of the sample", 1, minimum=0, maximum=2**31 - 1),
-        param("settling.time", "longest time of settling under gravity before the start; ends earlier when discs rest", 2.0, "s",
-              minimum=0.0),
+        choice(
+            "packing",
+            "arrangement of the discs at the start; random: as they settle, prepared: settled until they have "
+            "solid_fraction",
+            ("square", "hexagonal", "random", "prepared"),
+            "square",
+        ),
+        param(
+            "lattice_shift",
+            "square and hexagonal packing: each disc is moved at random by up to this part of its diameter",
+            0.0,
+            minimum=0.0,
+            maximum=0.5,
+        ),
+        count(
+            "seed",
+            "random packing and lattice shift: number of the sample",
+            1,
+            minimum=0,
+            maximum=2**31 - 1,
+        ),
+        param(
+            "settling.time",
+            "longest time of settling under gravity before the start; ends earlier when discs rest",
+            2.0,
+            "s",
+            minimum=0.0,
+        ),
         # the contact law
-        param("modulus", "fictitious modulus E_bar of the sand", 30.4 * kgf / cm ** 2, "Pa", minimum=1e-6,
-              source="Sonoda et al. 1993, table 4, test 4"),
-        choice("rotation", "locked: a disc's rotation is left out (calibrated model); free: three freedoms a disc (literal model)",
-               ("free", "locked"), "locked"),
-        param("stiffness_factor", "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 is eq. (1) "
-              "to the letter", CALIBRATED_STIFFNESS_FACTOR, minimum=1e-9),
-        param("damping", "damping constant h of normal and tangential dashpots", 0.2, minimum=0.0, source=_TABLE_3),
+        param(
+            "modulus",
+            "fictitious modulus E_bar of the sand",
+            30.4 * kgf / cm**2,
+            "Pa",
+            minimum=1e-6,
+            source="Sonoda et al. 1993, table 4, test 4",
+        ),
+        choice(
+            "rotation",
+            "locked: a disc's rotation is left out (calibrated model); free: three freedoms a disc (literal model)",
+            ("free", "locked"),
+            "locked",
+        ),
+        param(
+            "stiffness_factor",
+            "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 is eq. (1) "
+            "to the letter",
+            CALIBRATED_STIFFNESS_FACTOR,
+            minimum=1e-9,
+        ),
+        param(
+            "damping",
+            "damping constant h of normal and tangential dashpots",
+            0.2,
+            minimum=0.0,
+            source=_TABLE_3,
+        ),
         param("tangential_ratio", "s = k_s / k_n", 0.25, minimum=1e-9, source=_TABLE_3),
-        param("friction_angle", "angle of friction phi; mu = tan(phi)", 30 * deg, "rad", minimum=0.0, maximum=1.5, source=_TABLE_3),
-        param("rolling_resistance", "rolling friction: largest rolling moment / (normal force * radius); with free rotation", 0.0,
-              minimum=0.0),
-        param("unloading_ratio", "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); 1 is elastic",
-              1.0, minimum=1.0, maximum=1e3),
-        param("cohesion", "cohesion of the moist sand, by capillary forces between its discs (Rumpf); 0 is dry", 0.0, "Pa",
-              minimum=0.0),
-        param("cohesion_range", "length at which a capillary bridge breaks / distance of the centres", 0.05, minimum=1e-3,
-              maximum=0.25),
-        param("rock.stiffness_ratio", "k_n rock-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
-        param("base.stiffness_ratio", "k_n base-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
-        param("wall.stiffness_ratio", "k_n wall-sand / its value after eq. (1)", 1.0, minimum=1e-9, source=_EQ_1),
-        param("rock_base.stiffness_ratio", "k_n rock-base and rock-wall / k_n sand-sand; the paper gives none", 10.0, minimum=1e-9),
-        param("wall.friction_angle", "angle of friction at the side walls", 30 * deg, "rad", minimum=0.0, maximum=1.5),
+        param(
+            "friction_angle",
+            "angle of friction phi; mu = tan(phi)",
+            30 * deg,
+            "rad",
+            minimum=0.0,
+            maximum=1.5,
+            source=_TABLE_3,
+        ),
+        param(
+            "rolling_resistance",
+            "rolling friction: largest rolling moment / (normal force * radius); with free rotation",
+            0.0,
+            minimum=0.0,
+        ),
+        param(
+            "unloading_ratio",
+            "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); 1 is elastic",
+            1.0,
+            minimum=1.0,
+            maximum=1e3,
+        ),
+        param(
+            "cohesion",
+            "cohesion of the moist sand, by capillary forces between its discs (Rumpf); 0 is dry",
+            0.0,
+            "Pa",
+            minimum=0.0,
+        ),
+        param(
+            "cohesion_range",
+            "length at which a capillary bridge breaks / distance of the centres",
+            0.05,
+            minimum=1e-3,
+            maximum=0.25,
+        ),
+        param(
+            "rock.stiffness_ratio",
+            "k_n rock-sand / its value after eq. (1)",
+            1.0,
+            minimum=1e-9,
+            source=_EQ_1,
+        ),
+        param(
+            "base.stiffness_ratio",
+            "k_n base-sand / its value after eq. (1)",
+            1.0,
+            minimum=1e-9,
+            source=_EQ_1,
+        ),
+        param(
+            "wall.stiffness_ratio",
+            "k_n wall-sand / its value after eq. (1)",
+            1.0,
+            minimum=1e-9,
+            source=_EQ_1,
+        ),
+        param(
+            "rock_base.stiffness_ratio",
+            "k_n rock-base and rock-wall / k_n sand-sand; the paper gives none",
+            10.0,
+            minimum=1e-9,
+        ),
+        param(
+            "wall.friction_angle",
+            "angle of friction at the side walls",
+            30 * deg,
+            "rad",
+            minimum=0.0,
+            maximum=1.5,
+        ),
         # what the cushion rests on and between
-        choice("base", "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's discs as discs",
-               ("floor", "beam_surface", "beam_discs"), "beam_discs"),
-        choice("base.shape", "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, the beam's top being flat and "
-               "its discs those of the computation; round: with the radius of the beam discs (base = beam_discs)",
-               ("flat", "round"), "flat"),
-        choice("walls", "side walls fixed in space, or standing on the beam", ("fixed", "on_beam"), "fixed"),
+        choice(
+            "base",
+            "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's discs as discs",
+            ("floor", "beam_surface", "beam_discs"),
+            "beam_discs",
+        ),
+        choice(
+            "base.shape",
+            "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, the beam's top being flat and "
+            "its discs those of the computation; round: with the radius of the beam discs (base = beam_discs)",
+            ("flat", "round"),
+            "flat",
+        ),
+        choice(
+            "walls",
+            "side walls fixed in space, or standing on the beam",
+            ("fixed", "on_beam"),
+            "fixed",
+        ),
         param("rock.radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6),
-        param("rock.mass", "mass of the rock, for the dashpots of its contact with base and walls", 4.0, "kg", minimum=1e-6),
+        param(
+            "rock.mass",
+            "mass of the rock, for the dashpots of its contact with base and walls",
+            4.0,
+            "kg",
+            minimum=1e-6,
+        ),
         param("beam.radius", "radius of a beam disc", _BEAM_RADIUS, "m", minimum=1e-6),
-        param("beam.disc_mass", "mass of a beam disc, for the dashpots of its contacts with sand; 0 takes the sand disc's there",
-              0.0, "kg", minimum=0.0),
+        param(
+            "beam.disc_mass",
+            "mass of a beam disc, for the dashpots of its contacts with sand; 0 takes the sand disc's there",
+            0.0,
+            "kg",
+            minimum=0.0,
+        ),
         # integration and exchange
         internal_step(1e-5),
-        count("threads", "threads that share the work of a step; their number changes no bit. Of use from some 50,000 discs on", 1,
-              minimum=1, maximum=MOST),
-        choice("kinematics", "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
-               "given (linear)", ("held", "linear"), "held"),
-        choice("forces", "forces returned: those of the last internal step, or the mean over the communication step, which keeps "
-               "the impulse", ("last", "mean"), "last"),
+        count(
+            "threads",
+            "threads that share the work of a step; their number changes no bit. Of use from some 50,000 discs on",
+            1,
+            minimum=1,
+            maximum=MOST,
+        ),
+        choice(
+            "kinematics",
+            "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
+            "given (linear)",
+            ("held", "linear"),
+            "held",
+        ),
+        choice(
+            "forces",
+            "forces returned: those of the last internal step, or the mean over the communication step, which keeps "
+            "the impulse",
+            ("last", "mean"),
+            "last",
+        ),
         # inputs
         inp("rock.position.x", "position of the rock's centre, to the right", "m", 0.6),
         inp("rock.position.y", "position of the rock's centre, upwards", "m", 1.0),
@@ -190,41 +391,104 @@ LAYOUT = Layout(
         inp("rock.velocity.x", "velocity of the rock, to the right", "m/s"),
         inp("rock.velocity.y", "velocity of the rock, upwards", "m/s"),
         inp("rock.angular_velocity", "angular velocity of the rock, counter-clockwise", "rad/s"),
-        inp("beam.position.x", "position of a beam disc's centre, to the right", "m", _beam_x, size="elements"),
-        inp("beam.position.y", "position of a beam disc's centre, upwards", "m", -_BEAM_RADIUS, size="elements"),
+        inp(
+            "beam.position.x",
+            "position of a beam disc's centre, to the right",
+            "m",
+            _beam_x,
+            size="elements",
+        ),
+        inp(
+            "beam.position.y",
+            "position of a beam disc's centre, upwards",
+            "m",
+            -_BEAM_RADIUS,
+            size="elements",
+        ),
         inp("beam.angle", "angle of a beam disc, counter-clockwise", "rad", size="elements"),
         inp("beam.velocity.x", "velocity of a beam disc, to the right", "m/s", size="elements"),
         inp("beam.velocity.y", "velocity of a beam disc, upwards", "m/s", size="elements"),
-        inp("beam.angular_velocity", "angular velocity of a beam disc, counter-clockwise", "rad/s", size="elements"),
+        inp(
+            "beam.angular_velocity",
+            "angular velocity of a beam disc, counter-clockwise",
+            "rad/s",
+            size="elements",
+        ),
         # outputs
         out("rock.force.x", "contact force on the rock, to the right", "N"),
         out("rock.force.y", "contact force on the rock, upwards", "N"),
-        out("rock.torque", "torque of the contact forces on the rock about its centre, counter-clockwise", "N.m"),
+        out(
+            "rock.torque",
+            "torque of the contact forces on the rock about its centre, counter-clockwise",
+            "N.m",
+        ),
         out("beam.force.x", "contact force on a beam disc, to the right", "N", size="elements"),
         out("beam.force.y", "contact force on a beam disc, upwards", "N", size="elements"),
-        out("beam.torque", "torque of the contact forces on a beam disc about its centre", "N.m", size="elements"),
-        out("transmitted_force", "force of sand and rock on base (and on walls that stand on the beam), positive downwards", "N",
-            source="Sonoda et al. 1993, eq. (4)"),
-        out("penetration", "depth of the rock's lowest point under the sand's surface at the start; negative above it", "m"),
+        out(
+            "beam.torque",
+            "torque of the contact forces on a beam disc about its centre",
+            "N.m",
+            size="elements",
+        ),
+        out(
+            "transmitted_force",
+            "force of sand and rock on base (and on walls that stand on the beam), positive downwards",
+            "N",
+            source="Sonoda et al. 1993, eq. (4)",
+        ),
+        out(
+            "penetration",
+            "depth of the rock's lowest point under the sand's surface at the start; negative above it",
+            "m",
+        ),
         out("surface_height", "height of the sand's surface at the start, under the rock", "m"),
-        out("layer.solid_fraction", "part of the layer that discs fill at the start; its height is twice that of their centre of "
-            "gravity", "1"),
-        out("layer.height", "height of the layer at the start: twice that of its centre of gravity above the base", "m"),
-        out("unrest", "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
-            "that is more; settling ends at 1e-6, or when settling.time is over"),
+        out(
+            "layer.solid_fraction",
+            "part of the layer that discs fill at the start; its height is twice that of their centre of "
+            "gravity",
+            "1",
+        ),
+        out(
+            "layer.height",
+            "height of the layer at the start: twice that of its centre of gravity above the base",
+            "m",
+        ),
+        out(
+            "unrest",
+            "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
+            "that is more; settling ends at 1e-6, or when settling.time is over",
+        ),
         stable_step(),
         out("energy.kinetic", "kinetic energy of the discs", "J"),
-        out("energy.elastic", "elastic energy of all contacts, normal, tangential and rolling", "J"),
+        out(
+            "energy.elastic", "elastic energy of all contacts, normal, tangential and rolling", "J"
+        ),
         out("energy.gravity", "potential energy of the discs in gravity, zero at y = 0", "J"),
         out("energy.normal_dashpot", "energy dissipated in normal dashpots", "J"),
         out("energy.tangential_dashpot", "energy dissipated in tangential dashpots", "J"),
         out("energy.sliding", "energy dissipated in sliding contacts", "J"),
         out("energy.rolling", "energy dissipated by rolling resistance", "J"),
-        out("energy.plastic", "energy lost in contacts that do not spring back, less what their capillary bridges gained", "J"),
-        out("energy.capillary", "potential energy of the capillary bridges, zero where there is none", "J"),
+        out(
+            "energy.plastic",
+            "energy lost in contacts that do not spring back, less what their capillary bridges gained",
+            "J",
+        ),
+        out(
+            "energy.capillary",
+            "potential energy of the capillary bridges, zero where there is none",
+            "J",
+        ),
         out("energy.work.rock", "work that the rock has done on the sand", "J"),
-        out("energy.work.beam", "work that the beam has done on the sand (and on the walls standing on it)", "J"),
-        out("energy.residual", "kinetic + elastic + capillary + gravity + dissipated - work, minus the sum at the start", "J"),
+        out(
+            "energy.work.beam",
+            "work that the beam has done on the sand (and on the walls standing on it)",
+            "J",
+        ),
+        out(
+            "energy.residual",
+            "kinetic + elastic + capillary + gravity + dissipated - work, minus the sum at the start",
+            "J",
+        ),
         out("energy.start", "kinetic + elastic + capillary + gravity at the start", "J"),
     ),
     states=(

@@ -5,7 +5,13 @@ import math
 from ..common.kernels import inlined, kernel
 from ..common.ports import view
 from ..common.threads import shared_among_threads
-from .contact_law import normal_force, permanent_overlap, rolling_moment, tangential_force, yield_loss
+from .contact_law import (
+    normal_force,
+    permanent_overlap,
+    rolling_moment,
+    tangential_force,
+    yield_loss,
+)
 from .contact_search import beam_count, disc_count, first_of, part_count, second_of
 from .declarations import (
     BEAM_SURFACE,
@@ -30,7 +36,15 @@ from .declarations import (
     UNBOUNDED,
 )
 from .vector.law import lasting_law, plain_law
-from .vector.rows import FASTEST, KINETIC, POTENTIAL, columns_to_pairs, forces_to_pairs, move_rows, pairs_to_columns
+from .vector.rows import (
+    FASTEST,
+    KINETIC,
+    POTENTIAL,
+    columns_to_pairs,
+    forces_to_pairs,
+    move_rows,
+    pairs_to_columns,
+)
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -48,12 +62,28 @@ def set_to_zero(numbers):
 @kernel
 def clear(begin, load, sums):
     """Forget the forces on the bodies from ``begin`` on, and what refers to the step before."""
-    set_to_zero(load[FORCE_ROW * begin:])
+    set_to_zero(load[FORCE_ROW * begin :])
     sums[SUM.elastic], sums[SUM.transmitted], sums[SUM.capillary] = 0.0, 0.0, 0.0
 
 
 @inlined
-def press_block(p, turning, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling):
+def press_block(
+    p,
+    turning,
+    rolls,
+    lasting,
+    dt,
+    body,
+    load,
+    pair,
+    spring,
+    plastic,
+    roll,
+    law,
+    block,
+    tally,
+    rolling,
+):
     """Forces of a block of pairs, those from ``p`` on."""
     pairs_to_columns(body, pair, p, block)
     if lasting:
@@ -83,7 +113,9 @@ def block_rolling(begin, dt, body, load, pair, roll, block, law, rolling):
         radius = ri * rj / (ri + rj)
         bend = ROLLING * stiffness * resistance * resistance * radius * radius
         turning = body[j + SPIN] / rj - body[i + SPIN] / ri
-        moment, lost = rolling_moment(roll[begin + q], turning, bend, resistance * radius * normal, dt)
+        moment, lost = rolling_moment(
+            roll[begin + q], turning, bend, resistance * radius * normal, dt
+        )
         roll[begin + q] = moment
         rolling[ROLL.lost] += lost
         rolling[ROLL.elastic] += 0.5 * moment * moment / bend
@@ -95,7 +127,7 @@ def block_rolling(begin, dt, body, load, pair, roll, block, law, rolling):
 def part_of(buffer, k, entry, c, length):
     """The room of part c in an array that holds ``length`` numbers for each part."""
     begin = k[entry] + c * length
-    return buffer[begin:begin + length]
+    return buffer[begin : begin + length]
 
 
 @kernel
@@ -106,14 +138,37 @@ def press_pairs(begin, end, c, moving, dt, w, x, k):
     body, load, pair = view(x, k, A.body), view(x, k, A.load), view(k, k, A.pair)
     spring, plastic, roll = view(x, k, A.spring), view(x, k, A.plastic), view(x, k, A.roll)
     law, block = view(x, k, A.law), part_of(x, k, A.block, c, BLOCK * len(COLUMN))
-    tally, rolling = part_of(x, k, A.tally, c, LANES * len(TALLY)), part_of(x, k, A.rolling, c, len(ROLL))
-    motion, angle, part = part_of(x, k, A.motion, c, MOTION), view(x, k, A.angle), view(k, k, A.part)
+    tally, rolling = (
+        part_of(x, k, A.tally, c, LANES * len(TALLY)),
+        part_of(x, k, A.rolling, c, len(ROLL)),
+    )
+    motion, angle, part = (
+        part_of(x, k, A.motion, c, MOTION),
+        view(x, k, A.angle),
+        view(k, k, A.part),
+    )
     turning = w[V.rotation] == FREE
     rolls = turning and w[V.rolling_resistance] > 0.0
     lasting = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
     done, last = part[c], part[c + 1]
     for p in range(begin, end, BLOCK):
-        press_block(p, turning, rolls, lasting, dt, body, load, pair, spring, plastic, roll, law, block, tally, rolling)
+        press_block(
+            p,
+            turning,
+            rolls,
+            lasting,
+            dt,
+            body,
+            load,
+            pair,
+            spring,
+            plastic,
+            roll,
+            law,
+            block,
+            tally,
+            rolling,
+        )
         if moving:
             ready = first_of(pair[p + BLOCK]) if p + BLOCK < end else last
             move_discs(done, ready, dt, w[V.gravity], turning, body, load, angle, motion)
@@ -153,17 +208,29 @@ def between_discs(dt, moving, w, x, k):
         set_to_zero(view(x, k, entry))
     press_pairs(across[0], across[across.size - 1], 0, False, dt, w, x, k)
     press_parts(int(w[V.threads]), parts, moving, dt, w, x, k)
-    add_energies(dt, view(x, k, A.law), view(x, k, A.tally)[:parts * LANES * len(TALLY)], view(x, k, A.rolling), view(x, k, A.sums))
-    return add_motion(dt, w[V.gravity], view(x, k, A.motion)[:parts * MOTION], view(x, k, A.sums))
+    add_energies(
+        dt,
+        view(x, k, A.law),
+        view(x, k, A.tally)[: parts * LANES * len(TALLY)],
+        view(x, k, A.rolling),
+        view(x, k, A.sums),
+    )
+    return add_motion(dt, w[V.gravity], view(x, k, A.motion)[: parts * MOTION], view(x, k, A.sums))
 
 
 @kernel
 def add_energies(dt, law, tally, rolling, sums):
     """Add what the parts have added up to the sums, and give it its scale."""
-    sums[SUM.elastic] += 0.5 * (total(TALLY.elastic, tally) + total(TALLY.stretched, tally) * law[LAW.softness])
+    sums[SUM.elastic] += 0.5 * (
+        total(TALLY.elastic, tally) + total(TALLY.stretched, tally) * law[LAW.softness]
+    )
     sums[SUM.normal_dashpot] += total(TALLY.normal_dashpot, tally) * dt
-    sums[SUM.tangential_dashpot] += law[LAW.tangential_damping] * total(TALLY.tangential_dashpot, tally) * dt
-    sums[SUM.sliding] += total(TALLY.sliding, tally) * dt + 0.5 * total(TALLY.released, tally) * law[LAW.softness]
+    sums[SUM.tangential_dashpot] += (
+        law[LAW.tangential_damping] * total(TALLY.tangential_dashpot, tally) * dt
+    )
+    sums[SUM.sliding] += (
+        total(TALLY.sliding, tally) * dt + 0.5 * total(TALLY.released, tally) * law[LAW.softness]
+    )
     sums[SUM.plastic] += total(TALLY.plastic, tally)
     sums[SUM.capillary] += total(TALLY.capillary, tally)
     for q in range(0, rolling.size, len(ROLL)):
@@ -176,8 +243,10 @@ def total(energy, tally):
     """One of the energies of TALLY, of all parts: the sum of the lanes in four pairs."""
     result = 0.0
     for begin in range(LANES * energy, tally.size, LANES * len(TALLY)):
-        lane = tally[begin:begin + LANES]
-        result += (lane[0] + lane[4]) + (lane[1] + lane[5]) + ((lane[2] + lane[6]) + (lane[3] + lane[7]))
+        lane = tally[begin : begin + LANES]
+        result += (
+            (lane[0] + lane[4]) + (lane[1] + lane[5]) + ((lane[2] + lane[6]) + (lane[3] + lane[7]))
+        )
     return result
 
 
@@ -231,7 +300,13 @@ def touch(i, b, w, body, n, m):
         distance = math.sqrt(dx * dx + dy * dy)
         nx, ny = dx / distance, dy / distance
         turning = body[ROW * b + SPIN]  # the contact lies at -n * radius from b's centre
-        return nx, ny, distance - ri - body[ROW * b + RADIUS], body[ROW * b + 2] + turning * ny, body[ROW * b + 3] - turning * nx
+        return (
+            nx,
+            ny,
+            distance - ri - body[ROW * b + RADIUS],
+            body[ROW * b + 2] + turning * ny,
+            body[ROW * b + 3] - turning * nx,
+        )
     if b == n + m + 3:
         if i == n and is_beside(xi, w):
             return 0.0, -1.0, UNBOUNDED, 0.0, 0.0
@@ -240,7 +315,9 @@ def touch(i, b, w, body, n, m):
         a, share = beam_place(xi, body, n, m)
         c = a if m == 1 else a + 1
         top = (1.0 - share) * body[ROW * a + 1] + share * body[ROW * c + 1] + body[ROW * a + RADIUS]
-        vx = (1.0 - share) * (body[ROW * a + 2] - body[ROW * a + SPIN]) + share * (body[ROW * c + 2] - body[ROW * c + SPIN])
+        vx = (1.0 - share) * (body[ROW * a + 2] - body[ROW * a + SPIN]) + share * (
+            body[ROW * c + 2] - body[ROW * c + SPIN]
+        )
         vy = (1.0 - share) * body[ROW * a + 3] + share * body[ROW * c + 3]
         return 0.0, -1.0, yi - top - ri, vx, vy
     vy, foot = 0.0, w[V.base_y]
@@ -250,7 +327,9 @@ def touch(i, b, w, body, n, m):
         a, share = beam_place(face, body, n, m)
         c = a if m == 1 else a + 1
         vy = (1.0 - share) * body[ROW * a + 3] + (0.0 if m == 1 else share * body[ROW * c + 3])
-        foot = (1.0 - share) * body[ROW * a + 1] + share * body[ROW * c + 1] + body[ROW * a + RADIUS]
+        foot = (
+            (1.0 - share) * body[ROW * a + 1] + share * body[ROW * c + 1] + body[ROW * a + RADIUS]
+        )
     out, over = (xi - face) * nx, yi - foot - w[V.box_wall_height]
     if i != n or (over <= 0.0 and out <= 0.0) or w[V.box_wall_height] == UNBOUNDED:
         return nx, 0.0, (xi - face) * -nx - ri, 0.0, vy
@@ -276,7 +355,11 @@ def load_boundary(b, i, fx, fy, nx, ny, w, body, load, sums, n, m):
     if base or w[V.walls] == ON_BEAM:
         sums[SUM.transmitted] -= fy
     if (base and w[V.base] == BEAM_SURFACE) or (not base and w[V.walls] == ON_BEAM):
-        place = body[ROW * i] if base else (w[V.box_left] if b == n + m + 1 else w[V.box_left] + w[V.box_width])
+        place = (
+            body[ROW * i]
+            if base
+            else (w[V.box_left] if b == n + m + 1 else w[V.box_left] + w[V.box_width])
+        )
         a, share = beam_place(place, body, n, m)
         load_beam(a, 1.0 - share, fx if base else 0.0, fy, load)
         if m > 1:
@@ -295,9 +378,18 @@ def load_beam(a, share, fx, fy, load):
 def with_boundaries(dt, w, x, k):
     """Forces of discs and rock with rock, beam, base and walls."""
     n, m = disc_count(k), beam_count(k)
-    body, load, law, sums = view(x, k, A.body), view(x, k, A.load), view(x, k, A.law), view(x, k, A.sums)
+    body, load, law, sums = (
+        view(x, k, A.body),
+        view(x, k, A.load),
+        view(x, k, A.law),
+        view(x, k, A.sums),
+    )
     owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
-    spring, plastic, roll = view(x, k, A.edge_spring), view(x, k, A.edge_plastic), view(x, k, A.edge_roll)
+    spring, plastic, roll = (
+        view(x, k, A.edge_spring),
+        view(x, k, A.edge_plastic),
+        view(x, k, A.edge_roll),
+    )
     rolls = w[V.rotation] == FREE and w[V.rolling_resistance] > 0.0
     elastic, dashpot_n, dashpot_t, slid, lost = 0.0, 0.0, 0.0, 0.0, 0.0
     for p in range(view(k, k, A.edge_row)[n + 1] & INDEX):
@@ -325,7 +417,9 @@ def with_boundaries(dt, w, x, k):
         normal = normal_force(-gap, opening, stiffness, law[kind + LAW.damping] * mass_root)
         dashpot = law[kind + LAW.tangential_damping] * mass_root
         limit = law[kind + LAW.friction] * normal
-        force, kept, taken = tangential_force(spring[p], slip, law[kind + LAW.tangential], dashpot, limit, dt)
+        force, kept, taken = tangential_force(
+            spring[p], slip, law[kind + LAW.tangential], dashpot, limit, dt
+        )
         spring[p] = kept
         elastic += stiffness * gap * gap + kept * kept * softness
         dashpot_n += (-stiffness * gap - normal) * opening
@@ -337,8 +431,19 @@ def with_boundaries(dt, w, x, k):
         load[force_at + 2] += force
         load_boundary(b, i, px, py, nx, ny, w, body, load, sums, n, m)
         if rolls and law[kind + LAW.rolling] > 0.0:
-            roll[p] = roll_on_boundary(dt, i, b, b <= n + m, roll[p], normal, law[kind + LAW.normal], law[kind + LAW.rolling], body,
-                                       load, sums)
+            roll[p] = roll_on_boundary(
+                dt,
+                i,
+                b,
+                b <= n + m,
+                roll[p],
+                normal,
+                law[kind + LAW.normal],
+                law[kind + LAW.rolling],
+                body,
+                load,
+                sums,
+            )
     sums[SUM.elastic] += 0.5 * elastic
     sums[SUM.normal_dashpot] += dashpot_n * dt
     sums[SUM.tangential_dashpot] += dashpot_t * dt
@@ -396,7 +501,7 @@ def contact_forces(dt, w, x, k):
 @kernel
 def forget_forces(x, k):
     """Forget the forces on the discs, as :func:`advance_discs` needs it; those on rock and beam stay."""
-    set_to_zero(view(x, k, A.load)[:FORCE_ROW * disc_count(k)])
+    set_to_zero(view(x, k, A.load)[: FORCE_ROW * disc_count(k)])
 
 
 @kernel

@@ -33,8 +33,19 @@ from .packing import disc_mass, mean_base, pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-(LIST_FULL, DIVERGED, ROCK_INSIDE, BEAM_TOO_NARROW, BEAM_UNORDERED, BEAM_GAPS, ROCK_BESIDE, DISC_TOO_WIDE, TOO_LOOSE,
- TOO_DENSE, SMOOTH_BUT_COHESIVE) = range(1, 12)
+(
+    LIST_FULL,
+    DIVERGED,
+    ROCK_INSIDE,
+    BEAM_TOO_NARROW,
+    BEAM_UNORDERED,
+    BEAM_GAPS,
+    ROCK_BESIDE,
+    DISC_TOO_WIDE,
+    TOO_LOOSE,
+    TOO_DENSE,
+    SMOOTH_BUT_COHESIVE,
+) = range(1, 12)
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""
@@ -68,6 +79,7 @@ _INSTANT = 1e-9
 
 # --- parameters to laws ---
 
+
 @kernel
 def set_law(kind, stiffness, friction, w, law):
     """Constants of one kind of contact from its k_n (N/m), eq. (1): c = 2 h sqrt(m k), k_s = s k_n. Contacts of sand may yield,
@@ -98,7 +110,12 @@ def capillary_strength(w):
     """
     if w[V.cohesion] == 0.0:
         return 0.0  # also without friction, where the cohesion has no strength to follow from
-    return math.pi * w[V.cohesion] * w[V.depth] / (4.0 * w[V.solid_fraction] * math.tan(w[V.friction_angle]))
+    return (
+        math.pi
+        * w[V.cohesion]
+        * w[V.depth]
+        / (4.0 * w[V.solid_fraction] * math.tan(w[V.friction_angle]))
+    )
 
 
 @kernel
@@ -119,7 +136,11 @@ def boundary_stiffness(kind, w):
     if kind == KIND.rock:
         return w[V.rock_stiffness_ratio] * stiffness_against(w[V.rock_radius], w)
     if kind == KIND.base:
-        radius = w[V.beam_radius] if w[V.base] == BEAM_DISCS and w[V.base_shape] == ROUND else w[V.disc_radius]
+        radius = (
+            w[V.beam_radius]
+            if w[V.base] == BEAM_DISCS and w[V.base_shape] == ROUND
+            else w[V.disc_radius]
+        )
         return w[V.base_stiffness_ratio] * stiffness_against(radius, w)
     if kind == KIND.wall:
         return w[V.wall_stiffness_ratio] * sand_stiffness(w)
@@ -159,13 +180,16 @@ def stable_step_of(w):
         springs = max(springs, 24.0 * ratio + 8.0 * ROLLING * w[V.rolling_resistance] ** 2)
         dashpots = max(dashpots, 24.0 * math.sqrt(ratio))
     if w[V.base] != FLOOR:
-        dashpots += 2.0 * (1.0 + math.sqrt(ratio)) * math.sqrt(w[V.beam_disc_mass] / mass)  # between two beam discs
+        dashpots += (
+            2.0 * (1.0 + math.sqrt(ratio)) * math.sqrt(w[V.beam_disc_mass] / mass)
+        )  # between two beam discs
     omega = contact * math.sqrt(springs)
     z = w[V.damping] * dashpots * contact / omega
     return 2.0 / omega * (math.sqrt(1.0 + z * z) - z)
 
 
 # --- rock and beam as given ---
+
 
 @kernel
 def set_boundaries(ahead, w, x, k):
@@ -175,12 +199,32 @@ def set_boundaries(ahead, w, x, k):
     """
     n, m = disc_count(k), beam_count(k)
     body, load, sums = view(x, k, A.body), view(x, k, A.load), view(x, k, A.sums)
-    sums[SUM.rock] -= place(n, w[V.rock_position_x], w[V.rock_position_y], w[V.rock_angle], w[V.rock_velocity_x],
-                            w[V.rock_velocity_y], w[V.rock_angular_velocity], ahead, body, load)
-    px, py, angle = view(w, k, A.beam_position_x), view(w, k, A.beam_position_y), view(w, k, A.beam_angle)
-    vx, vy, omega = view(w, k, A.beam_velocity_x), view(w, k, A.beam_velocity_y), view(w, k, A.beam_angular_velocity)
+    sums[SUM.rock] -= place(
+        n,
+        w[V.rock_position_x],
+        w[V.rock_position_y],
+        w[V.rock_angle],
+        w[V.rock_velocity_x],
+        w[V.rock_velocity_y],
+        w[V.rock_angular_velocity],
+        ahead,
+        body,
+        load,
+    )
+    px, py, angle = (
+        view(w, k, A.beam_position_x),
+        view(w, k, A.beam_position_y),
+        view(w, k, A.beam_angle),
+    )
+    vx, vy, omega = (
+        view(w, k, A.beam_velocity_x),
+        view(w, k, A.beam_velocity_y),
+        view(w, k, A.beam_angular_velocity),
+    )
     for b in range(m):
-        sums[SUM.beam] -= place(n + 1 + b, px[b], py[b], angle[b], vx[b], vy[b], omega[b], ahead, body, load)
+        sums[SUM.beam] -= place(
+            n + 1 + b, px[b], py[b], angle[b], vx[b], vy[b], omega[b], ahead, body, load
+        )
 
 
 @kernel
@@ -189,8 +233,11 @@ def place(b, px, py, angle, vx, vy, omega, ahead, body, load):
     at, force = ROW * b, FORCE_ROW * b
     new_x, new_y, new_angle = px + vx * ahead, py + vy * ahead, angle + omega * ahead
     radius = body[at + RADIUS]
-    work = (load[force] * (new_x - body[at]) + load[force + 1] * (new_y - body[at + 1])
-            + load[force + 2] * radius * (new_angle - body[at + ANGLE]))
+    work = (
+        load[force] * (new_x - body[at])
+        + load[force + 1] * (new_y - body[at + 1])
+        + load[force + 2] * radius * (new_angle - body[at + ANGLE])
+    )
     body[at], body[at + 1], body[at + ANGLE] = new_x, new_y, new_angle
     body[at + 2], body[at + 3], body[at + SPIN] = vx, vy, omega * radius
     return work
@@ -212,6 +259,7 @@ def size_boundaries(w, x, k):
 
 # --- motion of the discs ---
 
+
 @kernel
 def advance(dt, w, x, k):
     """One internal step with rock and beam where they are. Returns status, kinetic and potential energy at its beginning."""
@@ -223,6 +271,7 @@ def advance(dt, w, x, k):
 
 # --- start ---
 
+
 @kernel
 def unrest(w, x, k):
     """Largest acceleration (in g) and speed (in sqrt(g r)) of any disc, whichever is larger."""
@@ -232,9 +281,14 @@ def unrest(w, x, k):
     largest = 0.0
     for i in range(disc_count(k)):
         at, force = ROW * i, FORCE_ROW * i
-        ax, ay = load[force] * body[at + INVERSE_MASS], load[force + 1] * body[at + INVERSE_MASS] - w[V.gravity]
+        ax, ay = (
+            load[force] * body[at + INVERSE_MASS],
+            load[force + 1] * body[at + INVERSE_MASS] - w[V.gravity],
+        )
         v2 = body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3]
-        largest = max(largest, math.sqrt(ax * ax + ay * ay) / g, math.sqrt(v2 / (g * w[V.disc_radius])))
+        largest = max(
+            largest, math.sqrt(ax * ax + ay * ay) / g, math.sqrt(v2 / (g * w[V.disc_radius]))
+        )
     forget_forces(x, k)
     return largest
 
@@ -437,11 +491,21 @@ def evaluate(w, x, k):
     if not rebuild(w, x, k):
         return LIST_FULL
     contact_forces(_INSTANT * w[V.internal_step], w, x, k)
-    for q in (SUM.normal_dashpot, SUM.tangential_dashpot, SUM.sliding, SUM.rolling, SUM.plastic, SUM.rock, SUM.beam):
+    for q in (
+        SUM.normal_dashpot,
+        SUM.tangential_dashpot,
+        SUM.sliding,
+        SUM.rolling,
+        SUM.plastic,
+        SUM.rock,
+        SUM.beam,
+    ):
         sums[q] = 0.0
     w[V.energy_start] = 0.0
     publish_energies(kinetic_energy(x, k), potential_energy(w, x, k), w, sums)
-    w[V.energy_start] = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
+    w[V.energy_start] = (
+        w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
+    )
     w[V.energy_residual] = 0.0
     collect_forces(1.0, True, w, x, k)
     forget_forces(x, k)
@@ -455,7 +519,11 @@ def kinetic_energy(x, k):
     total = 0.0
     for i in range(disc_count(k)):
         at = ROW * i
-        speeds = body[at + 2] * body[at + 2] + body[at + 3] * body[at + 3] + 0.5 * body[at + SPIN] * body[at + SPIN]
+        speeds = (
+            body[at + 2] * body[at + 2]
+            + body[at + 3] * body[at + 3]
+            + 0.5 * body[at + SPIN] * body[at + SPIN]
+        )
         total += 0.5 * speeds / body[at + INVERSE_MASS]
     return total
 
@@ -472,12 +540,17 @@ def potential_energy(w, x, k):
 
 # --- what the outside sees ---
 
+
 @kernel
 def collect_forces(share, first, w, x, k):
     """Add ``share`` of the present contact forces to the outputs, which begin anew with the ``first``."""
     n, m = disc_count(k), beam_count(k)
     load, sums = view(x, k, A.load), view(x, k, A.sums)
-    fx, fy, torque = view(w, k, A.beam_force_x), view(w, k, A.beam_force_y), view(w, k, A.beam_torque)
+    fx, fy, torque = (
+        view(w, k, A.beam_force_x),
+        view(w, k, A.beam_force_y),
+        view(w, k, A.beam_torque),
+    )
     keep = 0.0 if first else 1.0
     at = FORCE_ROW * n
     w[V.rock_force_x] = keep * w[V.rock_force_x] + share * load[at]
@@ -494,21 +567,37 @@ def collect_forces(share, first, w, x, k):
 @kernel
 def publish_energies(kinetic, potential, w, sums):
     """Energies at the beginning of the last internal step, and the error of their balance."""
-    w[V.energy_kinetic], w[V.energy_gravity], w[V.energy_elastic] = kinetic, potential, sums[SUM.elastic]
-    w[V.energy_normal_dashpot], w[V.energy_tangential_dashpot] = sums[SUM.normal_dashpot], sums[SUM.tangential_dashpot]
+    w[V.energy_kinetic], w[V.energy_gravity], w[V.energy_elastic] = (
+        kinetic,
+        potential,
+        sums[SUM.elastic],
+    )
+    w[V.energy_normal_dashpot], w[V.energy_tangential_dashpot] = (
+        sums[SUM.normal_dashpot],
+        sums[SUM.tangential_dashpot],
+    )
     w[V.energy_sliding], w[V.energy_rolling] = sums[SUM.sliding], sums[SUM.rolling]
     w[V.energy_work_rock], w[V.energy_work_beam] = sums[SUM.rock], sums[SUM.beam]
     w[V.energy_plastic], w[V.energy_capillary] = sums[SUM.plastic], sums[SUM.capillary]
     stored = w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
-    lost = (w[V.energy_normal_dashpot] + w[V.energy_tangential_dashpot] + w[V.energy_sliding] + w[V.energy_rolling]
-            + w[V.energy_plastic])
-    w[V.energy_residual] = stored + lost - w[V.energy_work_rock] - w[V.energy_work_beam] - w[V.energy_start]
+    lost = (
+        w[V.energy_normal_dashpot]
+        + w[V.energy_tangential_dashpot]
+        + w[V.energy_sliding]
+        + w[V.energy_rolling]
+        + w[V.energy_plastic]
+    )
+    w[V.energy_residual] = (
+        stored + lost - w[V.energy_work_rock] - w[V.energy_work_beam] - w[V.energy_start]
+    )
 
 
 @kernel
 def penetration(ahead, w):
     """Depth (m) of the rock's lowest point under the surface at the start."""
-    return w[V.surface_height] - (w[V.rock_position_y] + w[V.rock_velocity_y] * ahead - w[V.rock_radius])
+    return w[V.surface_height] - (
+        w[V.rock_position_y] + w[V.rock_velocity_y] * ahead - w[V.rock_radius]
+    )
 
 
 @kernel

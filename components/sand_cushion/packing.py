@@ -6,7 +6,18 @@ from ..common.counter_random import uniform
 from ..common.kernels import kernel
 from ..common.ports import view
 from .contact_search import base_top, beam_count, disc_count
-from .declarations import BEAM_DISCS, HALF_ROOT, HEXAGONAL, INVERSE_MASS, LAYER, LAYOUT, RADIUS, RANDOM, ROW, SPIN
+from .declarations import (
+    BEAM_DISCS,
+    HALF_ROOT,
+    HEXAGONAL,
+    INVERSE_MASS,
+    LAYER,
+    LAYOUT,
+    RADIUS,
+    RANDOM,
+    ROW,
+    SPIN,
+)
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -29,7 +40,11 @@ def set_disc(body, i, x, y, radius, w):
     mass = disc_mass(radius, w)
     body[ROW * i], body[ROW * i + 1] = x, y
     body[ROW * i + 2], body[ROW * i + 3], body[ROW * i + SPIN] = 0.0, 0.0, 0.0
-    body[ROW * i + RADIUS], body[ROW * i + INVERSE_MASS], body[ROW * i + HALF_ROOT] = radius, 1.0 / mass, 0.5 * math.sqrt(mass)
+    body[ROW * i + RADIUS], body[ROW * i + INVERSE_MASS], body[ROW * i + HALF_ROOT] = (
+        radius,
+        1.0 / mass,
+        0.5 * math.sqrt(mass),
+    )
 
 
 @kernel
@@ -96,7 +111,9 @@ def random_heap(w, body, n, bottom):
     columns = columns_of(w[V.box_width], cell)
     pitch = w[V.box_width] / columns
     for i in range(n):
-        radius = w[V.disc_radius] * (1.0 + w[V.disc_spread] * (2.0 * uniform(w[V.seed], 3 * i) - 1.0))
+        radius = w[V.disc_radius] * (
+            1.0 + w[V.disc_spread] * (2.0 * uniform(w[V.seed], 3 * i) - 1.0)
+        )
         slack_x, slack_y = 0.5 * pitch - radius, 0.5 * cell - radius
         x = (i % columns + 0.5) * pitch + slack_x * (2.0 * uniform(w[V.seed], 3 * i + 1) - 1.0)
         y = (i // columns + 0.5) * cell + slack_y * (2.0 * uniform(w[V.seed], 3 * i + 2) - 1.0)

@@ -100,10 +100,15 @@ def snapshot(instance: Instance) -> SandState:
     """The present state of a cushion. The arrays are copies."""
     discs = instance.sizes["discs"]
     body = instance.state("body").reshape(-1, ROW)
-    body = body[:discs + 1 + instance.sizes["elements"]]
+    body = body[: discs + 1 + instance.sizes["elements"]]
     angle = np.concatenate((instance.state("angle"), body[discs:, ANGLE]))
-    return SandState(_discs(body, angle, slice(0, discs)), _discs(body, angle, slice(discs, discs + 1)),
-                     _discs(body, angle, slice(discs + 1, None)), _box(instance), _contacts(instance))
+    return SandState(
+        _discs(body, angle, slice(0, discs)),
+        _discs(body, angle, slice(discs, discs + 1)),
+        _discs(body, angle, slice(discs + 1, None)),
+        _box(instance),
+        _contacts(instance),
+    )
 
 
 def _discs(body: Floats, angle: Floats, which: slice) -> Discs:
@@ -114,13 +119,18 @@ def _discs(body: Floats, angle: Floats, which: slice) -> Discs:
 def _box(instance: Instance) -> Box:
     base, height = float(_base(instance.w, instance.x, instance.k)), instance["box.wall_height"]
     foot = base if instance["walls"] == ON_BEAM else instance["base.y"]
-    return Box(instance["box.left"], instance["box.width"], base, math.inf if height == UNBOUNDED else foot + height,
-               instance["box.wall_thickness"])
+    return Box(
+        instance["box.left"],
+        instance["box.width"],
+        base,
+        math.inf if height == UNBOUNDED else foot + height,
+        instance["box.wall_thickness"],
+    )
 
 
 def _contacts(instance: Instance) -> Contacts:
     table = np.empty((instance.state("pair").size + instance.state("edge_partner").size, _COLUMNS))
-    table = table[:list_contacts(instance.w, instance.x, instance.k, table)]
+    table = table[: list_contacts(instance.w, instance.x, instance.k, table)]
     bodies = table[:, :2].astype(np.int64)
     return Contacts(bodies[:, 0], bodies[:, 1], *(np.copy(column) for column in table.T[2:]))
 
@@ -145,7 +155,11 @@ def list_contacts(w, x, k, table):
     for p in range(view(k, k, A.across)[disc_count(k)]):
         if second_of(pair[p]) < disc_count(k):  # else it fills up a block
             found = _list(found, first_of(pair[p]), second_of(pair[p]), spring[p], w, x, k, table)
-    owner, partner, spring = view(k, k, A.edge_body), view(k, k, A.edge_partner), view(x, k, A.edge_spring)
+    owner, partner, spring = (
+        view(k, k, A.edge_body),
+        view(k, k, A.edge_partner),
+        view(x, k, A.edge_spring),
+    )
     for p in range(view(k, k, A.edge_row)[disc_count(k) + 1]):
         found = _list(found, owner[p], partner[p], spring[p], w, x, k, table)
     return found
@@ -176,7 +190,9 @@ def sizes_of(content: bytes) -> dict[str, int]:
     Raises:
         ComponentError: not the state of a component, or cut short.
     """
-    if len(content) < HEADER.size or len(content) != HEADER.size + 8 * sum(HEADER.unpack_from(content)[2:]):
+    if len(content) < HEADER.size or len(content) != HEADER.size + 8 * sum(
+        HEADER.unpack_from(content)[2:]
+    ):
         raise ComponentError(COMPONENT.name, ["this is no serialized state of a component"])
     _, _, n_w, n_x, n_k = HEADER.unpack_from(content)
     table = np.frombuffer(content, np.int64, n_k, HEADER.size + 8 * (n_w + n_x))

@@ -30,13 +30,19 @@ PATH = Path(*range(10))
 """Columns of a line of the path: bounds in x (m), a point on it (m), sine, cosine and angle (rad) of its inclination, angle of the
 next facet of the slope in either direction (its own if it belongs to a facet), number of the cell it takes its material from."""
 
-Ground = namedtuple("Ground", "strength stiffness hardening friction resistance tilt tilt_deviation roughness roughness_deviation")
+Ground = namedtuple(
+    "Ground",
+    "strength stiffness hardening friction resistance tilt tilt_deviation roughness roughness_deviation",
+)
 GROUND = Ground(*range(9))
 """Columns of a cell's material: q_d, k, epsilon, mu, c_o, mean and deviation of K_s, mean and deviation of R_o."""
 
-Body = namedtuple("Body", "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction roughness sin "
-                          "cos pressure shear drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
-                          " handovers handover_time seed trial")
+Body = namedtuple(
+    "Body",
+    "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction roughness sin "
+    "cos pressure shear drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
+    " handovers handover_time seed trial",
+)
 BODY = Body(*range(35))
 """The rock at its last event: time (s), state of motion, constant accelerations until the next event, mode, line of the path; the
 next event; direction of motion, R_o, sine and cosine of phi, and the forces P, S, C (N) of the line motion; limit speed V_lim;
@@ -47,11 +53,27 @@ Clock = namedtuple("Clock", "origin begun")
 CLOCK = Clock(*range(2))
 """The tool's time at the start of the trial, and the time of the trial at which the FMU has begun (s); see lead_time."""
 
-EXAMPLE = ((0, 100), (6, 96), (12, 84), (20, 76), (26, 64), (34, 58), (40, 50), (47, 45), (54, 36), (62, 31), (70, 24), (78, 19),
-           (88, 13), (98, 9), (110, 5), (140, 4))
+EXAMPLE = (
+    (0, 100),
+    (6, 96),
+    (12, 84),
+    (20, 76),
+    (26, 64),
+    (34, 58),
+    (40, 50),
+    (47, 45),
+    (54, 36),
+    (62, 31),
+    (70, 24),
+    (78, 19),
+    (88, 13),
+    (98, 9),
+    (110, 5),
+    (140, 4),
+)
 """An example slope of 100 m height (m); its upper 60 % are rock, the rest is soil."""
 _RADIUS, _DENSITY = 0.5, 2600.0
-_MASS = 4.0 / 3.0 * 3.141592653589793 * _RADIUS ** 3 * _DENSITY
+_MASS = 4.0 / 3.0 * 3.141592653589793 * _RADIUS**3 * _DENSITY
 _TABLE_1 = "Ushiro, table 1"
 
 
@@ -74,7 +96,17 @@ def _end_y(number: int, sizes: Sizes) -> float:
 def _material(name: str, description: str, rock: float, soil: float, unit: str = "1", **rest):
     def start(number: int, sizes: Sizes) -> float:
         return rock if number < 0.6 * sizes["cells"] else soil
-    return param(name, description, start, unit, minimum=rest.pop("minimum", 0.0), size="cells", source=_TABLE_1, **rest)
+
+    return param(
+        name,
+        description,
+        start,
+        unit,
+        minimum=rest.pop("minimum", 0.0),
+        size="cells",
+        source=_TABLE_1,
+        **rest,
+    )
 
 
 _DISTRIBUTIONS = ("truncated_normal", "uniform", "lognormal", "triangular")
@@ -86,69 +118,218 @@ LAYOUT = Layout(
         # the rock
         param("mass", "mass of the rock; the default has 2600 kg/m3", _MASS, "kg", minimum=1e-6),
         param("radius", "radius of the rock", _RADIUS, "m", minimum=1e-6, source=_TABLE_1),
-        choice("shape", "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the parameter "
-               "moment_of_inertia", ("sphere", "disc", "given"), "sphere"),
-        param("moment_of_inertia", "moment of inertia about the centre; used when shape is given", 0.4 * _MASS * _RADIUS ** 2,
-              "kg.m2", minimum=1e-15),
+        choice(
+            "shape",
+            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the parameter "
+            "moment_of_inertia",
+            ("sphere", "disc", "given"),
+            "sphere",
+        ),
+        param(
+            "moment_of_inertia",
+            "moment of inertia about the centre; used when shape is given",
+            0.4 * _MASS * _RADIUS**2,
+            "kg.m2",
+            minimum=1e-15,
+        ),
         param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=1e-3),
-        param("position0.x", "position of the centre at the start, to the right", 1.0, "m", source=_TABLE_1),
-        param("position0.y", "position of the centre at the start, upwards", 102.0, "m", source=_TABLE_1),
-        switch("on_slope", "start in contact with the slope at position0.x; position0.y is not used", False),
+        param(
+            "position0.x",
+            "position of the centre at the start, to the right",
+            1.0,
+            "m",
+            source=_TABLE_1,
+        ),
+        param(
+            "position0.y",
+            "position of the centre at the start, upwards",
+            102.0,
+            "m",
+            source=_TABLE_1,
+        ),
+        switch(
+            "on_slope",
+            "start in contact with the slope at position0.x; position0.y is not used",
+            False,
+        ),
         param("angle0", "angle at the start, counter-clockwise", 0.0, "rad"),
         param("velocity0.x", "velocity at the start, to the right", 1.5, "m/s", source=_TABLE_1),
         param("velocity0.y", "velocity at the start, upwards", 0.0, "m/s", source=_TABLE_1),
-        param("angular_velocity0", "angular velocity at the start, counter-clockwise", 0.0, "rad/s", source=_TABLE_1),
+        param(
+            "angular_velocity0",
+            "angular velocity at the start, counter-clockwise",
+            0.0,
+            "rad/s",
+            source=_TABLE_1,
+        ),
         # chance
-        count("seed", "number of the sample: trials of one seed belong together", 1, minimum=0, maximum=2**31 - 1),
+        count(
+            "seed",
+            "number of the sample: trials of one seed belong together",
+            1,
+            minimum=0,
+            maximum=2**31 - 1,
+        ),
         count("trial", "number of the trial in the sample", 0, minimum=0, maximum=2**31 - 1),
-        count("hypercube", "Latin hypercube: so many trials in a row share out the range of each of their random numbers; 0: "
-              "independent trials", 0, minimum=0, maximum=2**31 - 1),
-        param("limit_speed.mean", "V_lim: speed at which a rock in line motion takes off, mean", 12.0, "m/s", minimum=0.0,
-              source=_TABLE_1),
-        param("limit_speed.deviation", "V_lim, standard deviation", 2.0, "m/s", minimum=0.0, source=_TABLE_1),
-        param("truncation", "normal variates are drawn within this many standard deviations of the mean", 1.96, minimum=1e-3,
-              maximum=5.0, source="Ushiro, eq. (32)"),
-        choice("limit_speed.distribution", "distribution of V_lim with this mean and deviation", _DISTRIBUTIONS, "truncated_normal",
-               source="Ushiro, eq. (32)"),
-        choice("roughness.distribution", "distribution of R_o", _DISTRIBUTIONS, "truncated_normal", source="Ushiro, eq. (32)"),
-        choice("tilt.distribution", "distribution of K_s", _DISTRIBUTIONS, "truncated_normal", source="Ushiro, eq. (32)"),
+        count(
+            "hypercube",
+            "Latin hypercube: so many trials in a row share out the range of each of their random numbers; 0: "
+            "independent trials",
+            0,
+            minimum=0,
+            maximum=2**31 - 1,
+        ),
+        param(
+            "limit_speed.mean",
+            "V_lim: speed at which a rock in line motion takes off, mean",
+            12.0,
+            "m/s",
+            minimum=0.0,
+            source=_TABLE_1,
+        ),
+        param(
+            "limit_speed.deviation",
+            "V_lim, standard deviation",
+            2.0,
+            "m/s",
+            minimum=0.0,
+            source=_TABLE_1,
+        ),
+        param(
+            "truncation",
+            "normal variates are drawn within this many standard deviations of the mean",
+            1.96,
+            minimum=1e-3,
+            maximum=5.0,
+            source="Ushiro, eq. (32)",
+        ),
+        choice(
+            "limit_speed.distribution",
+            "distribution of V_lim with this mean and deviation",
+            _DISTRIBUTIONS,
+            "truncated_normal",
+            source="Ushiro, eq. (32)",
+        ),
+        choice(
+            "roughness.distribution",
+            "distribution of R_o",
+            _DISTRIBUTIONS,
+            "truncated_normal",
+            source="Ushiro, eq. (32)",
+        ),
+        choice(
+            "tilt.distribution",
+            "distribution of K_s",
+            _DISTRIBUTIONS,
+            "truncated_normal",
+            source="Ushiro, eq. (32)",
+        ),
         # model options
-        choice("restitution.gravity", "gravity while the rock penetrates: printed takes its work out of the rebound only, eq. "
-               "(27); none leaves it out; consistent counts it on the way in and out",
-               ("printed", "none", "consistent"), "consistent"),
-        switch("tilt_cap", "limit the angle phi of an impact so that the penetrated ground cannot throw the rock back; off as "
-               "printed, and energy may then be gained", True),
-        choice("tilt.meaning", "K_s: relative = change of the slope angle / slope angle, as printed; absolute = that change "
-               "itself in rad", ("relative", "absolute"), "relative"),
-        param("area_factor", "loaded area / (pi r2): 1/4 as printed in eq. (25); 1 is the section of the rock", 0.25, minimum=1e-6),
+        choice(
+            "restitution.gravity",
+            "gravity while the rock penetrates: printed takes its work out of the rebound only, eq. "
+            "(27); none leaves it out; consistent counts it on the way in and out",
+            ("printed", "none", "consistent"),
+            "consistent",
+        ),
+        switch(
+            "tilt_cap",
+            "limit the angle phi of an impact so that the penetrated ground cannot throw the rock back; off as "
+            "printed, and energy may then be gained",
+            True,
+        ),
+        choice(
+            "tilt.meaning",
+            "K_s: relative = change of the slope angle / slope angle, as printed; absolute = that change "
+            "itself in rad",
+            ("relative", "absolute"),
+            "relative",
+        ),
+        param(
+            "area_factor",
+            "loaded area / (pi r2): 1/4 as printed in eq. (25); 1 is the section of the rock",
+            0.25,
+            minimum=1e-6,
+        ),
         # the receiver
-        switch("receiver.present", "hand the rock over when its centre enters the receiver, a box without slope in it", False),
+        switch(
+            "receiver.present",
+            "hand the rock over when its centre enters the receiver, a box without slope in it",
+            False,
+        ),
         param("receiver.left", "left side of the receiver", 0.0, "m"),
         param("receiver.right", "right side of the receiver", 0.0, "m"),
         param("receiver.bottom", "lower side of the receiver", 0.0, "m"),
         param("receiver.top", "upper side of the receiver", 0.0, "m"),
-        param("lead_time", "begin so long before the rock enters the receiver for the first time, or at the start of the trial if "
-              "that is later; 1e30: at the start of the trial", NEVER, "s", minimum=0.0),
+        param(
+            "lead_time",
+            "begin so long before the rock enters the receiver for the first time, or at the start of the trial if "
+            "that is later; 1e30: at the start of the trial",
+            NEVER,
+            "s",
+            minimum=0.0,
+        ),
         internal_step(1e-5),
         # the slope
-        param("profile.x", "x of the slope's first node", float(EXAMPLE[0][0]), "m", source=_TABLE_1),
-        param("profile.y", "y of the slope's first node", float(EXAMPLE[0][1]), "m", source=_TABLE_1),
+        param(
+            "profile.x", "x of the slope's first node", float(EXAMPLE[0][0]), "m", source=_TABLE_1
+        ),
+        param(
+            "profile.y", "y of the slope's first node", float(EXAMPLE[0][1]), "m", source=_TABLE_1
+        ),
         param("end.x", "x of the cell's right node", _end_x, "m", size="cells", source=_TABLE_1),
         param("end.y", "y of the cell's right node", _end_y, "m", size="cells", source=_TABLE_1),
-        _material("strength", "q_d: ultimate bearing pressure of the ground", 3000 * kN, 800 * kN, "Pa", minimum=1e-3),
-        _material("stiffness", "k: coefficient of ground reaction", 30000 * kN, 8000 * kN, "N/m3", minimum=1e-3),
-        _material("hardening", "epsilon: stiffening of the ground when it is unloaded", 0.6, 0.4, maximum=1.0),
+        _material(
+            "strength",
+            "q_d: ultimate bearing pressure of the ground",
+            3000 * kN,
+            800 * kN,
+            "Pa",
+            minimum=1e-3,
+        ),
+        _material(
+            "stiffness",
+            "k: coefficient of ground reaction",
+            30000 * kN,
+            8000 * kN,
+            "N/m3",
+            minimum=1e-3,
+        ),
+        _material(
+            "hardening",
+            "epsilon: stiffening of the ground when it is unloaded",
+            0.6,
+            0.4,
+            maximum=1.0,
+        ),
         _material("friction", "mu: coefficient of dynamic friction", 0.6, 0.5),
-        _material("resistance", "c_o: resistance of the surface (vegetation) to line motion, per section of the rock", 0.0,
-                  0.3 * kN, "Pa"),
-        _material("tilt", "K_s: change of the slope angle at an impact, mean", 0.0, 0.0, minimum=None),
+        _material(
+            "resistance",
+            "c_o: resistance of the surface (vegetation) to line motion, per section of the rock",
+            0.0,
+            0.3 * kN,
+            "Pa",
+        ),
+        _material(
+            "tilt", "K_s: change of the slope angle at an impact, mean", 0.0, 0.0, minimum=None
+        ),
         _material("tilt_deviation", "K_s, standard deviation", 0.10, 0.10),
-        _material("roughness", "R_o: height of the roughness / radius of the rock, mean", 0.10, 0.15, maximum=2.0),
+        _material(
+            "roughness",
+            "R_o: height of the roughness / radius of the rock, mean",
+            0.10,
+            0.15,
+            maximum=2.0,
+        ),
         _material("roughness_deviation", "R_o, standard deviation", 0.03, 0.04),
         # inputs
         inp("force.x", "force on the rock in the receiver without its weight, to the right", "N"),
         inp("force.y", "force on the rock in the receiver without its weight, upwards", "N"),
-        inp("torque", "torque on the rock in the receiver about its centre, counter-clockwise", "N.m"),
+        inp(
+            "torque",
+            "torque on the rock in the receiver about its centre, counter-clockwise",
+            "N.m",
+        ),
         # outputs
         out("position.x", "position of the centre, to the right", "m"),
         out("position.y", "position of the centre, upwards", "m"),
@@ -156,27 +337,57 @@ LAYOUT = Layout(
         out("velocity.x", "velocity, to the right", "m/s"),
         out("velocity.y", "velocity, upwards", "m/s"),
         out("angular_velocity", "angular velocity, counter-clockwise", "rad/s"),
-        out("mode", "what the rock does; received: it is handed over", kind=Kind.ENUMERATION, choices=_MODES, minimum=1.0,
-            maximum=float(len(_MODES))),
+        out(
+            "mode",
+            "what the rock does; received: it is handed over",
+            kind=Kind.ENUMERATION,
+            choices=_MODES,
+            minimum=1.0,
+            maximum=float(len(_MODES)),
+        ),
         out("cell", "number of the cell below the rock, from 1", kind=Kind.INTEGER),
         out("height", "distance of the rock from the cell below it, along the cell's normal", "m"),
-        out("next_event.time", "time at which the motion changes next if no force acts, rounded up to a picosecond; 1e30 if never",
-            "s"),
+        out(
+            "next_event.time",
+            "time at which the motion changes next if no force acts, rounded up to a picosecond; 1e30 if never",
+            "s",
+        ),
         out("impacts", "number of impacts so far", kind=Kind.INTEGER),
         out("received", "the rock is handed over: it is in the receiver", kind=Kind.BOOLEAN),
         out("handover.time", "time of the last hand-over; 1e30 before the first", "s"),
         out("handovers", "number of hand-overs so far", kind=Kind.INTEGER),
         stable_step(),
         out("energy.kinetic", "kinetic energy, translation and rotation", "J"),
-        out("energy.gravity", "potential energy in gravity, zero at y = 0", "J", initial_dependencies=None),
+        out(
+            "energy.gravity",
+            "potential energy in gravity, zero at y = 0",
+            "J",
+            initial_dependencies=None,
+        ),
         out("energy.impact", "energy dissipated in impacts", "J"),
         out("energy.friction", "energy dissipated by sliding friction in line motion", "J"),
         out("energy.roughness", "energy dissipated by roughness in line motion", "J"),
-        out("energy.resistance", "energy dissipated by the resistance of the surface in line motion", "J"),
-        out("energy.work.contact", "work that the inputs force and torque have done on the rock", "J"),
-        out("energy.residual", "kinetic + gravity + dissipated - work, minus their sum at the start", "J"),
+        out(
+            "energy.resistance",
+            "energy dissipated by the resistance of the surface in line motion",
+            "J",
+        ),
+        out(
+            "energy.work.contact",
+            "work that the inputs force and torque have done on the rock",
+            "J",
+        ),
+        out(
+            "energy.residual",
+            "kinetic + gravity + dissipated - work, minus their sum at the start",
+            "J",
+        ),
         out("energy.start", "kinetic + gravity at the start of the trial", "J"),
-        out("fault.cell", "number of the cell that the initialisation refuses, 0 if none", kind=Kind.INTEGER),
+        out(
+            "fault.cell",
+            "number of the cell that the initialisation refuses, 0 if none",
+            kind=Kind.INTEGER,
+        ),
         out("fault.value", "what is wrong with that cell: end.x, tilt, roughness or friction"),
         out("fault.roughness", "largest roughness of that cell"),
         out("fault.locking", "mu tan(phi) of that cell with its largest roughness"),

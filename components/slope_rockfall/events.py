@@ -59,8 +59,11 @@ _ORDERS = 1 << 32
 _SAME = 1e-12
 """Turn (rad) at a node that is none."""
 
-World = namedtuple("World", "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean limit_deviation "
-                            "limit_kind roughness_kind tilt_kind tail hypercube receiver left right bottom top")
+World = namedtuple(
+    "World",
+    "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean limit_deviation "
+    "limit_kind roughness_kind tilt_kind tail hypercube receiver left right bottom top",
+)
 """What does not change during a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated normal.
 hypercube: trials of a Latin hypercube, or 0."""
 
@@ -70,29 +73,55 @@ def inertia(w):
     """Moment of inertia in use (kg m2)."""
     if w[V.shape] == SPHERE:
         return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]
-    return 0.5 * w[V.mass] * w[V.radius] * w[V.radius] if w[V.shape] == DISC else w[V.moment_of_inertia]
+    return (
+        0.5 * w[V.mass] * w[V.radius] * w[V.radius]
+        if w[V.shape] == DISC
+        else w[V.moment_of_inertia]
+    )
 
 
 @kernel
 def world(w, x, k):
     """The constants that follow from the parameters and the path."""
     ratio = inertia(w) / (w[V.mass] * w[V.radius] * w[V.radius])
-    return World(view(k, k, A.lines)[0], view(x, k, A.path), view(x, k, A.ground), w[V.radius], w[V.mass], ratio, w[V.gravity],
-                 math.pi * w[V.radius] * w[V.radius] * w[V.area_factor], int(w[V.restitution_gravity]),
-                 w[V.tilt_cap] != 0.0, w[V.tilt_meaning] == ABSOLUTE, w[V.limit_speed_mean], w[V.limit_speed_deviation],
-                 int(w[V.limit_speed_distribution]), int(w[V.roughness_distribution]), int(w[V.tilt_distribution]),
-                 normal_tail(w[V.truncation]), int(w[V.hypercube]), w[V.receiver_present] != 0.0, w[V.receiver_left],
-                 w[V.receiver_right], w[V.receiver_bottom], w[V.receiver_top])
+    return World(
+        view(k, k, A.lines)[0],
+        view(x, k, A.path),
+        view(x, k, A.ground),
+        w[V.radius],
+        w[V.mass],
+        ratio,
+        w[V.gravity],
+        math.pi * w[V.radius] * w[V.radius] * w[V.area_factor],
+        int(w[V.restitution_gravity]),
+        w[V.tilt_cap] != 0.0,
+        w[V.tilt_meaning] == ABSOLUTE,
+        w[V.limit_speed_mean],
+        w[V.limit_speed_deviation],
+        int(w[V.limit_speed_distribution]),
+        int(w[V.roughness_distribution]),
+        int(w[V.tilt_distribution]),
+        normal_tail(w[V.truncation]),
+        int(w[V.hypercube]),
+        w[V.receiver_present] != 0.0,
+        w[V.receiver_left],
+        w[V.receiver_right],
+        w[V.receiver_bottom],
+        w[V.receiver_top],
+    )
 
 
 # --- chance ---
+
 
 @kernel
 def sample(world, kind, mean, deviation, source, b):
     """The trial's next variate. source: its stream of random numbers."""
     number = b[BODY.draws]
     b[BODY.draws] = number + 1.0
-    return variate(kind, mean, deviation, world.tail, stratified(world, number, draw(source, number), b))
+    return variate(
+        kind, mean, deviation, world.tail, stratified(world, number, draw(source, number), b)
+    )
 
 
 @kernel
@@ -112,8 +141,14 @@ def stratified(world, number, u, b):
 def sample_roughness(world, j, source, b):
     """R_o for the arrival on line j, between 0 and 2; it holds until the next arrival."""
     at = ground_of(world, j)
-    rough = sample(world, world.roughness_kind, world.ground[at + GROUND.roughness], world.ground[at + GROUND.roughness_deviation],
-                   source, b)
+    rough = sample(
+        world,
+        world.roughness_kind,
+        world.ground[at + GROUND.roughness],
+        world.ground[at + GROUND.roughness_deviation],
+        source,
+        b,
+    )
     b[BODY.roughness] = min(max(rough, 0.0), 2.0)
 
 
@@ -121,7 +156,14 @@ def sample_roughness(world, j, source, b):
 def sample_tilt(world, j, source, b):
     """Change (rad) of the inclination of line j for an impact."""
     at = ground_of(world, j)
-    tilt = sample(world, world.tilt_kind, world.ground[at + GROUND.tilt], world.ground[at + GROUND.tilt_deviation], source, b)
+    tilt = sample(
+        world,
+        world.tilt_kind,
+        world.ground[at + GROUND.tilt],
+        world.ground[at + GROUND.tilt_deviation],
+        source,
+        b,
+    )
     angle = world.path[j * len(PATH) + PATH.angle]
     turned = angle + (tilt if world.absolute else tilt * angle)
     return min(max(turned, -_STEEPEST), _STEEPEST) - angle if abs(angle) < _STEEPEST else 0.0
@@ -135,13 +177,18 @@ def ground_of(world, j):
 
 # --- start of a trial ---
 
+
 @kernel
 def begin(world, seed, trial, w, b):
     """The rock at its start; returns whether it starts clear of the slope (or on it)."""
     for i in range(b.size):
         b[i] = 0.0
     b[BODY.x], b[BODY.y], b[BODY.angle] = w[V.position0_x], w[V.position0_y], w[V.angle0]
-    b[BODY.vx], b[BODY.vy], b[BODY.omega] = w[V.velocity0_x], w[V.velocity0_y], w[V.angular_velocity0]
+    b[BODY.vx], b[BODY.vy], b[BODY.omega] = (
+        w[V.velocity0_x],
+        w[V.velocity0_y],
+        w[V.angular_velocity0],
+    )
     b[BODY.handover_time], b[BODY.seed], b[BODY.trial] = NEVER, seed, trial
     source = stream(seed, trial)
     limit = sample(world, world.limit_kind, world.limit_mean, world.limit_deviation, source, b)
@@ -184,6 +231,7 @@ def receive(b):
 
 # --- frames ---
 
+
 @kernel
 def components(world, j, b):
     """Velocity (m/s) along line j, to the right, and along its outward normal."""
@@ -208,10 +256,15 @@ def jump_floor(world, b):
 def kinetic(world, b):
     """Kinetic energy (J) at the last event."""
     spin = world.radius * b[BODY.omega]
-    return 0.5 * world.mass * (b[BODY.vx] * b[BODY.vx] + b[BODY.vy] * b[BODY.vy] + world.ratio * spin * spin)
+    return (
+        0.5
+        * world.mass
+        * (b[BODY.vx] * b[BODY.vx] + b[BODY.vy] * b[BODY.vy] + world.ratio * spin * spin)
+    )
 
 
 # --- what the rock does until the next event ---
+
 
 @kernel
 def run_along(world, j, u, b):
@@ -223,15 +276,31 @@ def run_along(world, j, u, b):
     friction, omega = world.ground[on + GROUND.friction], b[BODY.omega]
     s, c = math.sqrt(0.5 * b[BODY.roughness]), math.sqrt(1.0 - 0.5 * b[BODY.roughness])
     if u == 0.0:
-        d, mode, acceleration, p, shear = start(omega, along, normal, drag, friction, world.mass, world.radius, s, c, world.ratio)
+        d, mode, acceleration, p, shear = start(
+            omega, along, normal, drag, friction, world.mass, world.radius, s, c, world.ratio
+        )
     else:
         d = 1.0 if u > 0.0 else -1.0
-        mode, acceleration, p, shear = law(abs(u), d * omega, d * along, normal, drag, friction, world.mass, world.radius, s, c,
-                                           world.ratio)
+        mode, acceleration, p, shear = law(
+            abs(u),
+            d * omega,
+            d * along,
+            normal,
+            drag,
+            friction,
+            world.mass,
+            world.radius,
+            s,
+            c,
+            world.ratio,
+        )
     b[BODY.line], b[BODY.mode], b[BODY.direction], b[BODY.sin], b[BODY.cos] = j, mode, d, s, c
     b[BODY.pressure], b[BODY.shear], b[BODY.drag] = p, shear, drag
     set_velocity(world, j, u, 0.0, b)
-    b[BODY.ax], b[BODY.ay] = d * acceleration * world.path[at + PATH.cos], -d * acceleration * world.path[at + PATH.sin]
+    b[BODY.ax], b[BODY.ay] = (
+        d * acceleration * world.path[at + PATH.cos],
+        -d * acceleration * world.path[at + PATH.sin],
+    )
     b[BODY.alpha] = -d * shear / (world.ratio * world.mass * world.radius)
 
 
@@ -243,7 +312,16 @@ def plan(world, b):
     if mode in (FLIGHT, RECEIVED):
         b[BODY.ax], b[BODY.ay], b[BODY.alpha] = 0.0, -world.gravity, 0.0
     if mode == FLIGHT:
-        wait, j = landing(int(b[BODY.line]), b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy], world.gravity, world.lines, world.path)
+        wait, j = landing(
+            int(b[BODY.line]),
+            b[BODY.x],
+            b[BODY.y],
+            b[BODY.vx],
+            b[BODY.vy],
+            world.gravity,
+            world.lines,
+            world.path,
+        )
         event, b[BODY.next_line] = IMPACT, j
     elif mode == RECEIVED:
         event, wait = LEAVE, departure(world, b)
@@ -289,10 +367,14 @@ def take_off_speed(world, c, b):
     if rough * world.radius <= SMALLEST_JUMP:
         return NEVER
     lifted = rough * rough / (1.0 + rough * rough)
-    return max(b[BODY.limit_speed], math.sqrt(2.0 * world.gravity * c * rough * world.radius / lifted) * (1.0 + 1e-9))
+    return max(
+        b[BODY.limit_speed],
+        math.sqrt(2.0 * world.gravity * c * rough * world.radius / lifted) * (1.0 + 1e-9),
+    )
 
 
 # --- what happens ---
+
 
 @kernel
 def happen(world, source, b):
@@ -351,7 +433,9 @@ def strike(world, j, source, b):
     if u * s + v * c >= 0.0:
         s, c = 0.0, 1.0
     normal = max(0.0, world.path[at + PATH.cos] * c - world.path[at + PATH.sin] * s)
-    tilted_u, tilted_v, omega = bounce(world, j, u * c - v * s, min(0.0, u * s + v * c), b[BODY.omega], world.gravity * normal)
+    tilted_u, tilted_v, omega = bounce(
+        world, j, u * c - v * s, min(0.0, u * s + v * c), b[BODY.omega], world.gravity * normal
+    )
     u, v = tilted_u * c + tilted_v * s, max(0.0, tilted_v * c - tilted_u * s)
     b[BODY.omega], b[BODY.mode], b[BODY.line] = omega, FLIGHT, j
     b[BODY.impacts] += 1.0
@@ -367,10 +451,28 @@ def bounce(world, j, u, v, omega, gravity):
     """Velocities after an impact in the frame of the (tilted) line; gravity: its component along the normal (m/s2)."""
     at = ground_of(world, j)
     g, d = world.ground, (1.0 if u >= 0.0 else -1.0)
-    e, delta = restitution(-v, world.mass, world.radius, gravity, g[at + GROUND.strength], g[at + GROUND.stiffness],
-                           g[at + GROUND.hardening], world.area, world.treatment)
-    after_u, after_v, after_omega = collide(d * u, v, d * omega, e, delta, world.capped, g[at + GROUND.friction], world.radius,
-                                            world.ratio)
+    e, delta = restitution(
+        -v,
+        world.mass,
+        world.radius,
+        gravity,
+        g[at + GROUND.strength],
+        g[at + GROUND.stiffness],
+        g[at + GROUND.hardening],
+        world.area,
+        world.treatment,
+    )
+    after_u, after_v, after_omega = collide(
+        d * u,
+        v,
+        d * omega,
+        e,
+        delta,
+        world.capped,
+        g[at + GROUND.friction],
+        world.radius,
+        world.ratio,
+    )
     return d * after_u, after_v, d * after_omega
 
 
@@ -432,18 +534,25 @@ def change_line_motion(world, event, b):
 
 # --- energy ---
 
+
 @kernel
 def losses(world, span, b):
     """Energies (J) that friction, roughness and resistance take in ``span`` seconds from the last event on."""
     if not ROLLING <= b[BODY.mode] <= SPINNING:
         return 0.0, 0.0, 0.0
     along = math.sqrt(b[BODY.vx] * b[BODY.vx] + b[BODY.vy] * b[BODY.vy])
-    s, c = world.path[int(b[BODY.line]) * len(PATH) + PATH.sin], world.path[int(b[BODY.line]) * len(PATH) + PATH.cos]
+    s, c = (
+        world.path[int(b[BODY.line]) * len(PATH) + PATH.sin],
+        world.path[int(b[BODY.line]) * len(PATH) + PATH.cos],
+    )
     d = b[BODY.direction]
     way = span * (along + 0.5 * span * d * (b[BODY.ax] * c - b[BODY.ay] * s))
     turned = d * world.radius * span * (b[BODY.omega] + 0.5 * span * b[BODY.alpha])
-    return (b[BODY.shear] * (way + turned), (b[BODY.pressure] * b[BODY.sin] - b[BODY.shear] * (1.0 - b[BODY.cos])) * way,
-            b[BODY.drag] * way)
+    return (
+        b[BODY.shear] * (way + turned),
+        (b[BODY.pressure] * b[BODY.sin] - b[BODY.shear] * (1.0 - b[BODY.cos])) * way,
+        b[BODY.drag] * way,
+    )
 
 
 @kernel

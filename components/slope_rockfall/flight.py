@@ -56,7 +56,9 @@ def landing(j, x, y, vx, vy, gravity, lines, path):
         s, c = path[at + PATH.sin], path[at + PATH.cos]
         height = (x - path[at + PATH.x]) * s + (y - path[at + PATH.y]) * c
         speed, pull = vx * s + vy * c, gravity * c
-        meets = max(entered, (speed + math.sqrt(max(0.0, speed * speed + 2.0 * pull * height))) / pull)
+        meets = max(
+            entered, (speed + math.sqrt(max(0.0, speed * speed + 2.0 * pull * height))) / pull
+        )
         if vx > 0.0:
             leaves = (path[at + PATH.right] - x) / vx
         elif vx < 0.0:

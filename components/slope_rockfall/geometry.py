@@ -43,6 +43,7 @@ def inclination(i, w, k):
 # left one's lies higher on the left and lower on the right, for it consists of arcs round points that are all farther left. So each
 # cell, from left to right, hides the newest ones altogether or from one place on.
 
+
 @kernel
 def facet_range(i, cells, radius, w, k):
     """Range of x (m) of the centre of a rock that touches cell i between its corners. The end cells have no end."""
@@ -102,6 +103,7 @@ def visible(w, x, k):
 
 # --- the path of straight lines ---
 
+
 @kernel
 def build_path(w, x, k):
     """Lines of the path from left to right; their number goes to ``lines``. The first and the last have no end."""
@@ -111,14 +113,22 @@ def build_path(w, x, k):
         i, start, end = order[q], begin[q], begin[q + 1]
         line_start, line_end = facet_range(i, cells, w[V.radius], w, k)
         if start < line_start:
-            joined = q > 0 and order[q - 1] == i - 1 and start == facet_range(i - 1, cells, w[V.radius], w, k)[1]
-            count = round_corner(count, i, start, min(end, line_start), joined, end > line_start, w, k, path)
+            joined = (
+                q > 0
+                and order[q - 1] == i - 1
+                and start == facet_range(i - 1, cells, w[V.radius], w, k)[1]
+            )
+            count = round_corner(
+                count, i, start, min(end, line_start), joined, end > line_start, w, k, path
+            )
         if start < line_end and end > line_start:
             angle = inclination(i, w, k)
             px, py = node(i, w, k)
             count = append(count, angle, px, py, w[V.radius], i, angle, angle, start, path)
         if end > line_end:
-            count = round_corner(count, i + 1, max(start, line_end), end, start < line_end, False, w, k, path)
+            count = round_corner(
+                count, i + 1, max(start, line_end), end, start < line_end, False, w, k, path
+            )
     view(k, k, A.lines)[0] = count
 
 
@@ -149,9 +159,18 @@ def append(count, angle, px, py, radius, cell, left, right, begin, path):
         start = max(crossing(count - 1, s, c, x, y, begin, path), path[before + PATH.left])
         path[before + PATH.right] = start
     at = count * len(PATH)
-    path[at + PATH.left], path[at + PATH.right], path[at + PATH.x], path[at + PATH.y] = start, NEVER, x, y
+    path[at + PATH.left], path[at + PATH.right], path[at + PATH.x], path[at + PATH.y] = (
+        start,
+        NEVER,
+        x,
+        y,
+    )
     path[at + PATH.sin], path[at + PATH.cos], path[at + PATH.angle] = s, c, angle
-    path[at + PATH.ahead_left], path[at + PATH.ahead_right], path[at + PATH.cell] = left, right, cell
+    path[at + PATH.ahead_left], path[at + PATH.ahead_right], path[at + PATH.cell] = (
+        left,
+        right,
+        cell,
+    )
     return count + 1
 
 
@@ -184,7 +203,9 @@ def line_below(x, lines, path):
 def height_above(j, x, y, path):
     """Distance (m) of the centre from line j of the path, along its normal: that of the rock from the facet."""
     at = j * len(PATH)
-    return (x - path[at + PATH.x]) * path[at + PATH.sin] + (y - path[at + PATH.y]) * path[at + PATH.cos]
+    return (x - path[at + PATH.x]) * path[at + PATH.sin] + (y - path[at + PATH.y]) * path[
+        at + PATH.cos
+    ]
 
 
 @kernel

@@ -47,16 +47,26 @@ def grid_after(time):
 
 # --- start ---
 
+
 @kernel
 def lay_ground(w, x, k):
     """The materials, cell by cell."""
     ground = view(x, k, A.ground)
     for c in range(k[A.end_x + 1]):
         at = c * len(GROUND)
-        ground[at + GROUND.strength], ground[at + GROUND.stiffness] = view(w, k, A.strength)[c], view(w, k, A.stiffness)[c]
-        ground[at + GROUND.hardening], ground[at + GROUND.friction] = view(w, k, A.hardening)[c], view(w, k, A.friction)[c]
+        ground[at + GROUND.strength], ground[at + GROUND.stiffness] = (
+            view(w, k, A.strength)[c],
+            view(w, k, A.stiffness)[c],
+        )
+        ground[at + GROUND.hardening], ground[at + GROUND.friction] = (
+            view(w, k, A.hardening)[c],
+            view(w, k, A.friction)[c],
+        )
         ground[at + GROUND.resistance] = view(w, k, A.resistance)[c]
-        ground[at + GROUND.tilt], ground[at + GROUND.tilt_deviation] = view(w, k, A.tilt)[c], view(w, k, A.tilt_deviation)[c]
+        ground[at + GROUND.tilt], ground[at + GROUND.tilt_deviation] = (
+            view(w, k, A.tilt)[c],
+            view(w, k, A.tilt_deviation)[c],
+        )
         ground[at + GROUND.roughness] = view(w, k, A.roughness)[c]
         ground[at + GROUND.roughness_deviation] = view(w, k, A.roughness_deviation)[c]
 
@@ -125,6 +135,7 @@ def evaluate(w, x, k):
 
 # --- steps ---
 
+
 @kernel
 def step(t, h, w, x, k):
     """Advance by h (s): from event to event, or with constant force and torque where the rock is handed over."""
@@ -151,7 +162,10 @@ def advance(world, source, end, b):
             return OK
         event = b[BODY.next_event]
         happen(world, source, b)
-        if event == LEAVE and height_above(int(b[BODY.line]), b[BODY.x], b[BODY.y], world.path) < -TOUCHING:
+        if (
+            event == LEAVE
+            and height_above(int(b[BODY.line]), b[BODY.x], b[BODY.y], world.path) < -TOUCHING
+        ):
             return LEFT_BELOW
     return RESTLESS
 
@@ -171,14 +185,22 @@ def push(world, now, end, h, w, b):
         b[BODY.x] += b[BODY.vx] * dt
         b[BODY.y] += b[BODY.vy] * dt
         b[BODY.angle] += b[BODY.omega] * dt
-        b[BODY.work] += 0.5 * dt * (w[V.force_x] * (vx + b[BODY.vx]) + w[V.force_y] * (vy + b[BODY.vy])
-                                    + w[V.torque] * (omega + b[BODY.omega]))
+        b[BODY.work] += (
+            0.5
+            * dt
+            * (
+                w[V.force_x] * (vx + b[BODY.vx])
+                + w[V.force_y] * (vy + b[BODY.vy])
+                + w[V.torque] * (omega + b[BODY.omega])
+            )
+        )
     b[BODY.time] = end
     plan(world, b)
     return OK if math.isfinite(b[BODY.x] + b[BODY.y] + b[BODY.angle]) else DIVERGED
 
 
 # --- what the outside sees ---
+
 
 @kernel
 def publish(time, w, x, k):
@@ -213,7 +235,11 @@ def publish_place(world, b, w, x, k):
 def publish_energies(world, span, b, w):
     """Energies ``span`` seconds after the last event, and the residual."""
     spin = world.radius * w[V.angular_velocity]
-    square = w[V.velocity_x] * w[V.velocity_x] + w[V.velocity_y] * w[V.velocity_y] + world.ratio * spin * spin
+    square = (
+        w[V.velocity_x] * w[V.velocity_x]
+        + w[V.velocity_y] * w[V.velocity_y]
+        + world.ratio * spin * spin
+    )
     friction, roughness, resistance = losses(world, span, b)
     w[V.energy_kinetic] = 0.5 * world.mass * square
     w[V.energy_gravity] = world.mass * world.gravity * w[V.position_y]
@@ -222,5 +248,13 @@ def publish_energies(world, span, b, w):
     w[V.energy_roughness] = b[BODY.roughness_loss] + roughness
     w[V.energy_resistance] = b[BODY.resistance] + resistance
     w[V.energy_work_contact] = b[BODY.work]
-    w[V.energy_residual] = (w[V.energy_kinetic] + w[V.energy_gravity] + w[V.energy_impact] + w[V.energy_friction]
-                            + w[V.energy_roughness] + w[V.energy_resistance] - w[V.energy_work_contact] - w[V.energy_start])
+    w[V.energy_residual] = (
+        w[V.energy_kinetic]
+        + w[V.energy_gravity]
+        + w[V.energy_impact]
+        + w[V.energy_friction]
+        + w[V.energy_roughness]
+        + w[V.energy_resistance]
+        - w[V.energy_work_contact]
+        - w[V.energy_start]
+    )

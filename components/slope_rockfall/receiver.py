@@ -35,13 +35,19 @@ def departure(world, b):
     x, y, vx, vy, ax, ay = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy], b[BODY.ax], b[BODY.ay]
     if not inside(world, x, y) and not approaches(world, b):
         return 0.0
-    return min(min(passing(x, vx, ax, world.left, -1.0), passing(x, vx, ax, world.right, 1.0)),
-               min(passing(y, vy, ay, world.bottom, -1.0), passing(y, vy, ay, world.top, 1.0)))
+    return min(
+        min(passing(x, vx, ax, world.left, -1.0), passing(x, vx, ax, world.right, 1.0)),
+        min(passing(y, vy, ay, world.bottom, -1.0), passing(y, vy, ay, world.top, 1.0)),
+    )
 
 
 @kernel
 def approaches(world, b):
     """Whether a rock that rounding has left outside the side that it just passed goes inwards there."""
     x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
-    return ((x >= world.left or vx > 0.0) and (x <= world.right or vx < 0.0)
-            and (y >= world.bottom or vy > 0.0) and (y <= world.top or vy < 0.0))
+    return (
+        (x >= world.left or vx > 0.0)
+        and (x <= world.right or vx < 0.0)
+        and (y >= world.bottom or vy > 0.0)
+        and (y <= world.top or vy < 0.0)
+    )

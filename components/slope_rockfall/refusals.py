@@ -22,30 +22,34 @@ LIMIT_SIGN, RECEIVER_EMPTY, START_BELOW = range(7, 10)
 
 RULES = {
     FOLDED: "its right node must lie to the right of its left node, a profile runs from left to right without folding back: order "
-            "the nodes by x and remove repeated ones",
+    "the nodes by x and remove repeated ones",
     STEEP: "it is steeper than 89 degrees; a vertical face needs some horizontal length: move one of its nodes",
     ROUGH: "roughness with its deviation reaches 2, the whole rock: reduce one of them",
     LOCKED: "mu tan(phi) with the largest roughness is 1 or more, and a sliding rock has no equation of motion: reduce friction, "
-            "roughness or its deviation",
+    "roughness or its deviation",
     ROUGHNESS_SIGN: "only a positive roughness has a lognormal distribution: choose another roughness.distribution",
     TILT_SIGN: "only a positive tilt has a lognormal distribution: choose another tilt.distribution",
 }
 """What is wrong with a cell that has a fault, and what to do."""
 _FACTS = {
-    FOLDED: "end.x[{fault.cell}] = {fault.value} m", STEEP: "end.x[{fault.cell}] = {fault.value} m",
-    TILT_SIGN: "tilt[{fault.cell}] = {fault.value}", ROUGHNESS_SIGN: "roughness[{fault.cell}] = {fault.value}",
+    FOLDED: "end.x[{fault.cell}] = {fault.value} m",
+    STEEP: "end.x[{fault.cell}] = {fault.value} m",
+    TILT_SIGN: "tilt[{fault.cell}] = {fault.value}",
+    ROUGHNESS_SIGN: "roughness[{fault.cell}] = {fault.value}",
     ROUGH: "roughness[{fault.cell}] = {fault.value}, largest {fault.roughness}",
     LOCKED: "friction[{fault.cell}] = {fault.value}, roughness[{fault.cell}] up to {fault.roughness}, "
-            "mu tan(phi) = {fault.locking}",
+    "mu tan(phi) = {fault.locking}",
 }
 
-FAULTS = {fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()} | {
+FAULTS = {
+    fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()
+} | {
     LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal distribution: choose another "
-                "limit_speed.distribution",
+    "limit_speed.distribution",
     RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than receiver.right = {receiver.right} "
-                    "m, and receiver.bottom = {receiver.bottom} m less than receiver.top = {receiver.top} m",
+    "m, and receiver.bottom = {receiver.bottom} m less than receiver.top = {receiver.top} m",
     START_BELOW: "the rock starts below the surface: its lowest point is at {height} m along the normal of cell {cell}; raise "
-                 "position0.y = {position0.y} m or set on_slope",
+    "position0.y = {position0.y} m or set on_slope",
 }
 """Messages of the kernel's statuses."""
 
@@ -56,7 +60,12 @@ _ROUGHEST = 1.999
 @kernel
 def widest_roughness(c, w, k):
     """Largest R_o of cell c."""
-    return widest(w[V.roughness_distribution], view(w, k, A.roughness)[c], view(w, k, A.roughness_deviation)[c], w[V.truncation])
+    return widest(
+        w[V.roughness_distribution],
+        view(w, k, A.roughness)[c],
+        view(w, k, A.roughness_deviation)[c],
+        w[V.truncation],
+    )
 
 
 @kernel
@@ -87,7 +96,12 @@ def has_fault(fault, c, w, k):
 @kernel
 def tell_fault(fault, c, w, k):
     """Publish what the message of this fault of cell c needs; a fault of no cell is told with c = -1."""
-    w[V.fault_cell], w[V.fault_value], w[V.fault_roughness], w[V.fault_locking] = c + 1.0, 0.0, 0.0, 0.0
+    w[V.fault_cell], w[V.fault_value], w[V.fault_roughness], w[V.fault_locking] = (
+        c + 1.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     if c < 0:
         return
     w[V.fault_roughness], w[V.fault_locking] = widest_roughness(c, w, k), locking(c, w, k)

@@ -17,7 +17,18 @@ _LONGEST = 60
 def strain_work(a):
     """a - 1 + exp(-a): work that the ground takes up to the penetration a = k delta / q_d, in units of q_d^2 A / k."""
     if a < _SERIES_BELOW:
-        return a * a * (0.5 - a * (1.0 / 6.0 - a * (1.0 / 24.0 - a * (1.0 / 120.0 - a * (1.0 / 720.0 - a / 5040.0)))))
+        return (
+            a
+            * a
+            * (
+                0.5
+                - a
+                * (
+                    1.0 / 6.0
+                    - a * (1.0 / 24.0 - a * (1.0 / 120.0 - a * (1.0 / 720.0 - a / 5040.0)))
+                )
+            )
+        )
     return a + math.expm1(-a)
 
 
@@ -107,7 +118,9 @@ def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
     """
     s, c = contact_tilt(delta, radius, u, v, e, capped)
     after = rebound(u, v, omega, e, s, c, friction, radius, ratio)
-    if capped and motion(after[0], after[1], after[2], radius, ratio) > motion(u, v, omega, radius, ratio):
+    if capped and motion(after[0], after[1], after[2], radius, ratio) > motion(
+        u, v, omega, radius, ratio
+    ):
         after = rebound(u, v, omega, e, 0.0, 1.0, friction, radius, ratio)
     return after
 

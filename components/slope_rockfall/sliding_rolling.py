@@ -72,8 +72,19 @@ def start(omega, along, normal, drag, friction, mass, radius, s, c, ratio):
     """
     first = 1.0 if along >= 0.0 else -1.0
     for direction in (first, -first):
-        mode, acceleration, p, shear = law(0.0, direction * omega, direction * along, normal, drag, friction, mass, radius, s, c,
-                                           ratio)
+        mode, acceleration, p, shear = law(
+            0.0,
+            direction * omega,
+            direction * along,
+            normal,
+            drag,
+            friction,
+            mass,
+            radius,
+            s,
+            c,
+            ratio,
+        )
         if acceleration > 0.0:
             return direction, mode, acceleration, p, shear
     if omega == 0.0:

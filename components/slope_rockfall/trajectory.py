@@ -31,14 +31,32 @@ more kinetic energy than its capacity (J). A negative reach: it stops none."""
 Peak = namedtuple("Peak", "height speed kinetic")
 PEAK = Peak(*range(3))
 """Largest values at a station; negative where the rock did not come by."""
-Outcome = namedtuple("Outcome", "end x y time impacts events height speed kinetic limit_speed barrier")
+Outcome = namedtuple(
+    "Outcome", "end x y time impacts events height speed kinetic limit_speed barrier"
+)
 OUTCOME = Outcome(*range(11))
 """Of a trial: how and where it ended, numbers of impacts and events, the largest values on the way, V_lim, and the number of the
 search line that stopped it, or -1."""
 
 
 @kernel
-def trial(seed, number, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages, peaks, outcome):
+def trial(
+    seed,
+    number,
+    left,
+    right,
+    lines,
+    barriers,
+    first_station,
+    station_distance,
+    w,
+    x,
+    k,
+    body,
+    passages,
+    peaks,
+    outcome,
+):
     """One trial, from the buffers of a prepared instance (:func:`.kernel.prepare`), none of which it changes.
 
     left, right: x (m) at which it ends. lines: (n, 4), search lines x1, y1, x2, y2 (m); barriers: (n, len(BARRIER)).
@@ -66,7 +84,11 @@ def trial(seed, number, left, right, lines, barriers, first_station, station_dis
             happen(constants, source, body)
         else:
             place(wait, body, outcome)
-    outcome[OUTCOME.end], outcome[OUTCOME.events], outcome[OUTCOME.impacts] = end, events, body[BODY.impacts]
+    outcome[OUTCOME.end], outcome[OUTCOME.events], outcome[OUTCOME.impacts] = (
+        end,
+        events,
+        body[BODY.impacts],
+    )
 
 
 @kernel
@@ -101,8 +123,12 @@ def stretch(left, right, b):
 @kernel
 def at(time, b):
     """Place (m) and velocity (m/s) ``time`` seconds after the last event."""
-    return (b[BODY.x] + time * (b[BODY.vx] + 0.5 * time * b[BODY.ax]), b[BODY.y] + time * (b[BODY.vy] + 0.5 * time * b[BODY.ay]),
-            b[BODY.vx] + time * b[BODY.ax], b[BODY.vy] + time * b[BODY.ay])
+    return (
+        b[BODY.x] + time * (b[BODY.vx] + 0.5 * time * b[BODY.ax]),
+        b[BODY.y] + time * (b[BODY.vy] + 0.5 * time * b[BODY.ay]),
+        b[BODY.vx] + time * b[BODY.ax],
+        b[BODY.vy] + time * b[BODY.ay],
+    )
 
 
 @kernel
@@ -127,6 +153,7 @@ def clearance(world, x, y):
 
 # --- search lines ---
 
+
 @kernel
 def record_lines(world, lines, wait, b, passages):
     """Passages of search lines within ``wait`` seconds from the last event."""
@@ -145,7 +172,13 @@ def meeting(line, direction, b):
     """Time (s) from the last event at which the centre passes a search line to its right (+1) or left (-1); NEVER if not."""
     along_x, along_y = line[2] - line[0], line[3] - line[1]
     place = (b[BODY.x] - line[0]) * along_y - (b[BODY.y] - line[1]) * along_x
-    time = passing(place, b[BODY.vx] * along_y - b[BODY.vy] * along_x, b[BODY.ax] * along_y - b[BODY.ay] * along_x, 0.0, direction)
+    time = passing(
+        place,
+        b[BODY.vx] * along_y - b[BODY.vy] * along_x,
+        b[BODY.ax] * along_y - b[BODY.ay] * along_x,
+        0.0,
+        direction,
+    )
     if time >= NEVER:
         return NEVER
     x, y, _, _ = at(time, b)
@@ -169,6 +202,7 @@ def note_passage(world, i, time, b, passages):
 
 
 # --- barriers ---
+
 
 @kernel
 def first_stop(world, lines, barriers, wait, b):
@@ -194,6 +228,7 @@ def holds(world, line, barrier, time, b):
 
 # --- stations ---
 
+
 @kernel
 def record_stations(world, first, distance, wait, b, peaks):
     """Largest values at the stations that the rock passes within ``wait`` seconds from the last event."""
@@ -216,10 +251,13 @@ def record_stations(world, first, distance, wait, b, peaks):
         square = vx * vx + vy * vy
         peaks[i, PEAK.height] = max(peaks[i, PEAK.height], height_above(j, x, y, world.path))
         peaks[i, PEAK.speed] = max(peaks[i, PEAK.speed], math.sqrt(square))
-        peaks[i, PEAK.kinetic] = max(peaks[i, PEAK.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha]))
+        peaks[i, PEAK.kinetic] = max(
+            peaks[i, PEAK.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha])
+        )
 
 
 # --- largest values ---
+
 
 @kernel
 def record_peaks(world, wait, b, outcome):
@@ -228,7 +266,9 @@ def record_peaks(world, wait, b, outcome):
         _, _, vx, vy = at(time, b)
         square = vx * vx + vy * vy
         outcome[OUTCOME.speed] = max(outcome[OUTCOME.speed], math.sqrt(square))
-        outcome[OUTCOME.kinetic] = max(outcome[OUTCOME.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha]))
+        outcome[OUTCOME.kinetic] = max(
+            outcome[OUTCOME.kinetic], energy(world, square, b[BODY.omega] + time * b[BODY.alpha])
+        )
     if b[BODY.ay] == -world.gravity and wait < NEVER:
         outcome[OUTCOME.height] = max(outcome[OUTCOME.height], highest(world, wait, b))
 
@@ -239,24 +279,67 @@ def highest(world, wait, b):
     x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
     end = x + wait * vx
     peak = 0.0
-    for j in range(line_below(min(x, end), world.lines, world.path), line_below(max(x, end), world.lines, world.path) + 1):
+    for j in range(
+        line_below(min(x, end), world.lines, world.path),
+        line_below(max(x, end), world.lines, world.path) + 1,
+    ):
         at_j = j * len(PATH)
         from_time, to_time = 0.0, wait
         if vx != 0.0:
-            one, two = (world.path[at_j + PATH.left] - x) / vx, (world.path[at_j + PATH.right] - x) / vx
+            one, two = (
+                (world.path[at_j + PATH.left] - x) / vx,
+                (world.path[at_j + PATH.right] - x) / vx,
+            )
             from_time, to_time = max(0.0, min(one, two)), min(wait, max(one, two))
         s, c = world.path[at_j + PATH.sin], world.path[at_j + PATH.cos]
         parallel = (vx * s + vy * c) / (world.gravity * c)
         time = min(max(parallel, from_time), to_time)
-        peak = max(peak, height_above(j, x + time * vx, y + time * (vy - 0.5 * time * world.gravity), world.path))
+        peak = max(
+            peak,
+            height_above(
+                j, x + time * vx, y + time * (vy - 0.5 * time * world.gravity), world.path
+            ),
+        )
     return peak
 
 
 # --- campaigns ---
 
+
 @released
-def trials(seed, first, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages, peaks, outcomes):
+def trials(
+    seed,
+    first,
+    left,
+    right,
+    lines,
+    barriers,
+    first_station,
+    station_distance,
+    w,
+    x,
+    k,
+    body,
+    passages,
+    peaks,
+    outcomes,
+):
     """Trials number ``first`` on, as many as ``outcomes`` has rows; passages and peaks have a row each too. See :func:`trial`."""
     for i in range(outcomes.shape[0]):
-        trial(seed, first + i, left, right, lines, barriers, first_station, station_distance, w, x, k, body, passages[i], peaks[i],
-              outcomes[i])
+        trial(
+            seed,
+            first + i,
+            left,
+            right,
+            lines,
+            barriers,
+            first_station,
+            station_distance,
+            w,
+            x,
+            k,
+            body,
+            passages[i],
+            peaks[i],
+            outcomes[i],
+        )

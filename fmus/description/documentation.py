@@ -4,35 +4,56 @@ from collections.abc import Iterable
 from html import escape
 
 from markdown_it import MarkdownIt
+
 from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 
-_STYLE = ("body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
-          "table{border-collapse:collapse}th,td{border:1px solid #bbb;padding:.2em .5em;text-align:left;vertical-align:top}"
-          "pre{background:#f4f4f4;padding:.5em;overflow-x:auto}")
+_STYLE = (
+    "body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
+    "table{border-collapse:collapse}th,td{border:1px solid #bbb;padding:.2em .5em;text-align:left;vertical-align:top}"
+    "pre{background:#f4f4f4;padding:.5em;overflow-x:auto}"
+)
 
 
 def index_html(component: Component, sizes: Sizes) -> str:
     """The page ``documentation/index.html``."""
     body = MarkdownIt("commonmark").enable("table").render(component.documentation())
-    body += "<h2>Variables</h2>\n" + _table(("name", "causality", "unit", "start", "range", "description", "source"),
-                                            (_row(variable, sizes) for variable in component.layout.ordered))
+    body += "<h2>Variables</h2>\n" + _table(
+        ("name", "causality", "unit", "start", "range", "description", "source"),
+        (_row(variable, sizes) for variable in component.layout.ordered),
+    )
     if sizes:
-        body += "<h2>Sizes of this FMU</h2>\n" + _table(("name", "value", "description"), (
-            (name, str(value), component.sizes[name].description) for name, value in sizes.items()))
-    return (f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(component.title)}</title>'
-            f"<style>{_STYLE}</style></head>\n<body>\n{body}</body>\n</html>\n")
+        body += "<h2>Sizes of this FMU</h2>\n" + _table(
+            ("name", "value", "description"),
+            (
+                (name, str(value), component.sizes[name].description)
+                for name, value in sizes.items()
+            ),
+        )
+    return (
+        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(component.title)}</title>'
+        f"<style>{_STYLE}</style></head>\n<body>\n{body}</body>\n</html>\n"
+    )
 
 
 def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     def line(tag: str, cells: Iterable[str]) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>\n"
+
     return "<table>\n" + line("th", head) + "".join(line("td", row) for row in rows) + "</table>\n"
 
 
 def _row(variable: Variable, sizes: Sizes) -> tuple[str, ...]:
     name = variable.name if variable.size is None else f"{variable.name}[1..{sizes[variable.size]}]"
-    return name, variable.causality, variable.unit, _start(variable, sizes), _range(variable), variable.description, variable.source
+    return (
+        name,
+        variable.causality,
+        variable.unit,
+        _start(variable, sizes),
+        _range(variable),
+        variable.description,
+        variable.source,
+    )
 
 
 def _start(variable: Variable, sizes: Sizes) -> str:

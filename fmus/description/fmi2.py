@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from importlib.metadata import version
 
 from lxml import etree
+
 from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 from rockshed.components.common.units import UNITS
@@ -39,14 +40,34 @@ def generation_tool(runtime: Runtime) -> str:
     return f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; runs in Python >= 3.11 with numpy and numba"
 
 
-def model_description(component: Component, sizes: Mapping[str, int], guid: str, runtime: Runtime = Runtime.PYTHON) -> bytes:
+def model_description(
+    component: Component, sizes: Mapping[str, int], guid: str, runtime: Runtime = Runtime.PYTHON
+) -> bytes:
     """The complete ``modelDescription.xml``. The index of a variable is its value reference + 1; the sizes stand last."""
-    root = etree.Element("fmiModelDescription", {
-        "fmiVersion": "2.0", "modelName": component.name, "guid": guid, "description": component.title,
-        "author": "the rockshed authors", "version": version("rockshed"), "copyright": "the rockshed authors", "license": "MIT",
-        "generationTool": generation_tool(runtime), "variableNamingConvention": "structured"})
-    etree.SubElement(root, "CoSimulation", {"modelIdentifier": component.name, "needsExecutionTool": _NEEDS_TOOL[runtime],
-                                            **_CAPABILITIES})
+    root = etree.Element(
+        "fmiModelDescription",
+        {
+            "fmiVersion": "2.0",
+            "modelName": component.name,
+            "guid": guid,
+            "description": component.title,
+            "author": "the rockshed authors",
+            "version": version("rockshed"),
+            "copyright": "the rockshed authors",
+            "license": "MIT",
+            "generationTool": generation_tool(runtime),
+            "variableNamingConvention": "structured",
+        },
+    )
+    etree.SubElement(
+        root,
+        "CoSimulation",
+        {
+            "modelIdentifier": component.name,
+            "needsExecutionTool": _NEEDS_TOOL[runtime],
+            **_CAPABILITIES,
+        },
+    )
     unit_definitions(root, component)
     _type_definitions(root, component)
     log_categories_and_experiment(root, component)
@@ -60,8 +81,13 @@ def log_categories_and_experiment(root: etree._Element, component: Component) ->
     categories = etree.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
         etree.SubElement(categories, "Category", name=name, description=description)
-    etree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(component.default_stop_time),
-                     stepSize=repr(component.default_step))
+    etree.SubElement(
+        root,
+        "DefaultExperiment",
+        startTime="0.0",
+        stopTime=repr(component.default_stop_time),
+        stepSize=repr(component.default_step),
+    )
 
 
 def used_units(component: Component) -> list[str]:
@@ -76,7 +102,9 @@ def unit_definitions(root: etree._Element, component: Component) -> None:
     for name in used_units(component):
         exponents = {base: str(exponent) for base, exponent in UNITS[name].base.items()}
         factor = {} if UNITS[name].factor == 1.0 else {"factor": repr(UNITS[name].factor)}
-        etree.SubElement(etree.SubElement(definitions, "Unit", name=name), "BaseUnit", {**exponents, **factor})
+        etree.SubElement(
+            etree.SubElement(definitions, "Unit", name=name), "BaseUnit", {**exponents, **factor}
+        )
 
 
 def _type_definitions(root: etree._Element, component: Component) -> None:
@@ -86,8 +114,12 @@ def _type_definitions(root: etree._Element, component: Component) -> None:
         etree.SubElement(simple_type, "Real", quantity=UNITS[unit].quantity, unit=unit)
     for variable in component.layout.ordered:
         if variable.kind is Kind.ENUMERATION:
-            simple_type = etree.SubElement(definitions, "SimpleType", name=enumeration_name(component, variable),
-                                           description=variable.description)
+            simple_type = etree.SubElement(
+                definitions,
+                "SimpleType",
+                name=enumeration_name(component, variable),
+                description=variable.description,
+            )
             add_items(etree.SubElement(simple_type, "Enumeration"), variable)
 
 
@@ -107,20 +139,47 @@ def _model_variables(root: etree._Element, component: Component, sizes: Sizes) -
     reference = 0
     for variable in component.layout.ordered:
         for number, name in enumerate(variable.element_names(sizes)):
-            _variable(variables, component, variable, name, reference, variable.start_at(number, sizes))
+            _variable(
+                variables, component, variable, name, reference, variable.start_at(number, sizes)
+            )
             reference += 1
     for name, value in sizes.items():
-        constant = etree.SubElement(variables, "ScalarVariable", {
-            "name": name, "valueReference": str(reference), "description": component.sizes[name].description,
-            "causality": "local", "variability": "constant", "initial": "exact"})
+        constant = etree.SubElement(
+            variables,
+            "ScalarVariable",
+            {
+                "name": name,
+                "valueReference": str(reference),
+                "description": component.sizes[name].description,
+                "causality": "local",
+                "variability": "constant",
+                "initial": "exact",
+            },
+        )
         etree.SubElement(constant, "Integer", start=str(value))
         reference += 1
 
 
-def _variable(parent: etree._Element, component: Component, variable: Variable, name: str, reference: int, start: float) -> None:
-    scalar = etree.SubElement(parent, "ScalarVariable", {
-        "name": name, "valueReference": str(reference), "description": variable.description,
-        "causality": variable.causality.value, "variability": variability(variable), **initial(variable)})
+def _variable(
+    parent: etree._Element,
+    component: Component,
+    variable: Variable,
+    name: str,
+    reference: int,
+    start: float,
+) -> None:
+    scalar = etree.SubElement(
+        parent,
+        "ScalarVariable",
+        {
+            "name": name,
+            "valueReference": str(reference),
+            "description": variable.description,
+            "causality": variable.causality.value,
+            "variability": variability(variable),
+            **initial(variable),
+        },
+    )
     attributes = type_and_bounds(component, variable)
     if variable.causality is not Causality.OUTPUT:
         attributes["start"] = literal(variable.kind, start)
@@ -142,7 +201,9 @@ def type_and_bounds(component: Component, variable: Variable) -> dict[str, str]:
         attributes = {"declaredType": enumeration_name(component, variable)}
     if variable.kind is not Kind.BOOLEAN:
         bounds = {"min": variable.minimum, "max": variable.maximum}
-        attributes |= {key: literal(variable.kind, bound) for key, bound in bounds.items() if bound is not None}
+        attributes |= {
+            key: literal(variable.kind, bound) for key, bound in bounds.items() if bound is not None
+        }
     return attributes
 
 
@@ -173,7 +234,11 @@ def _model_structure(root: etree._Element, component: Component, sizes: Sizes) -
         if variable.causality is Causality.OUTPUT:
             known = variable.initial_dependencies
             # without the attribute an unknown depends on everything known: all parameters and inputs
-            depends = {} if known is None else {"dependencies": " ".join(str(i) for name in known for i in indices[name])}
+            depends = (
+                {}
+                if known is None
+                else {"dependencies": " ".join(str(i) for name in known for i in indices[name])}
+            )
             for index in indices[variable.name]:
                 etree.SubElement(outputs, "Unknown", index=str(index), dependencies="")
                 etree.SubElement(unknowns, "Unknown", {"index": str(index), **depends})

@@ -3,6 +3,7 @@
 from importlib.metadata import version
 
 from lxml import etree
+
 from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Bond, Causality, Kind, Sizes, Variable
 from rockshed.components.common.units import UNITS
@@ -32,7 +33,12 @@ _CAPABILITIES = {
     "canSerializeFMUState": "true",
     "canHandleVariableCommunicationStepSize": "true",
 }
-_TYPES = {Kind.REAL: "Float64", Kind.INTEGER: "Int32", Kind.BOOLEAN: "Boolean", Kind.ENUMERATION: "Enumeration"}
+_TYPES = {
+    Kind.REAL: "Float64",
+    Kind.INTEGER: "Int32",
+    Kind.BOOLEAN: "Boolean",
+    Kind.ENUMERATION: "Enumeration",
+}
 _TERMINAL_KIND = "_rockshed_mechanical_bond"
 _ICON_CORNERS = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
 
@@ -42,12 +48,25 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
 
     The value reference of a variable is that of its (first element's) scalar in FMI 2.0; sizes and time stand last.
     """
-    root = etree.Element("fmiModelDescription", {
-        "fmiVersion": FMI_VERSION, "modelName": component.name, "instantiationToken": token, "description": component.title,
-        "author": "the rockshed authors", "version": version("rockshed"), "copyright": "the rockshed authors", "license": "MIT",
-        "generationTool": generation_tool(Runtime.NATIVE), "variableNamingConvention": "structured"})
+    root = etree.Element(
+        "fmiModelDescription",
+        {
+            "fmiVersion": FMI_VERSION,
+            "modelName": component.name,
+            "instantiationToken": token,
+            "description": component.title,
+            "author": "the rockshed authors",
+            "version": version("rockshed"),
+            "copyright": "the rockshed authors",
+            "license": "MIT",
+            "generationTool": generation_tool(Runtime.NATIVE),
+            "variableNamingConvention": "structured",
+        },
+    )
     early = {"mightReturnEarlyFromDoStep": "true"} if component.next_event else {}
-    etree.SubElement(root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES, **early})
+    etree.SubElement(
+        root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES, **early}
+    )
     unit_definitions(root, component)
     _type_definitions(root, component)
     log_categories_and_experiment(root, component)
@@ -69,28 +88,71 @@ def value_references(component: Component, sizes: Sizes) -> dict[str, int]:
 def _type_definitions(root: etree._Element, component: Component) -> None:
     definitions = etree.SubElement(root, "TypeDefinitions")
     for unit in used_units(component):
-        etree.SubElement(definitions, "Float64Type", name=UNITS[unit].quantity, quantity=UNITS[unit].quantity, unit=unit)
+        etree.SubElement(
+            definitions,
+            "Float64Type",
+            name=UNITS[unit].quantity,
+            quantity=UNITS[unit].quantity,
+            unit=unit,
+        )
     for variable in component.layout.ordered:
         if variable.kind is Kind.ENUMERATION:
-            add_items(etree.SubElement(definitions, "EnumerationType", name=enumeration_name(component, variable),
-                                       description=variable.description), variable)
+            add_items(
+                etree.SubElement(
+                    definitions,
+                    "EnumerationType",
+                    name=enumeration_name(component, variable),
+                    description=variable.description,
+                ),
+                variable,
+            )
 
 
-def _model_variables(root: etree._Element, component: Component, sizes: Sizes, references: dict[str, int]) -> None:
+def _model_variables(
+    root: etree._Element, component: Component, sizes: Sizes, references: dict[str, int]
+) -> None:
     variables = etree.SubElement(root, "ModelVariables")
     for variable in component.layout.ordered:
-        element = etree.SubElement(variables, _TYPES[variable.kind], {
-            "name": variable.name, "valueReference": str(references[variable.name]), "description": variable.description,
-            "causality": variable.causality.value, "variability": variability(variable), **initial(variable),
-            **type_and_bounds(component, variable), **_start(variable, sizes)})
+        element = etree.SubElement(
+            variables,
+            _TYPES[variable.kind],
+            {
+                "name": variable.name,
+                "valueReference": str(references[variable.name]),
+                "description": variable.description,
+                "causality": variable.causality.value,
+                "variability": variability(variable),
+                **initial(variable),
+                **type_and_bounds(component, variable),
+                **_start(variable, sizes),
+            },
+        )
         if variable.size is not None:
             etree.SubElement(element, "Dimension", start=str(sizes[variable.size]))
     for name, value in sizes.items():
-        etree.SubElement(variables, "Int32", {
-            "name": name, "valueReference": str(references[name]), "description": component.sizes[name].description,
-            "causality": "local", "variability": "constant", "initial": "exact", "start": str(value)})
-    etree.SubElement(variables, "Float64", name=TIME, valueReference=str(references[TIME]), description="time",
-                     causality="independent", variability="continuous", unit="s")
+        etree.SubElement(
+            variables,
+            "Int32",
+            {
+                "name": name,
+                "valueReference": str(references[name]),
+                "description": component.sizes[name].description,
+                "causality": "local",
+                "variability": "constant",
+                "initial": "exact",
+                "start": str(value),
+            },
+        )
+    etree.SubElement(
+        variables,
+        "Float64",
+        name=TIME,
+        valueReference=str(references[TIME]),
+        description="time",
+        causality="independent",
+        variability="continuous",
+        unit="s",
+    )
 
 
 def _start(variable: Variable, sizes: Sizes) -> dict[str, str]:
@@ -98,20 +160,36 @@ def _start(variable: Variable, sizes: Sizes) -> dict[str, str]:
     if variable.causality is Causality.OUTPUT:
         return {}
     numbers = range(len(variable.element_names(sizes)))
-    return {"start": " ".join(literal(variable.kind, variable.start_at(number, sizes)) for number in numbers)}
+    return {
+        "start": " ".join(
+            literal(variable.kind, variable.start_at(number, sizes)) for number in numbers
+        )
+    }
 
 
-def _model_structure(root: etree._Element, component: Component, references: dict[str, int]) -> None:
+def _model_structure(
+    root: etree._Element, component: Component, references: dict[str, int]
+) -> None:
     """No output depends on an input between two steps; what it depends on at the start is declared with it."""
     structure = etree.SubElement(root, "ModelStructure")
     outputs = [v for v in component.layout.ordered if v.causality is Causality.OUTPUT]
     for variable in outputs:
-        etree.SubElement(structure, "Output", valueReference=str(references[variable.name]), dependencies="")
+        etree.SubElement(
+            structure, "Output", valueReference=str(references[variable.name]), dependencies=""
+        )
     for variable in outputs:
         known = variable.initial_dependencies
         # without the attribute an unknown depends on everything known: all parameters and inputs
-        depends = {} if known is None else {"dependencies": " ".join(str(references[name]) for name in known)}
-        etree.SubElement(structure, "InitialUnknown", {"valueReference": str(references[variable.name]), **depends})
+        depends = (
+            {}
+            if known is None
+            else {"dependencies": " ".join(str(references[name]) for name in known)}
+        )
+        etree.SubElement(
+            structure,
+            "InitialUnknown",
+            {"valueReference": str(references[variable.name]), **depends},
+        )
 
 
 # --- terminals and icon
@@ -126,14 +204,29 @@ def terminals_and_icon(component: Component) -> Files:
     if icon:
         etree.SubElement(etree.SubElement(root, "GraphicalRepresentation"), "Icon", _ICON_CORNERS)
     if component.bonds:
-        etree.SubElement(root, "Terminals").extend([_terminal(bond, component) for bond in component.bonds])
-    return icon | {TERMINALS: etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)}
+        etree.SubElement(root, "Terminals").extend(
+            [_terminal(bond, component) for bond in component.bonds]
+        )
+    return icon | {
+        TERMINALS: etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
+    }
 
 
 def _terminal(bond: Bond, component: Component) -> etree._Element:
     """Both ends of a bond have the same values: the force is that on the body on either side, so it is a signal, and no flow."""
-    terminal = etree.Element("Terminal", name=bond.name, matchingRule="plug", terminalKind=_TERMINAL_KIND,
-                             description=bond.description)
+    terminal = etree.Element(
+        "Terminal",
+        name=bond.name,
+        matchingRule="plug",
+        terminalKind=_TERMINAL_KIND,
+        description=bond.description,
+    )
     for member, variable in bond.members(component.layout.variables).items():
-        etree.SubElement(terminal, "TerminalMemberVariable", variableName=variable.name, memberName=member, variableKind="signal")
+        etree.SubElement(
+            terminal,
+            "TerminalMemberVariable",
+            variableName=variable.name,
+            memberName=member,
+            variableKind="signal",
+        )
     return terminal

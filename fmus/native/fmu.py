@@ -27,7 +27,17 @@ from rockshed.components.common.component import HEADER, Component, Instance, al
 from rockshed.components.common.kernels import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 
-from ..parts import DESCRIPTION, BuildError, Files, Fmi, Runtime, component_sources, digest, documentation, picture
+from ..parts import (
+    DESCRIPTION,
+    BuildError,
+    Files,
+    Fmi,
+    Runtime,
+    component_sources,
+    digest,
+    documentation,
+    picture,
+)
 from .subset import UNKNOWN_PLACE
 
 _HERE = Path(__file__).parent
@@ -54,11 +64,13 @@ def _bits(*numbers: int) -> int:
     return sum(1 << number for number in numbers)
 
 
-CPU = Baseline("x86-64-v3",
-               # SSE3, SSSE3, FMA, CX16, SSE4.1, SSE4.2, MOVBE, POPCNT, OSXSAVE, AVX, F16C
-               _bits(0, 9, 12, 13, 19, 20, 22, 23, 27, 28, 29),
-               _bits(3, 5, 8),  # BMI1, AVX2, BMI2
-               _bits(0, 5))  # LAHF, LZCNT
+CPU = Baseline(
+    "x86-64-v3",
+    # SSE3, SSSE3, FMA, CX16, SSE4.1, SSE4.2, MOVBE, POPCNT, OSXSAVE, AVX, F16C
+    _bits(0, 9, 12, 13, 19, 20, 22, 23, 27, 28, 29),
+    _bits(3, 5, 8),  # BMI1, AVX2, BMI2
+    _bits(0, 5),
+)  # LAHF, LZCNT
 
 
 @dataclass(frozen=True)
@@ -72,13 +84,26 @@ class Platform:
 
 
 PLATFORMS: Mapping[str, Platform] = {
-    "linux64": Platform("x86_64-linux", ".so", "x86_64-linux-gnu.2.17", ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread")),
+    "linux64": Platform(
+        "x86_64-linux",
+        ".so",
+        "x86_64-linux-gnu.2.17",
+        ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread"),
+    ),
     "win64": Platform("x86_64-windows", ".dll", "x86_64-windows-gnu"),
     "darwin64": Platform("x86_64-darwin", ".dylib", "x86_64-macos.11.0"),
 }
 """All platforms that there can be native FMUs for."""
 
-_OPTIONS = ("-std=gnu11", "-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-s")
+_OPTIONS = (
+    "-std=gnu11",
+    "-O3",
+    "-shared",
+    "-fPIC",
+    "-fvisibility=hidden",
+    "-ffp-contract=off",
+    "-s",
+)
 _PYTHON_REMAINS = "FMUs with Python inside need no compiler: `rockshed build --runtime python`"
 
 
@@ -90,12 +115,16 @@ def own_platform() -> str:
     """
     name = {"Linux": "linux64", "Windows": "win64", "Darwin": "darwin64"}.get(machine.system(), "")
     if not name or machine.machine().lower() not in ("x86_64", "amd64"):
-        raise BuildError("native FMUs are made for x86-64 processors under Linux, Windows and macOS; this is "
-                         f"{machine.machine()} under {machine.system()}. {_PYTHON_REMAINS}")
+        raise BuildError(
+            "native FMUs are made for x86-64 processors under Linux, Windows and macOS; this is "
+            f"{machine.machine()} under {machine.system()}. {_PYTHON_REMAINS}"
+        )
     return name
 
 
-def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO) -> Files:
+def native_files(
+    component: Component, sizes: Sizes, platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO
+) -> Files:
     """Everything that goes into a native FMU. Its GUID (FMI 3.0: instantiation token) is a hash over all that it is made from.
 
     platforms: keys of :data:`PLATFORMS`; by default this machine's.
@@ -111,8 +140,14 @@ def native_files(component: Component, sizes: Sizes, platforms: Sequence[str] = 
     header = model_header(component, sizes, guid)
     for name in platforms:
         path = _library(component, name, fmi)
-        sources = {"model.h": header, "kernels.o": objects[name], **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
-        files[path] = _linked(component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources)
+        sources = {
+            "model.h": header,
+            "kernels.o": objects[name],
+            **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])},
+        }
+        files[path] = _linked(
+            component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources
+        )
     return files
 
 
@@ -135,10 +170,19 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
     """GUID of a native FMU, in FMI 3.0 its instantiation token: a hash of the sources and versions that it follows from. Nothing
     has to be computed for it but that."""
     beside = [path for path in component.folder.iterdir() if path.suffix in (".md", ".png")]
-    ours = (*_HERE.glob("*.py"), *_HERE.parent.glob("*.py"), *_HERE.parent.glob("description/*.py"), _SLAVE, _SHIMS[fmi])
+    ours = (
+        *_HERE.glob("*.py"),
+        *_HERE.parent.glob("*.py"),
+        *_HERE.parent.glob("description/*.py"),
+        _SLAVE,
+        _SHIMS[fmi],
+    )
     made_from = component_sources(component) | {
-        f"{path.parent.name}/{path.name}": path.read_bytes() for path in (*ours, *beside)}
-    made_from["versions"] = repr([CPU, dict(sizes), *_versions("rockshed", "numba", "llvmlite", "lxml", "markdown-it-py")]).encode()
+        f"{path.parent.name}/{path.name}": path.read_bytes() for path in (*ours, *beside)
+    }
+    made_from["versions"] = repr(
+        [CPU, dict(sizes), *_versions("rockshed", "numba", "llvmlite", "lxml", "markdown-it-py")]
+    ).encode()
     return f"{{{uuid.UUID(digest(made_from)[:32])}}}"
 
 
@@ -166,38 +210,69 @@ def _versions(*packages: str) -> list[str]:
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Object code of the kernels by platform; kept in the cache of compiled kernels."""
     made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
-    stamp = digest(made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()})[:24]
+    stamp = digest(
+        made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()}
+    )[:24]
     folder = cache_directory()
-    kept = {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms} if folder else {}
+    kept = (
+        {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms}
+        if folder
+        else {}
+    )
     if kept and all(path.is_file() for path in kept.values()):
         return {name: path.read_bytes() for name, path in kept.items()}
     with tempfile.TemporaryDirectory(prefix="rockshed_") as work:
         if problems := _compile(component, sizes, platforms, Path(work)):
-            if any(UNKNOWN_PLACE in problem for problem in problems):  # once more from the sources, for the lines
+            if any(
+                UNKNOWN_PLACE in problem for problem in problems
+            ):  # once more from the sources, for the lines
                 settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
                 problems = _compile(component, sizes, platforms, Path(work), **settings)
-            raise BuildError(f"{component.name}: its kernels need more than the C library and cannot run without Python: "
-                             + "; ".join(problems) + ". Kernels keep to explicit loops, scalar arithmetic, slices and other "
-                             f"kernels. No native FMU was built. {_PYTHON_REMAINS}")
+            raise BuildError(
+                f"{component.name}: its kernels need more than the C library and cannot run without Python: "
+                + "; ".join(problems)
+                + ". Kernels keep to explicit loops, scalar arithmetic, slices and other "
+                f"kernels. No native FMU was built. {_PYTHON_REMAINS}"
+            )
         objects = {name: (Path(work) / f"{name}.o").read_bytes() for name in platforms}
         for name, path in kept.items():
             os.replace(shutil.copy(Path(work) / f"{name}.o", f"{path}.{os.getpid()}"), path)
     return objects
 
 
-def _compile(component: Component, sizes: Sizes, platforms: Sequence[str], work: Path, **environment: str) -> list[str]:
+def _compile(
+    component: Component, sizes: Sizes, platforms: Sequence[str], work: Path, **environment: str
+) -> list[str]:
     """Write ``PLATFORM.o`` into a folder; return the problems found.
 
     Numba takes the processor from its environment, once per process.
     """
-    order = {"folder": str(component.folder), "sizes": dict(sizes), "platforms": list(platforms), "cpu": CPU.name}
+    order = {
+        "folder": str(component.folder),
+        "sizes": dict(sizes),
+        "platforms": list(platforms),
+        "cpu": CPU.name,
+    }
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     folders = [os.path.abspath(folder) for folder in sys.path]
-    settings = {"NUMBA_CPU_NAME": CPU.name, "NUMBA_CPU_FEATURES": "", "PYTHONPATH": os.pathsep.join(folders)}
-    done = subprocess.run([sys.executable, "-m", f"{__package__}.kernels"], input=json.dumps(order), cwd=work, text=True,
-                          env=inherited | settings | environment, capture_output=True, check=False)
+    settings = {
+        "NUMBA_CPU_NAME": CPU.name,
+        "NUMBA_CPU_FEATURES": "",
+        "PYTHONPATH": os.pathsep.join(folders),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", f"{__package__}.kernels"],
+        input=json.dumps(order),
+        cwd=work,
+        text=True,
+        env=inherited | settings | environment,
+        capture_output=True,
+        check=False,
+    )
     if done.returncode:
-        raise BuildError(f"{component.name}: compiling its kernels failed: {done.stderr.strip() or done.returncode}")
+        raise BuildError(
+            f"{component.name}: compiling its kernels failed: {done.stderr.strip() or done.returncode}"
+        )
     problems = json.loads(done.stdout)
     assert isinstance(problems, list)
     return problems
@@ -212,27 +287,40 @@ def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
 
     instance = Instance(component, sizes)
     entries = component.layout.table(sizes)[0]
-    header = instance.to_bytes()[:HEADER.size]
+    header = instance.to_bytes()[: HEADER.size]
     lengths = [len(variable.element_names(sizes)) for variable in component.layout.ordered]
     owners = [number for number, length in enumerate(lengths) for _ in range(length)]
     event = component.next_event
     waits = [instance.references[name] for name in event.while_zero] if event else []
-    traits = [_traits(variable) for variable, length in zip(component.layout.ordered, lengths) for _ in range(length)]
+    traits = [
+        _traits(variable)
+        for variable, length in zip(component.layout.ordered, lengths)
+        for _ in range(length)
+    ]
     lines = [
-        f"#define NAME {_text(component.name)}", f"#define GUID {_text(guid)}", f"#define CPU {_text(CPU.name)}",
+        f"#define NAME {_text(component.name)}",
+        f"#define GUID {_text(guid)}",
+        f"#define CPU {_text(CPU.name)}",
         f"enum {{ NW = {len(instance.w)}, NX = {len(instance.x)}, NK = {len(instance.k)}, NC = {len(sizes)},",
         f"       INTERNAL_STEP = {instance.references.get('internal_step', -1)}, "
         f"STABLE_STEP = {instance.references.get('stable_step', -1)},",
         f"       EVENT_TIME = {instance.references[event.time] if event else -1} }};",
-        f"#define CPU_1C 0x{CPU.leaf_1:x}u", f"#define CPU_7B 0x{CPU.leaf_7:x}u", f"#define CPU_81C 0x{CPU.leaf_81:x}u",
+        f"#define CPU_1C 0x{CPU.leaf_1:x}u",
+        f"#define CPU_7B 0x{CPU.leaf_7:x}u",
+        f"#define CPU_81C 0x{CPU.leaf_81:x}u",
         f"#define MARK 0x{instance.kind[:8].hex()}u",
-        _array("double", "START", map(_real, instance.w.tolist())), _array("int64_t", "TABLE", map(str, entries or [0])),
+        _array("double", "START", map(_real, instance.w.tolist())),
+        _array("int64_t", "TABLE", map(str, entries or [0])),
         _array("int", "SIZES", map(str, [*sizes.values(), 0])),
         _array("Text", "READ_ONLY", map(_text, [*sizes, TIME])),
-        _array("int", "ZERO_UNTIL_EVENT", map(str, [*waits, -1])), _array("unsigned char", "HEADER", map(str, header)),
-        _array("Variable", "VARIABLES", _variables(component, sizes)), _array("unsigned short", "VARIABLE_OF", map(str, owners)),
-        _array("unsigned char", "TRAITS", traits), _array("unsigned short", "ALIKE", map(str, _alike(traits))),
-        _array("Fault", "FAULTS", chain(_faults(component, instance), ["{ 0, 0 }"]))]
+        _array("int", "ZERO_UNTIL_EVENT", map(str, [*waits, -1])),
+        _array("unsigned char", "HEADER", map(str, header)),
+        _array("Variable", "VARIABLES", _variables(component, sizes)),
+        _array("unsigned short", "VARIABLE_OF", map(str, owners)),
+        _array("unsigned char", "TRAITS", traits),
+        _array("unsigned short", "ALIKE", map(str, _alike(traits))),
+        _array("Fault", "FAULTS", chain(_faults(component, instance), ["{ 0, 0 }"])),
+    ]
     return "\n".join(lines).encode() + b"\n"
 
 
@@ -243,14 +331,28 @@ def _variables(component: Component, sizes: Sizes) -> Iterator[str]:
         high = sys.float_info.max if variable.maximum is None else variable.maximum
         length = 0 if variable.size is None else sizes[variable.size]
         unit = "" if variable.unit == "1" else f" {variable.unit}"
-        fields = [_text(variable.name), str(first), str(length), variable.kind.name, variable.causality.name, _real(low),
-                  _real(high), _text(unit), _text(allowed_range(variable)), _text(variable.description)]
+        fields = [
+            _text(variable.name),
+            str(first),
+            str(length),
+            variable.kind.name,
+            variable.causality.name,
+            _real(low),
+            _real(high),
+            _text(unit),
+            _text(allowed_range(variable)),
+            _text(variable.description),
+        ]
         yield "{ " + ", ".join(fields) + " }"
         first += len(variable.element_names(sizes))
 
 
 def _traits(variable: Variable) -> str:
-    is_free = variable.causality is Causality.INPUT and variable.minimum is None and variable.maximum is None
+    is_free = (
+        variable.causality is Causality.INPUT
+        and variable.minimum is None
+        and variable.maximum is None
+    )
     return " | ".join(["IS_REAL", *["IS_FREE"] * is_free]) if variable.kind is Kind.REAL else "0"
 
 
@@ -264,7 +366,9 @@ def _alike(items: Sequence[str]) -> list[int]:
 
 def _faults(component: Component, instance: Instance) -> Iterator[str]:
     for status, text in component.faults.items():
-        numbered = re.sub(r"\{([^}]+)\}", lambda match: f"{{{instance.references[match.group(1)]}}}", text)
+        numbered = re.sub(
+            r"\{([^}]+)\}", lambda match: f"{{{instance.references[match.group(1)]}}}", text
+        )
         yield f"{{ {status}, {_text(numbered)} }}"
 
 
@@ -279,7 +383,13 @@ def _real(value: float) -> str:
 def _text(text: str) -> str:
     """A C literal. Messages are taken for printf formats by some hosts and not by others: they have no percent sign."""
     encoded = text.replace("%", "percent").encode()
-    return '"' + "".join(chr(b) if 32 <= b < 127 and chr(b) not in '"\\?' else f"\\{b:03o}" for b in encoded) + '"'
+    return (
+        '"'
+        + "".join(
+            chr(b) if 32 <= b < 127 and chr(b) not in '"\\?' else f"\\{b:03o}" for b in encoded
+        )
+        + '"'
+    )
 
 
 # --- the C compiler
@@ -291,19 +401,33 @@ def compiler(platform: str) -> list[str]:
     Raises:
         BuildError: there is none.
     """
-    zig = [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[platform].zig, "-mcpu=x86_64"]
+    zig = [
+        sys.executable,
+        "-m",
+        "ziglang",
+        "cc",
+        "-target",
+        PLATFORMS[platform].zig,
+        "-mcpu=x86_64",
+    ]
     if platform == "linux64" and machine.system() == "Linux":
-        found = os.environ.get("CC") or next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+        found = os.environ.get("CC") or next(
+            filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None
+        )
         if found:
             return [*shlex.split(found), "-march=x86-64"]
     if find_spec("ziglang"):
         return zig
     others = "environment variable CC, cc, gcc, clang, " if platform == "linux64" else ""
-    raise BuildError(f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip install ziglang`. "
-                     f"{_PYTHON_REMAINS}")
+    raise BuildError(
+        f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip install ziglang`. "
+        f"{_PYTHON_REMAINS}"
+    )
 
 
-def _linked(name: str, compiler: Sequence[str], platform: str, library: str, shim: str, sources: Files) -> bytes:
+def _linked(
+    name: str, compiler: Sequence[str], platform: str, library: str, shim: str, sources: Files
+) -> bytes:
     """The shared library of an FMU, from the shim with all that it includes and kernels.o.
 
     Raises:
@@ -313,13 +437,25 @@ def _linked(name: str, compiler: Sequence[str], platform: str, library: str, shi
         work = Path(folder)
         for source, content in sources.items():
             (work / source).write_bytes(content)
-        command = [*compiler, *_OPTIONS, "-o", library, shim, "kernels.o", *PLATFORMS[platform].options]
+        command = [
+            *compiler,
+            *_OPTIONS,
+            "-o",
+            library,
+            shim,
+            "kernels.o",
+            *PLATFORMS[platform].options,
+        ]
         try:
             done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
         except OSError as error:
-            raise BuildError(f"{name}: the compiler {compiler[0]} cannot be run: {error.strerror or error}; no native FMU was "
-                             f"built. Remedy: set CC to another one. {_PYTHON_REMAINS}") from error
+            raise BuildError(
+                f"{name}: the compiler {compiler[0]} cannot be run: {error.strerror or error}; no native FMU was "
+                f"built. Remedy: set CC to another one. {_PYTHON_REMAINS}"
+            ) from error
         if done.returncode or not (work / library).is_file():
-            raise BuildError(f"{name}: the compiler failed for {platform}, no native FMU was built: {' '.join(command)}\n"
-                             f"{(done.stderr or done.stdout).strip()}\n{_PYTHON_REMAINS}")
+            raise BuildError(
+                f"{name}: the compiler failed for {platform}, no native FMU was built: {' '.join(command)}\n"
+                f"{(done.stderr or done.stdout).strip()}\n{_PYTHON_REMAINS}"
+            )
         return (work / library).read_bytes()

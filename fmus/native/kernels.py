@@ -20,12 +20,17 @@ from llvmlite import ir
 from llvmlite.binding import Linkage
 from numba import njit, typeof, types
 from numba.core.errors import NumbaError
+
 from rockshed import components
 from rockshed.components.common.component import Component, Instance
 
 from .subset import error_problem, symbol_problems
 
-TRIPLES = {"linux64": "x86_64-unknown-linux-gnu", "win64": "x86_64-w64-windows-gnu", "darwin64": "x86_64-apple-macosx11.0"}
+TRIPLES = {
+    "linux64": "x86_64-unknown-linux-gnu",
+    "win64": "x86_64-w64-windows-gnu",
+    "darwin64": "x86_64-apple-macosx11.0",
+}
 """What LLVM calls the platforms of FMI."""
 
 ENTRIES = {name: f"rockshed_{name}" for name in ("initialise", "evaluate", "step")}
@@ -61,10 +66,16 @@ def load(folder: Path) -> Component:
 def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
     """Types of the arguments of each kernel."""
     buffers = tuple(map(typeof, (instance.w, instance.x, instance.k)))
-    return {"initialise": buffers, "evaluate": buffers, "step": (types.float64, types.float64, *buffers)}
+    return {
+        "initialise": buffers,
+        "evaluate": buffers,
+        "step": (types.float64, types.float64, *buffers),
+    }
 
 
-def compile_problems(component: Component, kinds: Mapping[str, tuple[Any, ...]], folder: Path) -> list[str]:
+def compile_problems(
+    component: Component, kinds: Mapping[str, tuple[Any, ...]], folder: Path
+) -> list[str]:
     """What keeps kernels from being compiled at all."""
     problems = []
     for name, signature in kinds.items():
@@ -81,7 +92,9 @@ def linked(component: Component, instance: Instance) -> Any:
     lengths = [len(instance.w), len(instance.x), len(instance.k)]
     whole = llvm.parse_assembly("")
     for name, signature in signatures(instance).items():
-        caller = njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)(_caller(component, name))
+        caller = njit(
+            error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True
+        )(_caller(component, name))
         caller.compile(signature)
         compiled = caller.overloads[signature]
         whole.link_in(llvm.parse_assembly(compiled.library.get_llvm_str()))
@@ -104,20 +117,43 @@ def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
     """
     module = ir.Module()
     descriptor, convention = compiled.fndesc, compiled.target_context.call_conv
-    callee = ir.Function(module, convention.get_function_type(descriptor.restype, descriptor.argtypes), descriptor.llvm_func_name)
+    callee = ir.Function(
+        module,
+        convention.get_function_type(descriptor.restype, descriptor.argtypes),
+        descriptor.llvm_func_name,
+    )
     integer, pointer = ir.IntType(64), ir.IntType(8).as_pointer()
     times = [ir.DoubleType()] * (len(descriptor.argtypes) - len(lengths))
-    function = ir.Function(module, ir.FunctionType(integer, [*times, pointer, pointer, pointer]), entry)
+    function = ir.Function(
+        module, ir.FunctionType(integer, [*times, pointer, pointer, pointer]), entry
+    )
     builder = ir.IRBuilder(function.append_basic_block())
     kinds = callee.function_type.args
-    arguments = [builder.alloca(kinds[0].pointee), builder.alloca(kinds[1].pointee), *function.args[:len(times)]]
-    for buffer, length in zip(function.args[len(times):], lengths):
-        kind = kinds[len(arguments):]
-        arguments += [kind[0](None), kind[1](None), integer(length), integer(8), builder.bitcast(buffer, kind[4]), integer(length),
-                      integer(8)]  # owner, parent, number of elements, bytes of an element, data, shape, strides
+    arguments = [
+        builder.alloca(kinds[0].pointee),
+        builder.alloca(kinds[1].pointee),
+        *function.args[: len(times)],
+    ]
+    for buffer, length in zip(function.args[len(times) :], lengths):
+        kind = kinds[len(arguments) :]
+        arguments += [
+            kind[0](None),
+            kind[1](None),
+            integer(length),
+            integer(8),
+            builder.bitcast(buffer, kind[4]),
+            integer(length),
+            integer(8),
+        ]  # owner, parent, number of elements, bytes of an element, data, shape, strides
     status = builder.call(callee, arguments)
     raised = builder.icmp_signed("!=", status, status.type(0))
-    builder.ret(builder.select(raised, builder.sub(integer(0), builder.sext(status, integer)), builder.load(arguments[0])))
+    builder.ret(
+        builder.select(
+            raised,
+            builder.sub(integer(0), builder.sext(status, integer)),
+            builder.load(arguments[0]),
+        )
+    )
     return module
 
 
@@ -143,7 +179,9 @@ def shown_only(module: Any, names: Iterable[str]) -> Any:
 
 def emitted(module: Any, triple: str, cpu: str) -> bytes:
     """Object code of a module for a platform."""
-    machine = llvm.Target.from_triple(triple).create_target_machine(cpu=cpu, features="", opt=3, reloc="pic", codemodel="default")
+    machine = llvm.Target.from_triple(triple).create_target_machine(
+        cpu=cpu, features="", opt=3, reloc="pic", codemodel="default"
+    )
     copy = module.clone()
     copy.triple = triple
     copy.data_layout = str(machine.target_data)

@@ -11,10 +11,15 @@ from ..parts import COMPONENTS
 if TYPE_CHECKING:
     from numba.core.errors import NumbaError
 
-ALLOWED = frozenset(re.findall(r"\w+", """
+ALLOWED = frozenset(
+    re.findall(
+        r"\w+",
+        """
     acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs floor fma fmax fmin fmod frexp
     hypot ldexp lgamma log log10 log1p log2 nearbyint pow rint round sin sinh sqrt tan tanh tgamma trunc
-    memcpy memmove memset pthread_create pthread_join"""))
+    memcpy memmove memset pthread_create pthread_join""",
+    )
+)
 """Functions of the C library (under Windows: of the shim) that kernels may call. Anything else would be Python's or numba's."""
 
 
@@ -23,7 +28,9 @@ UNKNOWN_PLACE = "at an unknown place"
 
 def foreign_symbols(module: Any) -> list[str]:
     """What an LLVM module needs from outside and may not."""
-    needed = [f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")]
+    needed = [
+        f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")
+    ]
     needed += [v.name for v in module.global_variables if v.is_declaration]
     return sorted(name for name in needed if name not in ALLOWED)
 
@@ -46,14 +53,21 @@ class _Source:
     def __init__(self, text: str, folder: Path) -> None:
         self._ours = (str(folder) + os.sep, str(COMPONENTS) + os.sep)
         self._nodes = dict(re.findall(r"^(!\d+) = (.*)$", text, re.MULTILINE))
-        self._functions = re.findall(r'^define [^\n]*?@"?([^"(]+)"?\((.*?)^\}', text, re.MULTILINE | re.DOTALL)
+        self._functions = re.findall(
+            r'^define [^\n]*?@"?([^"(]+)"?\((.*?)^\}', text, re.MULTILINE | re.DOTALL
+        )
 
     def places(self, symbol: str, seen: frozenset[str] = frozenset()) -> Iterator[str]:
         """Where our sources use a symbol, be it by functions of others that they call."""
         named = re.compile(rf'@"?{re.escape(symbol)}"?(?![\w.$]).*!dbg (!\d+)')
         for function, body in self._functions:
             nodes = named.findall(body)
-            own = [place for node in nodes for place in self._chain(node) if place.startswith(self._ours)]
+            own = [
+                place
+                for node in nodes
+                for place in self._chain(node)
+                if place.startswith(self._ours)
+            ]
             yield from own[:1]
             if nodes and not own and function not in seen:
                 yield from self.places(function, seen | {function})
@@ -79,9 +93,16 @@ def _field(node: str, name: str) -> str:
 def error_problem(error: "NumbaError", name: str, kernel: Any, folder: Path) -> str:
     """What numba finds wrong with a kernel of a component, with the line as far as numba knows it."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
-    reasons = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith(("Failed in", "During"))]
-    places = [(os.path.abspath(file), line) for pair in re.findall(r'(?:File "(.+)", line |at (.+) \()(\d+)', text)
-              for file, line in [(pair[0] or pair[1], pair[2])]]
+    reasons = [
+        line.strip()
+        for line in text.splitlines()
+        if line.strip() and not line.startswith(("Failed in", "During"))
+    ]
+    places = [
+        (os.path.abspath(file), line)
+        for pair in re.findall(r'(?:File "(.+)", line |at (.+) \()(\d+)', text)
+        for file, line in [(pair[0] or pair[1], pair[2])]
+    ]
     ours = [place for place in places if place[0].startswith(str(folder) + os.sep)]
     code = kernel.py_func.__code__
     file, line = ours[-1] if ours else (code.co_filename, code.co_firstlineno)

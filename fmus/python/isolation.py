@@ -5,7 +5,9 @@ such a folder (``json.py``, ``numpy.py``, ``components/``) would be imported in 
 runs before anything else of an FMU is imported, so it may itself import only what every interpreter has loaded from the start.
 """
 
-from __future__ import annotations  # an older Python must get as far as the message that it is too old
+from __future__ import (
+    annotations,  # an older Python must get as far as the message that it is too old
+)
 
 import os
 import sys
@@ -21,9 +23,16 @@ class ForeignFoldersHidden:
 
     def __enter__(self) -> None:
         self._path = list(sys.path)
-        sys.path[:] = [folder for folder in self._path if not os.path.isfile(os.path.join(folder, _MARK))]
+        sys.path[:] = [
+            folder for folder in self._path if not os.path.isfile(os.path.join(folder, _MARK))
+        ]
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         sys.path[:] = self._path
 
 
@@ -35,25 +44,39 @@ def require_libraries(fmu: str) -> None:
             loading.
     """
     if sys.version_info < _OLDEST_PYTHON:
-        raise ImportError(f"{fmu} needs Python 3.11 or later; this process runs {sys.version.split()[0]} ({sys.prefix})")
+        raise ImportError(
+            f"{fmu} needs Python 3.11 or later; this process runs {sys.version.split()[0]} ({sys.prefix})"
+        )
     with ForeignFoldersHidden():
         for name in _LIBRARIES:
             try:
                 module = __import__(name)
             except Exception as error:
-                raise ImportError(f"{fmu} needs {name} in the Python that runs it ({sys.version.split()[0]}, {sys.prefix}); "
-                                  f"importing it failed with {type(error).__name__}: {error}. Remedy: pip install numpy numba"
-                                  + _blame()) from error
+                raise ImportError(
+                    f"{fmu} needs {name} in the Python that runs it ({sys.version.split()[0]}, {sys.prefix}); "
+                    f"importing it failed with {type(error).__name__}: {error}. Remedy: pip install numpy numba"
+                    + _blame()
+                ) from error
             if _is_foreign(module):
-                raise ImportError(f"{fmu} needs {name}, but another FMU has loaded a module of its own under this name "
-                                  f"({module.__file__}). Remedy: instantiate {fmu} first, or in a process of its own")
+                raise ImportError(
+                    f"{fmu} needs {name}, but another FMU has loaded a module of its own under this name "
+                    f"({module.__file__}). Remedy: instantiate {fmu} first, or in a process of its own"
+                )
 
 
 def _blame() -> str:
-    replaced = sorted(name for name in sys.stdlib_module_names if _is_foreign(sys.modules.get(name)))
-    return f"; other FMUs in this process have replaced {', '.join(replaced)} of the standard library" if replaced else ""
+    replaced = sorted(
+        name for name in sys.stdlib_module_names if _is_foreign(sys.modules.get(name))
+    )
+    return (
+        f"; other FMUs in this process have replaced {', '.join(replaced)} of the standard library"
+        if replaced
+        else ""
+    )
 
 
 def _is_foreign(module: ModuleType | None) -> bool:
     folder = os.path.dirname(getattr(module, "__file__", None) or "")
-    return any(os.path.isfile(os.path.join(f, _MARK)) for f in (folder, os.path.dirname(folder)) if f)
+    return any(
+        os.path.isfile(os.path.join(f, _MARK)) for f in (folder, os.path.dirname(folder)) if f
+    )

@@ -16,7 +16,18 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from .foundations import OK, Causality, Component, ComponentError, Fmi2Slave, Fmi2Status, Instance, Kind, Variable, value_problems
+from .foundations import (
+    OK,
+    Causality,
+    Component,
+    ComponentError,
+    Fmi2Slave,
+    Fmi2Status,
+    Instance,
+    Kind,
+    Variable,
+    value_problems,
+)
 from .interpreter import let_go_of_interpreter
 from .isolation import ForeignFoldersHidden
 
@@ -73,10 +84,14 @@ def _guarded(otherwise: Callable[..., Any]) -> Callable[[Callable[..., Any]], Ca
         def call(self: "ComponentSlave", *arguments: Any) -> Any:
             try:
                 return method(self, *arguments)
-            except BaseException as error:  # KeyboardInterrupt too: the binary crashes on it as on any other
+            except (
+                BaseException
+            ) as error:  # KeyboardInterrupt too: the binary crashes on it as on any other
                 self._fail(error)
                 return otherwise(*arguments)
+
         return call
+
     return decorate
 
 
@@ -102,21 +117,30 @@ class ComponentSlave(Fmi2Slave):
         self._time, self._stop_time, self._compiled = math.nan, math.inf, False
         self._advance: Callable[..., int] = self.component.step
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
-        self._table = [(name, variable) for variable in self.component.layout.ordered
-                       for name in variable.element_names(self.sizes)]
-        self._constants = {len(self._table) + i: value for i, value in enumerate(self.sizes.values())}
+        self._table = [
+            (name, variable)
+            for variable in self.component.layout.ordered
+            for name in variable.element_names(self.sizes)
+        ]
+        self._constants = {
+            len(self._table) + i: value for i, value in enumerate(self.sizes.values())
+        }
         self._readers: dict[tuple[int, int], tuple[list[int], Callable[[], list[float]]]] = {}
         self._writers: dict[tuple[int, int], tuple[list[int], Callable[[list[float]], None]]] = {}
 
     # --- life cycle
 
     @_nothing
-    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+    def setup_experiment(
+        self, start_time: float, stop_time: float | None, tolerance: float | None
+    ) -> None:
         """Set the time (s) of the initialisation, and the end that no step may exceed."""
         self._expect(_Phase.INSTANTIATED, "set up the experiment")
         if not math.isfinite(start_time) or (stop_time is not None and not stop_time >= start_time):
-            raise _RefusedError(f"start time = {start_time} s, stop time = {stop_time} s: the start must be a finite number, and "
-                                "the stop not before it")
+            raise _RefusedError(
+                f"start time = {start_time} s, stop time = {stop_time} s: the start must be a finite number, and "
+                "the stop not before it"
+            )
         self._time, self._stop_time = start_time, math.inf if stop_time is None else stop_time
 
     @_nothing
@@ -124,7 +148,9 @@ class ComponentSlave(Fmi2Slave):
         """From now on outputs can be read: they follow from the parameters and inputs set so far."""
         self._expect(_Phase.INSTANTIATED, "enter the initialization mode")
         if math.isnan(self._time):
-            raise _RefusedError("the start time is unknown: set up the experiment before entering the initialization mode")
+            raise _RefusedError(
+                "the start time is unknown: set up the experiment before entering the initialization mode"
+            )
         self._phase = _Phase.INITIALISING
 
     @_nothing
@@ -146,14 +172,23 @@ class ComponentSlave(Fmi2Slave):
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Advance by ``step_size`` (s) with the present inputs. False if that is refused or fails; the log tells why."""
         try:
-            due = self._phase is _RUNNING and current_time == self._time and 0.0 < step_size < self._stop_time - current_time
+            due = (
+                self._phase is _RUNNING
+                and current_time == self._time
+                and 0.0 < step_size < self._stop_time - current_time
+            )
             if not due and (reason := self._why_not(current_time, step_size)):
-                self._log(f"the step of {step_size:.6g} s from t = {current_time:.9g} s is refused: {reason}", Fmi2Status.error)
+                self._log(
+                    f"the step of {step_size:.6g} s from t = {current_time:.9g} s is refused: {reason}",
+                    Fmi2Status.error,
+                )
                 return False
             instance = self._instance
             status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
             if status != OK:
-                raise ComponentError(self.component.name, [f"at t = {current_time:.9g} s {instance.message(status)}"])
+                raise ComponentError(
+                    self.component.name, [f"at t = {current_time:.9g} s {instance.message(status)}"]
+                )
             self._time = current_time + step_size
             return True
         except BaseException as error:
@@ -190,19 +225,33 @@ class ComponentSlave(Fmi2Slave):
     def _compile_step(self) -> None:
         """Compile the step now or load it from the cache, so that the first step takes no longer than the others."""
         compiler = getattr(self.component.step, "compile", None)
-        if compiler is not None and not self._compiled:  # there is none with NUMBA_DISABLE_JIT, for debugging
+        if (
+            compiler is not None and not self._compiled
+        ):  # there is none with NUMBA_DISABLE_JIT, for debugging
             with ForeignFoldersHidden():
                 from numba import typeof
 
-                compiler(tuple(map(typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k))))
-        self._advance, self._compiled = getattr(self.component.step, "made", self.component.step), True
+                compiler(
+                    tuple(
+                        map(
+                            typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k)
+                        )
+                    )
+                )
+        self._advance, self._compiled = (
+            getattr(self.component.step, "made", self.component.step),
+            True,
+        )
 
     def _warn_of_unstable_step(self) -> None:
         if {"internal_step", "stable_step"} <= self._instance.references.keys():
             step, stable = self._instance["internal_step"], self._instance["stable_step"]
             if step > stable:
-                self._log(f"internal_step = {step:.6g} s exceeds stable_step = {stable:.6g} s: the integration will be unstable; "
-                          f"reduce internal_step to {stable:.6g} s or less", Fmi2Status.warning)
+                self._log(
+                    f"internal_step = {step:.6g} s exceeds stable_step = {stable:.6g} s: the integration will be unstable; "
+                    f"reduce internal_step to {stable:.6g} s or less",
+                    Fmi2Status.warning,
+                )
 
     # --- values
 
@@ -263,16 +312,22 @@ class ComponentSlave(Fmi2Slave):
 
     def _variable(self, reference: int, kind: Kind) -> tuple[str, Variable]:
         if not 0 <= reference < len(self._table):
-            raise _RefusedError(f"value reference {reference} is unknown: allowed is 0 to {len(self._table) - 1}; "
-                                "take it from this FMU's modelDescription.xml")
+            raise _RefusedError(
+                f"value reference {reference} is unknown: allowed is 0 to {len(self._table) - 1}; "
+                "take it from this FMU's modelDescription.xml"
+            )
         name, variable = self._table[reference]
         if kind is not (Kind.INTEGER if variable.kind is Kind.ENUMERATION else variable.kind):
-            raise _RefusedError(f"{name} is of type {variable.kind}, not {kind}: use the call of its type")
+            raise _RefusedError(
+                f"{name} is of type {variable.kind}, not {kind}: use the call of its type"
+            )
         return name, variable
 
     def _get(self, kind: Kind, vrs: list[int]) -> list[float]:
         variables = [self._variable(reference, kind)[1] for reference in vrs]
-        if self._phase is _Phase.INITIALISING and any(variable.causality is Causality.OUTPUT for variable in variables):
+        if self._phase is _Phase.INITIALISING and any(
+            variable.causality is Causality.OUTPUT for variable in variables
+        ):
             self._preview()
         if kind is Kind.REAL and vrs:
             self._readers[vrs[0], len(vrs)] = list(vrs), _reader(self._instance.w, list(vrs))
@@ -284,34 +339,57 @@ class ComponentSlave(Fmi2Slave):
             if not self._previewed:
                 self._compute()
         except ComponentError as error:
-            self._log(f"the outputs are not valid yet: {'; '.join(error.problems)}", Fmi2Status.warning)
+            self._log(
+                f"the outputs are not valid yet: {'; '.join(error.problems)}", Fmi2Status.warning
+            )
         self._previewed = True
 
     def _set(self, kind: Kind, vrs: list[int], values: list[Any]) -> None:
         if self._phase in (_Phase.TERMINATED, _Phase.FAILED):
             raise _RefusedError(f"cannot set a variable: {_REMEDIES[self._phase]}")
         variables = [self._variable(reference, kind) for reference in vrs]
-        if refused := [reason for (name, variable), value in zip(variables, values)
-                       for reason in self._why_not_set(name, variable, float(value))]:
+        if refused := [
+            reason
+            for (name, variable), value in zip(variables, values)
+            for reason in self._why_not_set(name, variable, float(value))
+        ]:
             raise _RefusedError("; ".join(refused))
-        changed = [variable.causality for (_, variable), r, value in zip(variables, vrs, values) if self._values[r] != value]
+        changed = [
+            variable.causality
+            for (_, variable), r, value in zip(variables, vrs, values)
+            if self._values[r] != value
+        ]
         for reference, value in zip(vrs, values):
             self._values[reference] = value
         if self._phase is not _Phase.RUNNING:
-            stale = _Stale.STATE if Causality.PARAMETER in changed else _Stale.OUTPUTS if changed else _Stale.NOTHING
+            stale = (
+                _Stale.STATE
+                if Causality.PARAMETER in changed
+                else _Stale.OUTPUTS
+                if changed
+                else _Stale.NOTHING
+            )
             self._stale, self._previewed = max(self._stale, stale), self._previewed and not changed
-        elif vrs and all(variable.minimum is None and variable.maximum is None for _, variable in variables):
+        elif vrs and all(
+            variable.minimum is None and variable.maximum is None for _, variable in variables
+        ):
             self._writers[vrs[0], len(vrs)] = list(vrs), _writer(self._instance.w, list(vrs))
 
     def _why_not_set(self, name: str, variable: Variable, value: float) -> list[str]:
         if variable.causality is Causality.OUTPUT:
-            return [f"{name} = {value:.6g} is refused: it is an output, which the component computes; set parameters or inputs"]
+            return [
+                f"{name} = {value:.6g} is refused: it is an output, which the component computes; set parameters or inputs"
+            ]
         if self._phase is not _Phase.RUNNING:
             return []  # checked all together when the initialization mode ends
         if variable.causality is Causality.PARAMETER:
-            return [f"{name} = {value:.6g} is refused: a parameter is fixed after the initialisation; reset the slave to change it"]
-        return [f"at t = {self._time:.9g} s: {problem}; correct what sends this value"
-                for problem in value_problems(variable, name, value)]
+            return [
+                f"{name} = {value:.6g} is refused: a parameter is fixed after the initialisation; reset the slave to change it"
+            ]
+        return [
+            f"at t = {self._time:.9g} s: {problem}; correct what sends this value"
+            for problem in value_problems(variable, name, value)
+        ]
 
     # --- complete state
 
@@ -330,7 +408,9 @@ class ComponentSlave(Fmi2Slave):
         self._instance.from_bytes(component_state(state))
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
         self._phase, self._time, self._previewed = _Phase(phase), time, False
-        self._stale = _Stale.STATE if phase in (_Phase.INSTANTIATED, _Phase.INITIALISING) else _Stale.NOTHING
+        self._stale = (
+            _Stale.STATE if phase in (_Phase.INSTANTIATED, _Phase.INITIALISING) else _Stale.NOTHING
+        )
         if self._phase is _Phase.RUNNING:
             self._compile_step()
 
@@ -358,7 +438,9 @@ class ComponentSlave(Fmi2Slave):
 
     def _log(self, text: str, status: Fmi2Status) -> None:
         """Log with the instance's name. FMI takes a message for a printf format, some tools do not: no percent sign is safe."""
-        self.log(f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent"), status)
+        self.log(
+            f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent"), status
+        )
 
 
 def component_state(state: bytes) -> bytes:
@@ -367,19 +449,29 @@ def component_state(state: bytes) -> bytes:
     Raises:
         ComponentError: not written by such a slave, or damaged.
     """
-    if len(state) < _SEAL.size + _CLOCK.size or _SEAL.unpack_from(state) != (_MARK, zlib.crc32(state[_SEAL.size:])):
-        raise ComponentError("FMU state", ["this is no serialized state of a rockshed FMU, or it is damaged: restore another one"])
-    return state[_SEAL.size + _CLOCK.size:]
+    if len(state) < _SEAL.size + _CLOCK.size or _SEAL.unpack_from(state) != (
+        _MARK,
+        zlib.crc32(state[_SEAL.size :]),
+    ):
+        raise ComponentError(
+            "FMU state",
+            [
+                "this is no serialized state of a rockshed FMU, or it is damaged: restore another one"
+            ],
+        )
+    return state[_SEAL.size + _CLOCK.size :]
 
 
 def _is_block(references: list[int]) -> bool:
-    return bool(references) and references == list(range(references[0], references[0] + len(references)))
+    return bool(references) and references == list(
+        range(references[0], references[0] + len(references))
+    )
 
 
 def _reader(buffer: Any, references: list[int]) -> Callable[[], list[float]]:
     """Function that lists the values at these places of the buffer."""
     if _is_block(references):
-        return buffer[references[0]:references[0] + len(references)].tolist
+        return buffer[references[0] : references[0] + len(references)].tolist
     places = np.array(references)
     return lambda: buffer[places].tolist()
 
@@ -387,7 +479,10 @@ def _reader(buffer: Any, references: list[int]) -> Callable[[], list[float]]:
 def _writer(buffer: Any, references: list[int]) -> Callable[[list[float]], None]:
     """Function that puts a list of values to these places of the buffer. ``pack_into`` is faster than assigning a slice."""
     if _is_block(references):
-        pack, place = struct.Struct(f"{len(references)}d").pack_into, references[0] * buffer.itemsize
+        pack, place = (
+            struct.Struct(f"{len(references)}d").pack_into,
+            references[0] * buffer.itemsize,
+        )
         return lambda values: pack(buffer, place, *values)
     places = np.array(references)
     return lambda values: buffer.put(places, values)

@@ -27,8 +27,13 @@ def lab(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> System:
     names = {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}
     fmus = {key: str(build_if_needed(name, runtime=runtime)) for key, name in names.items()}
     system = lab_system(fmus, tests()[4], coupling)
-    components = {name: spec.model_copy(update={"record_states": False}) for name, spec in system.components.items()}
-    return system.model_copy(update={"components": components, "stop_time": END, "state_interval": None})
+    components = {
+        name: spec.model_copy(update={"record_states": False})
+        for name, spec in system.components.items()
+    }
+    return system.model_copy(
+        update={"components": components, "stop_time": END, "state_interval": None}
+    )
 
 
 def one_program() -> Contestant:
@@ -44,7 +49,9 @@ def one_program() -> Contestant:
     return work
 
 
-def co_simulation(coupling: Coupling, plain: bool = False, runtime: Runtime = Runtime.PYTHON) -> Contestant:
+def co_simulation(
+    coupling: Coupling, plain: bool = False, runtime: Runtime = Runtime.PYTHON
+) -> Contestant:
     """The exchanges of a co-simulation, rows of results in memory included, without its preparation and without writing files."""
     system = lab(coupling, runtime)
 
@@ -63,12 +70,21 @@ AS_NATIVE = {"NUMBA_CPU_NAME": CPU.name, "NUMBA_CPU_FEATURES": ""}
 
 def contestants(baseline: Peer) -> Mapping[str, Contestant]:
     """The one program, and the co-simulation with both exchange steps, drivers and runtimes; native only with a compiler."""
-    common = {"one program": one_program(), "paper": co_simulation("paper"), "impulse": co_simulation("impulse"),
-              "paper, plain calls": co_simulation("paper", plain=True)}
+    common = {
+        "one program": one_program(),
+        "paper": co_simulation("paper"),
+        "impulse": co_simulation("impulse"),
+        "paper, plain calls": co_simulation("paper", plain=True),
+    }
     try:
-        return {**common, "one program, baseline": baseline.contestant(""),
-                "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
-                "impulse, native": co_simulation("impulse", runtime=Runtime.NATIVE),
-                "paper, native, plain calls": co_simulation("paper", plain=True, runtime=Runtime.NATIVE)}
+        return {
+            **common,
+            "one program, baseline": baseline.contestant(""),
+            "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
+            "impulse, native": co_simulation("impulse", runtime=Runtime.NATIVE),
+            "paper, native, plain calls": co_simulation(
+                "paper", plain=True, runtime=Runtime.NATIVE
+            ),
+        }
     except BuildError:
         return common

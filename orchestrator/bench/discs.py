@@ -5,6 +5,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 import numpy as np
+
 from rockshed.components.common.component import Instance
 from rockshed.components.sand_cushion import COMPONENT
 from rockshed.components.sand_cushion.declarations import ROW
@@ -34,8 +35,13 @@ THREADED = 100_000
 def stirred_cushion(discs: int) -> Instance:
     """A settled square packing on the floor between side walls, given random velocities; energy bookkeeping is always on."""
     sand = COMPONENT.instance(discs=discs)
-    for name, value in {"base": "floor", "box.left": 0.0, "box.width": WIDTHS[discs],
-                        "rock.position.x": 0.5 * WIDTHS[discs], "rock.position.y": 50.0}.items():
+    for name, value in {
+        "base": "floor",
+        "box.left": 0.0,
+        "box.width": WIDTHS[discs],
+        "rock.position.x": 0.5 * WIDTHS[discs],
+        "rock.position.y": 50.0,
+    }.items():
         sand[name] = value
     sand.initialise()
     body = sand.state("body").reshape(-1, ROW)
@@ -43,7 +49,9 @@ def stirred_cushion(discs: int) -> Instance:
     return sand
 
 
-def own_kernel(discs: int, threads: int = 1, clock: Callable[[], float] = process_time) -> Contestant:
+def own_kernel(
+    discs: int, threads: int = 1, clock: Callable[[], float] = process_time
+) -> Contestant:
     """The sand cushion's kernel, called directly; the time that it takes by a clock, of the processor unless another is given."""
     start = stirred_cushion(discs).to_bytes()
     sand = COMPONENT.instance(discs=discs)

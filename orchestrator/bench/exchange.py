@@ -23,7 +23,12 @@ from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
 
 OURS, BARE = "our loop", "ctypes"
-PEERS: Mapping[str, str] = {BARE: "fmpy", "fmpy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy"}
+PEERS: Mapping[str, str] = {
+    BARE: "fmpy",
+    "fmpy": "fmpy",
+    "libcosim": "libcosimpy",
+    "ecos": "ecospy",
+}
 """Other tools by the names of :mod:`rockshed.bench.exchange_peer`, and the package that brings each."""
 _STEPS = {Runtime.NATIVE: 10_000, Runtime.PYTHON: 1000}
 """Macro steps of one measurement."""
@@ -74,10 +79,18 @@ class Pair:
 
     def _own_loop(self, measurements: int) -> Contestant:
         """All outputs are recorded in every macro step; writing them to files does not count."""
-        system = system_from({
-            "name": "pair", "components": {name: {"fmu": str(self._file)} for name in "ab"}, "master": "jacobi",
-            "connections": [f"{one}.y[1..{INPUTS}] -> {other}.u[1..{INPUTS}]" for one, other in ("ab", "ba")],
-            "exchange_step": STEP, "stop_time": measurements * self.steps * STEP})
+        system = system_from(
+            {
+                "name": "pair",
+                "components": {name: {"fmu": str(self._file)} for name in "ab"},
+                "master": "jacobi",
+                "connections": [
+                    f"{one}.y[1..{INPUTS}] -> {other}.u[1..{INPUTS}]" for one, other in ("ab", "ba")
+                ],
+                "exchange_step": STEP,
+                "stop_time": measurements * self.steps * STEP,
+            }
+        )
         sources = sources_of(system)
         plan = make_plan(system, sources)
         slaves = instantiate(plan, sources)
@@ -106,8 +119,18 @@ class Pair:
             distribution(package)
         except PackageNotFoundError:
             raise _MissingError("not installed") from None
-        process = subprocess.Popen([sys.executable, str(Path(__file__).with_name("exchange_peer.py")), tool, str(self._file)],
-                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [
+                sys.executable,
+                str(Path(__file__).with_name("exchange_peer.py")),
+                tool,
+                str(self._file),
+            ],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self._stack.callback(_end, process)
 
         def work() -> float:

@@ -26,8 +26,12 @@ def _slaves(file: str) -> Iterator[Any]:
 
     description = read_model_description(file)
     for name in "ab":
-        slave = FMU2Slave(instanceName=name, guid=description.guid, modelIdentifier=description.coSimulation.modelIdentifier,
-                          unzipDirectory=extract(file))
+        slave = FMU2Slave(
+            instanceName=name,
+            guid=description.guid,
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            unzipDirectory=extract(file),
+        )
         slave.instantiate()
         slave.setupExperiment(startTime=0.0)
         slave.enterInitializationMode()
@@ -58,7 +62,10 @@ def with_ctypes(file: str, _stack: ExitStack) -> Run:
     refer = ctypes.c_uint * INPUTS, ctypes.c_uint * OUTPUTS
     given, shown = refer[0](*range(INPUTS)), refer[1](*range(INPUTS, INPUTS + OUTPUTS))
     in_a, in_b = (ctypes.c_void_p(slave.component) for slave in (a, b))
-    from_a, from_b = (ctypes.c_double * OUTPUTS)(), (ctypes.c_double * OUTPUTS)()  # an input's values begin the other's outputs
+    from_a, from_b = (
+        (ctypes.c_double * OUTPUTS)(),
+        (ctypes.c_double * OUTPUTS)(),
+    )  # an input's values begin the other's outputs
     few, many, real = ctypes.c_size_t(INPUTS), ctypes.c_size_t(OUTPUTS), ctypes.c_double
     # what Python code inside needs is that the interpreter is not let go
     library_a, library_b = (ctypes.PyDLL(None, handle=slave.dll._handle) for slave in (a, b))
@@ -138,7 +145,11 @@ def with_ecos(file: str, stack: ExitStack) -> Run:
 
 
 TOOLS: Mapping[str, Callable[[str, ExitStack], Run]] = {
-    "ctypes": with_ctypes, "fmpy": with_fmpy, "libcosim": with_libcosim, "ecos": with_ecos}
+    "ctypes": with_ctypes,
+    "fmpy": with_fmpy,
+    "libcosim": with_libcosim,
+    "ecos": with_ecos,
+}
 
 
 def main() -> None:

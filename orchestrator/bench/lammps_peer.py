@@ -32,20 +32,48 @@ def prepare(lmp, discs: int, width: float) -> None:
     """A square packing between walls with random velocities, after ten steps."""
     columns = round(width / (2 * RADIUS))
     law = f"hooke/history {STIFFNESS} {0.25 * STIFFNESS} {DAMPING} {0.5 * DAMPING} 0.577 1"
-    lmp.commands_list(["clear", "units si", "dimension 2", "boundary f f p", "atom_style sphere", "newton off",
-                       "comm_modify vel yes",
-                       f"region box block -0.01 {width + 0.01} -0.01 {discs // columns * 2 * RADIUS + 0.5} -0.01 0.01",
-                       "create_box 1 box", f"neighbor {0.6 * RADIUS} bin", "neigh_modify delay 0 every 1 check yes",
-                       f"pair_style gran/{law}", "pair_coeff * *", "timestep 1e-5", "fix 1 all nve/sphere disc",
-                       "fix 2 all enforce2d", "fix 3 all gravity 9.81 vector 0 -1 0",
-                       f"fix 4 all wall/gran {law} yplane 0.0 NULL", f"fix 5 all wall/gran {law} xplane 0.0 {width}"])
+    lmp.commands_list(
+        [
+            "clear",
+            "units si",
+            "dimension 2",
+            "boundary f f p",
+            "atom_style sphere",
+            "newton off",
+            "comm_modify vel yes",
+            f"region box block -0.01 {width + 0.01} -0.01 {discs // columns * 2 * RADIUS + 0.5} -0.01 0.01",
+            "create_box 1 box",
+            f"neighbor {0.6 * RADIUS} bin",
+            "neigh_modify delay 0 every 1 check yes",
+            f"pair_style gran/{law}",
+            "pair_coeff * *",
+            "timestep 1e-5",
+            "fix 1 all nve/sphere disc",
+            "fix 2 all enforce2d",
+            "fix 3 all gravity 9.81 vector 0 -1 0",
+            f"fix 4 all wall/gran {law} yplane 0.0 NULL",
+            f"fix 5 all wall/gran {law} xplane 0.0 {width}",
+        ]
+    )
     number = np.arange(discs)
     place, velocity = np.zeros((discs, 3)), np.zeros((discs, 3))
     place[:, 0] = (2 * (number % columns) + 1) * RADIUS
     place[:, 1] = (2 * (number // columns) + 1) * RADIUS * (1 - 1e-4)
     velocity[:, :2] = np.random.default_rng(1).normal(0.0, 0.01, (discs, 2))
-    lmp.create_atoms(discs, list(range(1, discs + 1)), [1] * discs, place.ravel().tolist(), velocity.ravel().tolist())
-    lmp.commands_list([f"set group all diameter {2 * RADIUS}", f"set group all density {DENSITY_2D}", "run 10 post no"])
+    lmp.create_atoms(
+        discs,
+        list(range(1, discs + 1)),
+        [1] * discs,
+        place.ravel().tolist(),
+        velocity.ravel().tolist(),
+    )
+    lmp.commands_list(
+        [
+            f"set group all diameter {2 * RADIUS}",
+            f"set group all density {DENSITY_2D}",
+            "run 10 post no",
+        ]
+    )
 
 
 def main() -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.component import Instance
 from rockshed.components.common.kernels import kernel
 from rockshed.components.common.ports import view
@@ -29,7 +30,14 @@ from ..core.system.system import System
 RV, SV, BV = ROCK_LAYOUT.scalar, SAND_LAYOUT.scalar, BEAM_LAYOUT.scalar
 SA, BA = SAND_LAYOUT.array, BEAM_LAYOUT.array
 
-COLUMNS = ("transmitted_force", "rock_force_y", "penetration", "beam_energy", "work_on_rock", "work_on_beam")
+COLUMNS = (
+    "transmitted_force",
+    "rock_force_y",
+    "penetration",
+    "beam_energy",
+    "work_on_rock",
+    "work_on_beam",
+)
 
 
 @dataclass
@@ -47,8 +55,20 @@ class Monolith:
         """All steps."""
         inertia = float(rock_kernel.inertia(self.rock.w))
         rock, sand, beam = self.rock, self.sand, self.beam
-        status = _run(self.dt, round(self.dt / self.beam_step), self.beam_step, inertia, rock.w, sand.w, sand.x, sand.k,
-                      beam.w, beam.x, beam.k, self.history)
+        status = _run(
+            self.dt,
+            round(self.dt / self.beam_step),
+            self.beam_step,
+            inertia,
+            rock.w,
+            sand.w,
+            sand.x,
+            sand.k,
+            beam.w,
+            beam.x,
+            beam.k,
+            self.history,
+        )
         assert status == 0, f"stopped with status {status}"
 
     def column(self, name: str) -> NDArray[np.float64]:
@@ -56,10 +76,14 @@ class Monolith:
         return self.history[:, COLUMNS.index(name)]
 
 
-def from_system(system: System, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6) -> Monolith:
+def from_system(
+    system: System, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6
+) -> Monolith:
     """The monolithic program of a laboratory system: same parameters, same start."""
-    instances = {name: component.instance(**_sizes(name, system))
-                 for name, component in (("rock", ROCK), ("sand", SAND), ("beam", BEAM))}
+    instances = {
+        name: component.instance(**_sizes(name, system))
+        for name, component in (("rock", ROCK), ("sand", SAND), ("beam", BEAM))
+    }
     for name, instance in instances.items():
         for parameter, value in system.components[name].parameters.items():
             instance[parameter] = value
@@ -70,11 +94,20 @@ def from_system(system: System, stop_time: float, dt: float = 1e-5, beam_step: f
     rock, sand, beam = instances["rock"], instances["sand"], instances["beam"]
     for instance in (rock, beam):
         instance.initialise()
-    for quantity in ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity"):
+    for quantity in (
+        "position.x",
+        "position.y",
+        "angle",
+        "velocity.x",
+        "velocity.y",
+        "angular_velocity",
+    ):
         sand[f"rock.{quantity}"] = rock[quantity]
         sand[f"beam.{quantity}"] = beam[quantity]
     sand.initialise()
-    return Monolith(rock, sand, beam, dt, beam_step, np.zeros((round(stop_time / dt), len(COLUMNS))))
+    return Monolith(
+        rock, sand, beam, dt, beam_step, np.zeros((round(stop_time / dt), len(COLUMNS)))
+    )
 
 
 def _sizes(name: str, system: System) -> Mapping[str, int]:
@@ -97,9 +130,14 @@ def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history
         history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
         rock_x, rock_angle = rw[RV.position_x], rw[RV.angle]
         rock_torque = load[at + 2] * sw[SV.rock_radius]
-        rock_kernel.move(rw[RV.mass], inertia, rw[RV.gravity], load[at], load[at + 1], rock_torque, dt, rw)
-        history[s, 4] = (load[at] * (rw[RV.position_x] - rock_x) + load[at + 1] * (rw[RV.position_y] - rock_y)
-                         + rock_torque * (rw[RV.angle] - rock_angle))
+        rock_kernel.move(
+            rw[RV.mass], inertia, rw[RV.gravity], load[at], load[at + 1], rock_torque, dt, rw
+        )
+        history[s, 4] = (
+            load[at] * (rw[RV.position_x] - rock_x)
+            + load[at + 1] * (rw[RV.position_y] - rock_y)
+            + rock_torque * (rw[RV.angle] - rock_angle)
+        )
         for b in range(m):
             at = FORCE_ROW * (n + 1 + b)
             fx[b], fy[b], torque[b] = load[at], load[at + 1], load[at + 2] * sw[SV.beam_radius]
@@ -118,9 +156,17 @@ def _share(n, m, rw, bw, bk, body):
     """Rock and beam discs are where they are for the sand too."""
     at = ROW * n
     body[at], body[at + 1], body[at + ANGLE] = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
-    body[at + 2], body[at + 3], body[at + SPIN] = rw[RV.velocity_x], rw[RV.velocity_y], rw[RV.angular_velocity] * body[at + RADIUS]
+    body[at + 2], body[at + 3], body[at + SPIN] = (
+        rw[RV.velocity_x],
+        rw[RV.velocity_y],
+        rw[RV.angular_velocity] * body[at + RADIUS],
+    )
     px, py, angle = view(bw, bk, BA.position_x), view(bw, bk, BA.position_y), view(bw, bk, BA.angle)
-    vx, vy, omega = view(bw, bk, BA.velocity_x), view(bw, bk, BA.velocity_y), view(bw, bk, BA.angular_velocity)
+    vx, vy, omega = (
+        view(bw, bk, BA.velocity_x),
+        view(bw, bk, BA.velocity_y),
+        view(bw, bk, BA.angular_velocity),
+    )
     for b in range(m):
         at = ROW * (n + 1 + b)
         body[at], body[at + 1], body[at + ANGLE] = px[b], py[b], angle[b]

@@ -12,9 +12,17 @@ from .interleave import Contestant
 class Peer:
     """Python with these arguments, in this environment beside the present one; ends with the ``with`` block."""
 
-    def __init__(self, arguments: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
-        self._process = subprocess.Popen([sys.executable, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                         stderr=subprocess.DEVNULL, text=True, env={**os.environ, **(environment or {})})
+    def __init__(
+        self, arguments: Sequence[str], environment: Mapping[str, str] | None = None
+    ) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            env={**os.environ, **(environment or {})},
+        )
 
     def contestant(self, question: str) -> Contestant:
         """The work that the question asks for."""
@@ -31,7 +39,12 @@ class Peer:
         """The peer itself."""
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """End the process."""
         assert self._process.stdin is not None
         self._process.stdin.close()
@@ -40,4 +53,9 @@ class Peer:
 
 def answers(arguments: Sequence[str]) -> bool:
     """Whether Python with these arguments and ``probe`` ends without an error: what the peer needs is installed."""
-    return subprocess.run([sys.executable, *arguments, "probe"], capture_output=True, check=False).returncode == 0
+    return (
+        subprocess.run(
+            [sys.executable, *arguments, "probe"], capture_output=True, check=False
+        ).returncode
+        == 0
+    )

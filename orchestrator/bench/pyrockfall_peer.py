@@ -9,8 +9,24 @@ import time
 
 import numpy as np
 
-POINTS = ((0, 100), (6, 96), (12, 84), (20, 76), (26, 64), (34, 58), (40, 50), (47, 45), (54, 36), (62, 31), (70, 24), (78, 19),
-          (88, 13), (98, 9), (110, 5), (140, 4))
+POINTS = (
+    (0, 100),
+    (6, 96),
+    (12, 84),
+    (20, 76),
+    (26, 64),
+    (34, 58),
+    (40, 50),
+    (47, 45),
+    (54, 36),
+    (62, 31),
+    (70, 24),
+    (78, 19),
+    (88, 13),
+    (98, 9),
+    (110, 5),
+    (140, 4),
+)
 ROCK_CELLS = 9
 
 
@@ -22,7 +38,11 @@ def prepared(trials: int):
     rock = pr.Material("rock", normal(0.45, 0.04), normal(0.85, 0.04), 30.0)
     soil = pr.Material("soil", normal(0.30, 0.04), normal(0.80, 0.04), 30.0)
     cells = len(POINTS) - 1
-    slope = pr.Slope(pr.Geometry(np.array(POINTS, float)), [rock, soil], [0] * ROCK_CELLS + [1] * (cells - ROCK_CELLS))
+    slope = pr.Slope(
+        pr.Geometry(np.array(POINTS, float)),
+        [rock, soil],
+        [0] * ROCK_CELLS + [1] * (cells - ROCK_CELLS),
+    )
     seeder = pr.Seeder(np.array([[1.0], [102.0]]), [pr.Rock("rock", mass=1361.0, density=2600.0)])
     seeder.translationalVelocity = (1.5, 0.0)
     analysis = pr.Analysis()

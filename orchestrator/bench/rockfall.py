@@ -45,7 +45,10 @@ def dask_campaigns() -> Iterator[dict[str, Contestant]]:
 
     given = prepare(SITE, trials=CAMPAIGN).campaign
     with ExitStack() as running:
-        crews = {f"{count} workers": running.enter_context(dask_workers("local", count)) for count in (1, 2)}
+        crews = {
+            f"{count} workers": running.enter_context(dask_workers("local", count))
+            for count in (1, 2)
+        }
         yield {name: partial(_timed, crew.run, given) for name, crew in crews.items()}
 
 

@@ -55,10 +55,19 @@ def disc_rows(rounds: int) -> Iterator[Row]:
         if peer is not None:
             theirs = discs.per_disc_and_step(times.median(f"lammps {number}"), number)
             yield Row(f"LAMMPS, {number} discs", theirs, "ns per disc and step")
-            yield Row(f"sand kernel, {number} discs", times.ratio(f"ours {number}", f"lammps {number}"), "ratio", "LAMMPS",
-                      _DISC_GOALS[number])
-    yield Row(f"sand kernel, {discs.THREADED} discs, 2 threads, by the clock on the wall", times.ratio("2 threads", "1 threads"),
-              "ratio", "one thread")
+            yield Row(
+                f"sand kernel, {number} discs",
+                times.ratio(f"ours {number}", f"lammps {number}"),
+                "ratio",
+                "LAMMPS",
+                _DISC_GOALS[number],
+            )
+    yield Row(
+        f"sand kernel, {discs.THREADED} discs, 2 threads, by the clock on the wall",
+        times.ratio("2 threads", "1 threads"),
+        "ratio",
+        "one thread",
+    )
 
 
 def coupling_rows(rounds: int) -> Iterator[Row]:
@@ -66,19 +75,34 @@ def coupling_rows(rounds: int) -> Iterator[Row]:
     with Peer(coupling.BASELINE, coupling.AS_NATIVE) as baseline:
         contestants = coupling.contestants(baseline)
         times = interleave(contestants, rounds)
-    yield Row("one program, 20 ms of the laboratory impact", times.median("one program") * 1e3, "ms")
-    for name, title, goal in (("paper", "co-simulation, exchange 1e-5 s", 4.0),
-                              ("impulse", "co-simulation, exchange 1e-4 s, impulse-conserving", 1.3),
-                              ("paper, plain calls", "co-simulation, exchange 1e-5 s, plain calls", None),
-                              ("paper, native", "native co-simulation, exchange 1e-5 s", 1.05),
-                              ("impulse, native", "native co-simulation, exchange 1e-4 s, impulse-conserving", None),
-                              ("paper, native, plain calls", "native co-simulation, exchange 1e-5 s, plain calls", None)):
+    yield Row(
+        "one program, 20 ms of the laboratory impact", times.median("one program") * 1e3, "ms"
+    )
+    for name, title, goal in (
+        ("paper", "co-simulation, exchange 1e-5 s", 4.0),
+        ("impulse", "co-simulation, exchange 1e-4 s, impulse-conserving", 1.3),
+        ("paper, plain calls", "co-simulation, exchange 1e-5 s, plain calls", None),
+        ("paper, native", "native co-simulation, exchange 1e-5 s", 1.05),
+        ("impulse, native", "native co-simulation, exchange 1e-4 s, impulse-conserving", None),
+        ("paper, native, plain calls", "native co-simulation, exchange 1e-5 s, plain calls", None),
+    ):
         if name in contestants:
             native = name.endswith("native")
-            yield Row(title, times.ratio(name, "one program"), "ratio", "one program", None if native else goal)
+            yield Row(
+                title,
+                times.ratio(name, "one program"),
+                "ratio",
+                "one program",
+                None if native else goal,
+            )
             if native:
-                yield Row(title, times.ratio(name, "one program, baseline"), "ratio", f"one program for {CPU.name}, as FMUs are",
-                          goal)
+                yield Row(
+                    title,
+                    times.ratio(name, "one program, baseline"),
+                    "ratio",
+                    f"one program for {CPU.name}, as FMUs are",
+                    goal,
+                )
 
 
 def exchange_rows(rounds: int) -> Iterator[Row]:
@@ -99,25 +123,51 @@ def exchange_rows(rounds: int) -> Iterator[Row]:
             yield Row(f"{what}: {tool}", times.median(tool) / pair.steps * 1e6, "us")
             if tool != BARE and BARE in pair.contestants:
                 goal = 0.4 if (tool, runtime) == (OURS, Runtime.NATIVE) else None
-                yield Row(f"{what}: {tool}", times.ratio(tool, BARE), "ratio", "bare ctypes loop", goal)
+                yield Row(
+                    f"{what}: {tool}", times.ratio(tool, BARE), "ratio", "bare ctypes loop", goal
+                )
 
 
 def start_rows(rounds: int) -> Iterator[Row]:
     """A warm start: from the start of the command to the first exchange, and to its end after 20 ms of simulated time."""
     first, whole = [], []
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "rockshed.commands.app", "run", "lab-impact", "--stop-time", "0.02", "--no-figures", "--quiet",
-                   "--output-dir", str(Path(folder) / "run")]
-        kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}  # a warm start has bytecode
+        command = [
+            sys.executable,
+            "-m",
+            "rockshed.commands.app",
+            "run",
+            "lab-impact",
+            "--stop-time",
+            "0.02",
+            "--no-figures",
+            "--quiet",
+            "--output-dir",
+            str(Path(folder) / "run"),
+        ]
+        kept = {
+            name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"
+        }  # a warm start has bytecode
         for _ in range(rounds + 1):
             began = time.time()
             subprocess.run(command, check=True, capture_output=True, env=kept)
             whole.append(time.time() - began)
-            started = json.loads((Path(folder) / "run" / "run.json").read_text(encoding="utf-8"))["started"]
+            started = json.loads((Path(folder) / "run" / "run.json").read_text(encoding="utf-8"))[
+                "started"
+            ]
             first.append(datetime.fromisoformat(started).timestamp() - began)
-    yield Row("rockshed run lab-impact, warm: to the first exchange", statistics.median(first[1:]), "s", goal=0.5)
-    yield Row("rockshed run lab-impact, warm: the whole command without pictures", statistics.median(whole[1:]), "s",
-              goal=1.0)
+    yield Row(
+        "rockshed run lab-impact, warm: to the first exchange",
+        statistics.median(first[1:]),
+        "s",
+        goal=0.5,
+    )
+    yield Row(
+        "rockshed run lab-impact, warm: the whole command without pictures",
+        statistics.median(whole[1:]),
+        "s",
+        goal=1.0,
+    )
 
 
 def rockfall_rows(rounds: int) -> Iterator[Row]:
@@ -126,7 +176,9 @@ def rockfall_rows(rounds: int) -> Iterator[Row]:
         others = {"pyrockfall": peer.contestant(str(rockfall.PEER_TRIALS))} if peer else {}
         times = interleave({"ours": rockfall.own_kernel(), **others}, rounds)
     took = times.median("ours") / rockfall.TRIALS
-    yield Row("rockfall trial, 15 cells and 3 search lines", took * 1e6, "us of one core", goal=10.0)
+    yield Row(
+        "rockfall trial, 15 cells and 3 search lines", took * 1e6, "us of one core", goal=10.0
+    )
     if peer is not None:
         theirs = times.median("pyrockfall") / rockfall.PEER_TRIALS
         yield Row("pyrockfall, the same profile", theirs * 1e6, "us of one core")
@@ -142,11 +194,21 @@ def cluster_rows(rounds: int) -> Iterator[Row]:
         times = interleave(contestants, rounds)
     one = times.median("1 workers")
     yield Row("rockfall, 1,000,000 trials on one Dask worker", one, "s")
-    yield Row("rockfall, 1,000,000 trials on two Dask workers", 2.0 * times.ratio("2 workers", "1 workers"), "ratio",
-              "half of one worker's", 1.25)
+    yield Row(
+        "rockfall, 1,000,000 trials on two Dask workers",
+        2.0 * times.ratio("2 workers", "1 workers"),
+        "ratio",
+        "half of one worker's",
+        1.25,
+    )
 
 
 PARTS: Mapping[str, Callable[[int], Iterator[Row]]] = {
-    "discs": disc_rows, "coupling": coupling_rows, "exchange": exchange_rows, "start": start_rows, "rockfall": rockfall_rows,
-    "cluster": cluster_rows}
+    "discs": disc_rows,
+    "coupling": coupling_rows,
+    "exchange": exchange_rows,
+    "start": start_rows,
+    "rockfall": rockfall_rows,
+    "cluster": cluster_rows,
+}
 """Parts of the benchmark. Contestants that are compared take turns in every round."""

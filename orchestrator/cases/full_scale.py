@@ -86,7 +86,11 @@ DECK_MASS, BOX_MASS = 0.0, 0.0
 """Mass per length of a deck (kg/m) and of the box (kg) on the girders. The paper gives none: none is assumed."""
 GRAVITY = 9.80665
 
-_SANDS = (("pit", "pit sand", 20.0, 0.24), ("river", "river sand", 75.0, 0.16), ("crushed", "crushed sand", 100.0, 0.16))
+_SANDS = (
+    ("pit", "pit sand", 20.0, 0.24),
+    ("river", "river sand", 75.0, 0.16),
+    ("crushed", "crushed sand", 100.0, 0.16),
+)
 """Name, E_bar (kgf/cm2) and end of the run (s); the paper has 70 to 80 for river sand."""
 _GIRDER_SAND, _GIRDER_STOP = 100.0, 0.2
 
@@ -94,16 +98,40 @@ _GIRDER_SAND, _GIRDER_STOP = 100.0, 0.2
 @cache
 def impacts() -> dict[str, Impact]:
     """The impacts at full scale by the name of their case."""
-    rigid = [Impact(f"rigid-base-{name}", f"1 tf from 10 m on 90 cm of {words} on a rigid base, E_bar {modulus:g} kgf/cm²",
-                    modulus * kgf / cm2, 4.0, RIGID_DEPTH, stop) for name, words, modulus, stop in _SANDS]
+    rigid = [
+        Impact(
+            f"rigid-base-{name}",
+            f"1 tf from 10 m on 90 cm of {words} on a rigid base, E_bar {modulus:g} kgf/cm²",
+            modulus * kgf / cm2,
+            4.0,
+            RIGID_DEPTH,
+            stop,
+        )
+        for name, words, modulus, stop in _SANDS
+    ]
     spans = [float(row["span_m"]) for row in printed_rows("table6")]
-    girders = [Impact(f"girders-{span:g}", f"1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders of {span:g} m",
-                      _GIRDER_SAND * kgf / cm2, 3.0, GIRDER_DEPTH, _GIRDER_STOP, span) for span in spans]
+    girders = [
+        Impact(
+            f"girders-{span:g}",
+            f"1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders of {span:g} m",
+            _GIRDER_SAND * kgf / cm2,
+            3.0,
+            GIRDER_DEPTH,
+            _GIRDER_STOP,
+            span,
+        )
+        for span in spans
+    ]
     return {impact.name: impact for impact in rigid + girders}
 
 
-def full_scale_system(fmus: Mapping[str, str], impact: Impact, coupling: Coupling = "paper", discs: int | None = None,
-                      elements: int | None = None) -> System:
+def full_scale_system(
+    fmus: Mapping[str, str],
+    impact: Impact,
+    coupling: Coupling = "paper",
+    discs: int | None = None,
+    elements: int | None = None,
+) -> System:
     """An impact at full scale as a co-simulation of FMUs: ``rock`` and ``sand``, and ``beam`` with girders.
 
     The origin is the left support on the girders, the left wall on the rigid base. discs, elements: sizes that ``sand`` and
@@ -114,35 +142,78 @@ def full_scale_system(fmus: Mapping[str, str], impact: Impact, coupling: Couplin
     rows = math.ceil((discs or impact.discs) / round(impact.width / (2 * DISC_RADIUS)))
     partners = ("rock", "beam") if impact.span else ("rock",)
     components = {
-        "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
-            "modulus": impact.modulus, "depth": impact.depth, "disc.radius": DISC_RADIUS,
-            "base": "beam_discs" if impact.span else "floor", "kinematics": kinematics, "forces": forces,
-            "internal_step": _SAND_STEP}),
-        "rock": ComponentSpec(fmu=fmus["rock"], parameters={
-            "position0.x": middle, "position0.y": rows * 2 * DISC_RADIUS + ROCK_RADIUS + _GAP, "velocity0.y": -ROCK_SPEED,
-            "internal_step": _SAND_STEP}),
+        "sand": ComponentSpec(
+            fmu=fmus["sand"],
+            record_states=True,
+            parameters={
+                "modulus": impact.modulus,
+                "depth": impact.depth,
+                "disc.radius": DISC_RADIUS,
+                "base": "beam_discs" if impact.span else "floor",
+                "kinematics": kinematics,
+                "forces": forces,
+                "internal_step": _SAND_STEP,
+            },
+        ),
+        "rock": ComponentSpec(
+            fmu=fmus["rock"],
+            parameters={
+                "position0.x": middle,
+                "position0.y": rows * 2 * DISC_RADIUS + ROCK_RADIUS + _GAP,
+                "velocity0.y": -ROCK_SPEED,
+                "internal_step": _SAND_STEP,
+            },
+        ),
     }
     boxed = ["sand", "beam"] if impact.span else ["sand"]
     shared = {
-        "box_left": SharedValue(value=middle - 0.5 * impact.width, targets=[f"{name}.box.left" for name in boxed]),
-        "box_width": SharedValue(value=impact.width, targets=[f"{name}.box.width" for name in boxed]),
+        "box_left": SharedValue(
+            value=middle - 0.5 * impact.width, targets=[f"{name}.box.left" for name in boxed]
+        ),
+        "box_width": SharedValue(
+            value=impact.width, targets=[f"{name}.box.width" for name in boxed]
+        ),
         "rock_radius": SharedValue(value=ROCK_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
         "rock_mass": SharedValue(value=ROCK_MASS, targets=["rock.mass", "sand.rock.mass"]),
     }
     if impact.span:
         spacing = impact.span / (elements or impact.elements)
-        components["beam"] = ComponentSpec(fmu=fmus["beam"], parameters={
-            "span": impact.span, "axis.y": -0.5 * spacing, "section.area": GIRDERS * GIRDER_AREA,
-            "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT, "section.height": GIRDER_HEIGHT, "gravity": GRAVITY,
-            "deck.mass": DECK_MASS, "box.mass": BOX_MASS, "internal_step": _BEAM_STEP})
+        components["beam"] = ComponentSpec(
+            fmu=fmus["beam"],
+            parameters={
+                "span": impact.span,
+                "axis.y": -0.5 * spacing,
+                "section.area": GIRDERS * GIRDER_AREA,
+                "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT,
+                "section.height": GIRDER_HEIGHT,
+                "gravity": GRAVITY,
+                "deck.mass": DECK_MASS,
+                "box.mass": BOX_MASS,
+                "internal_step": _BEAM_STEP,
+            },
+        )
         shared["beam_radius"] = SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"])
     return System(
-        name=impact.name, description=f"Sonoda et al. 1993, full scale: {impact.summary}", components=components, shared=shared,
-        connections=impact_connections(partners), bonds=impact_bonds(partners),
-        energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"), master=master, order=["sand", *partners],
-        stop_time=impact.stop_time, exchange_step=exchange, output_interval=4e-4, state_interval=4e-3,
+        name=impact.name,
+        description=f"Sonoda et al. 1993, full scale: {impact.summary}",
+        components=components,
+        shared=shared,
+        connections=impact_connections(partners),
+        bonds=impact_bonds(partners),
+        energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
+        master=master,
+        order=["sand", *partners],
+        stop_time=impact.stop_time,
+        exchange_step=exchange,
+        output_interval=4e-4,
+        state_interval=4e-3,
         watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"]
-        + (["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"] if impact.span else []))
+        + (
+            ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"]
+            if impact.span
+            else []
+        ),
+    )
 
 
 def cushion_weight(system: System, discs: int) -> float:
@@ -150,9 +221,15 @@ def cushion_weight(system: System, discs: int) -> float:
 
     Radii that differ are uniform within radius (1 - spread, 1 + spread): on average discs are heavier by spread^2 / 3.
     """
-    given = {v.name: v.start_at(0, {}) for v in component("SandCushion").layout.variables if v.size is None}
+    given = {
+        v.name: v.start_at(0, {})
+        for v in component("SandCushion").layout.variables
+        if v.size is None
+    }
     sand = {**given, **system.components["sand"].parameters}
-    density = float(sand["unit_weight"]) / (float(sand["solid_fraction"]) if sand.get("unit_weight_of") == "layer" else 1.0)
+    density = float(sand["unit_weight"]) / (
+        float(sand["solid_fraction"]) if sand.get("unit_weight_of") == "layer" else 1.0
+    )
     spread = float(sand["disc.spread"]) if sand["packing"] in ("random", "prepared") else 0.0
     area = math.pi * float(sand["disc.radius"]) ** 2 * (1.0 + spread**2 / 3.0)
     return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
@@ -160,8 +237,17 @@ def cushion_weight(system: System, discs: int) -> float:
 
 def layer(impact: Impact, dropped: bool = True) -> Layer:
     """The sand of an impact, for the models of it. dropped: whether the rock starts above it."""
-    return Layer(impact.width, LAYER, DISC_RADIUS, ROCK_RADIUS, ROCK_SPEED, FULL_SCALE_SOIL, impact.stop_time,
-                 on_beam=bool(impact.span), dropped=dropped)
+    return Layer(
+        impact.width,
+        LAYER,
+        DISC_RADIUS,
+        ROCK_RADIUS,
+        ROCK_SPEED,
+        FULL_SCALE_SOIL,
+        impact.stop_time,
+        on_beam=bool(impact.span),
+        dropped=dropped,
+    )
 
 
 HANDBOOK_LAME = 1e6
@@ -177,7 +263,9 @@ def handbook_force(mass: float, height: float, lame: float = HANDBOOK_LAME) -> f
     return 2.108 * (mass * kgf / kN) ** (2 / 3) * (lame / kN) ** 0.4 * height**0.6 * kN
 
 
-def hertz_force(mass: float, radius: float, speed: float, lame: float = HANDBOOK_LAME, poisson: float = 0.25) -> float:
+def hertz_force(
+    mass: float, radius: float, speed: float, lame: float = HANDBOOK_LAME, poisson: float = 0.25
+) -> float:
     """Largest force (N) on a rigid sphere that strikes an elastic half-space (Hertz): P = K^(2/5) (5/4 m v^2)^(3/5),
     K = 4/3 E / (1 - nu^2) sqrt(R), from P = K d^(3/2) and 2/5 K d^(5/2) = m v^2 / 2. ``lame`` (Pa) gives
     E = lame (1 + nu)(1 - 2 nu) / nu.
@@ -194,7 +282,9 @@ ASSUMED = ("beam.deck.mass", "beam.box.mass", "beam.cushion.weight")
 def references(impact: Impact, changed: Mapping[str, Value]) -> References:
     """What is known of an impact that is computed with other values or sizes, by ``component.name``: nothing, if more than steps,
     choices of the sand's model and what the paper does not give of deck and box are others."""
-    if others := [name for name in changed if name not in ASSUMED and (name in SAND or of_the_test(name))]:
+    if others := [
+        name for name in changed if name not in ASSUMED and (name in SAND or of_the_test(name))
+    ]:
         return References(remarks=[f"not compared: {differs(others)}"])
     return References(known_of(impact))
 
@@ -206,9 +296,22 @@ def known_of(impact: Impact) -> dict[str, Known]:
     up the springs: eqs (5), (6).
     """
     if not impact.span:
-        force = Reference(handbook_force(ROCK_MASS, DROP), "the handbook's formula with lambda = 1000 kN/m2, whatever the sand")
-        return {h.SETTLED_ROCK: Known(handbook=force), h.SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice"))}
+        force = Reference(
+            handbook_force(ROCK_MASS, DROP),
+            "the handbook's formula with lambda = 1000 kN/m2, whatever the sand",
+        )
+        return {
+            h.SETTLED_ROCK: Known(handbook=force),
+            h.SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice")),
+        }
     row = next(row for row in printed_rows("table6") if float(row["span_m"]) == impact.span)
-    measured, computed = (Reference(0.01 * float(row[f"{who}_percent"])) for who in ("experiment", "paper_analysis"))
-    return {h.BEAM_SHARE: Known(computed), h.BEAM_SHARE_FROM_STRAIN: Known(experiment=measured),
-            h.SETTLED_RATIO: Known(Reference(1.4, "figs 23 and 24: the difference of the maxima is 30 to 50 %"))}
+    measured, computed = (
+        Reference(0.01 * float(row[f"{who}_percent"])) for who in ("experiment", "paper_analysis")
+    )
+    return {
+        h.BEAM_SHARE: Known(computed),
+        h.BEAM_SHARE_FROM_STRAIN: Known(experiment=measured),
+        h.SETTLED_RATIO: Known(
+            Reference(1.4, "figs 23 and 24: the difference of the maxima is 30 to 50 %")
+        ),
+    }

@@ -53,8 +53,17 @@ def cases() -> dict[str, Case]:
     """All cases by name."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
-    return {case.name: case for case in [*found, _static_test(), *map(_full_scale, full_scale.impacts().values()),
-                                       _slope_to_cushion(), _shed_on_piles(), _spt()]}
+    return {
+        case.name: case
+        for case in [
+            *found,
+            _static_test(),
+            *map(_full_scale, full_scale.impacts().values()),
+            _slope_to_cushion(),
+            _shed_on_piles(),
+            _spt(),
+        ]
+    }
 
 
 def case(name: str) -> Case:
@@ -63,7 +72,9 @@ def case(name: str) -> Case:
     Raises:
         InputRefused: there is none.
     """
-    found = next((case for case in cases().values() if name in (case.name, *case.other_names)), None)
+    found = next(
+        (case for case in cases().values() if name in (case.name, *case.other_names)), None
+    )
     if found is None:
         raise InputRefused([Problem(name, "there is no case of this name", nearest(name, cases()))])
     return found
@@ -79,9 +90,19 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
         return Changes()
     model, layer = sand_model(name), chosen.layer
     if layer is None:
-        raise InputRefused([Problem(f"--model {name}", f"{chosen.name} has no sand that takes a model", "leave it out")])
+        raise InputRefused(
+            [
+                Problem(
+                    f"--model {name}",
+                    f"{chosen.name} has no sand that takes a model",
+                    "leave it out",
+                )
+            ]
+        )
     with suppress(ValueError):  # a value that is no number: the FMU says so
-        cohesion, solid = (float(values.get(f"sand.{key}", own)) for key, own in vars(layer.soil).items())
+        cohesion, solid = (
+            float(values.get(f"sand.{key}", own)) for key, own in vars(layer.soil).items()
+        )
         return changes(model, layer, Soil(cohesion, solid))
     return changes(model, layer)
 
@@ -91,7 +112,13 @@ def references_of(facts: Mapping[str, Any]) -> References:
     found = cases().get(facts.get("case", ""))
     if found is None:
         return References()
-    return found.references({name: value for name, value in changes_of(facts).items() if name not in System.model_fields})
+    return found.references(
+        {
+            name: value
+            for name, value in changes_of(facts).items()
+            if name not in System.model_fields
+        }
+    )
 
 
 def changes_of(facts: Mapping[str, Any]) -> dict[str, Value]:
@@ -100,28 +127,50 @@ def changes_of(facts: Mapping[str, Any]) -> dict[str, Value]:
     given, chosen = dict(facts.get("changed", {})), cases().get(facts.get("case", ""))
     if chosen is None:
         return given
-    own = {name: component(model).with_sizes(chosen.sizes.get(name)) for name, model in chosen.models.items()}
+    own = {
+        name: component(model).with_sizes(chosen.sizes.get(name))
+        for name, model in chosen.models.items()
+    }
     for name, number in model_changes(chosen, facts.get("model"), given).sizes.items():
         owner, _, size = name.partition(".")
         own[owner][size] = number
     sizes = {owner: {**own[owner], **built} for owner, built in facts.get("sizes", {}).items()}
-    system = chosen.make(chosen.models, {**own, **sizes}, facts.get("coupling", next(iter(chosen.couplings))))
-    others = {f"{owner}.{size}": number for owner, built in sizes.items() for size, number in built.items()
-              if number != own[owner].get(size)}
-    return {name: value for name, value in given.items() if not _same(value, _own_value(chosen, system, name))} | others
+    system = chosen.make(
+        chosen.models, {**own, **sizes}, facts.get("coupling", next(iter(chosen.couplings)))
+    )
+    others = {
+        f"{owner}.{size}": number
+        for owner, built in sizes.items()
+        for size, number in built.items()
+        if number != own[owner].get(size)
+    }
+    return {
+        name: value
+        for name, value in given.items()
+        if not _same(value, _own_value(chosen, system, name))
+    } | others
 
 
 def _own_value(chosen: Case, system: System, name: str) -> Value | None:
     """The value of a parameter or of a shared value in a case, from its system or else as the component declares it."""
     if name in System.model_fields:
         return cast(Value | None, getattr(system, name))
-    shared = next((entry.value for key, entry in system.shared.items() if name == key or name in entry.targets), None)
+    shared = next(
+        (
+            entry.value
+            for key, entry in system.shared.items()
+            if name == key or name in entry.targets
+        ),
+        None,
+    )
     owner, _, port = name.partition(".")
     if shared is not None or owner not in chosen.models:
         return shared
     if port in system.components[owner].parameters:
         return system.components[owner].parameters[port]
-    declared = next((v for v in component(chosen.models[owner]).layout.ordered if v.name == port), None)
+    declared = next(
+        (v for v in component(chosen.models[owner]).layout.ordered if v.name == port), None
+    )
     if declared is None:
         return None
     start = declared.start_at(0, {})
@@ -137,21 +186,34 @@ def _same(one: Value, other: Value | None) -> bool:
 
 def _laboratory(test: sonoda1993.Test) -> Case:
     def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
-        return sonoda1993.lab_system(fmus, test, cast(sonoda1993.Coupling, coupling), sizes["sand"]["discs"],
-                                     sizes["beam"]["elements"])
+        return sonoda1993.lab_system(
+            fmus,
+            test,
+            cast(sonoda1993.Coupling, coupling),
+            sizes["sand"]["discs"],
+            sizes["beam"]["elements"],
+        )
 
     name, numbered = sonoda1993.case_name(test.number), f"lab-impact-{test.number}"
     return Case(
-        name, f"Sonoda et al. 1993, laboratory, test {test.number}: {test.state}",
+        name,
+        f"Sonoda et al. 1993, laboratory, test {test.number}: {test.state}",
         models={"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam"},
-        sizes={"sand": {"discs": sonoda1993.discs_in(test.box), "elements": sonoda1993.ELEMENTS},
-               "beam": {"elements": sonoda1993.ELEMENTS}},
-        couplings={"paper": "sand first, inputs held, exchange every 0.01 ms",
-                   "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
-                   "jacobi": "all at once, inputs held, exchange every 0.1 ms"},
-        make=make, one_size=("sand.elements", "beam.elements"), references=partial(sonoda1993.references, test),
+        sizes={
+            "sand": {"discs": sonoda1993.discs_in(test.box), "elements": sonoda1993.ELEMENTS},
+            "beam": {"elements": sonoda1993.ELEMENTS},
+        },
+        couplings={
+            "paper": "sand first, inputs held, exchange every 0.01 ms",
+            "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.1 ms",
+            "jacobi": "all at once, inputs held, exchange every 0.1 ms",
+        },
+        make=make,
+        one_size=("sand.elements", "beam.elements"),
+        references=partial(sonoda1993.references, test),
         layer=sonoda1993.layer(test),
-        other_names=(numbered,) if numbered != name else ())
+        other_names=(numbered,) if numbered != name else (),
+    )
 
 
 def _static_test() -> Case:
@@ -159,35 +221,59 @@ def _static_test() -> Case:
         return static_test.static_system(fmus, coupling, sizes["sand"]["discs"])
 
     return Case(
-        static_test.NAME, "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, rigid floor",
+        static_test.NAME,
+        "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, rigid floor",
         models={"sand": "SandCushion", "rock": "FallingRock"},
         sizes={"sand": {"discs": static_test.DISCS, "elements": 1}},
-        couplings={"impulse": "sand first, kinematics extrapolated, mean forces, exchange every 1 ms",
-                   "paper": "sand first, inputs held, exchange every 0.01 ms"},
-        make=make, references=static_test.references, layer=static_test.LAYER_OF_SAND)
+        couplings={
+            "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 1 ms",
+            "paper": "sand first, inputs held, exchange every 0.01 ms",
+        },
+        make=make,
+        references=static_test.references,
+        layer=static_test.LAYER_OF_SAND,
+    )
 
 
 def _shed_on_piles() -> Case:
     def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
-        return shed_on_piles.shed_system(fmus, sizes["sand"]["discs"], sizes["sand"]["elements"], sizes["rod_left"]["segments"])
+        return shed_on_piles.shed_system(
+            fmus, sizes["sand"]["discs"], sizes["sand"]["elements"], sizes["rod_left"]["segments"]
+        )
 
     def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
-        with suppress(ValueError, ZeroDivisionError):  # a value that is no number, or 0: its FMU says so
+        with suppress(
+            ValueError, ZeroDivisionError
+        ):  # a value that is no number, or 0: its FMU says so
             return shed_on_piles.derived(system, sizes["sand"]["discs"], sizes["beam"]["elements"])
         return {}
 
     impact = full_scale.impacts()[shed_on_piles.GIRDERS]
     segments = {"segments": shed_on_piles.PILE.segments}
     return Case(
-        shed_on_piles.NAME, "the girders of 8 m on two piles in the ground, assumed",
-        models={"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam",
-                **{f"rod_{side}": "PileRod" for side in shed_on_piles.SIDES},
-                **{f"ground_{side}": "ImpulsiveGround" for side in shed_on_piles.SIDES}},
-        sizes={"sand": {"discs": impact.discs, "elements": impact.elements}, "beam": {"elements": impact.elements},
-               **{f"rod_{side}": segments for side in shed_on_piles.SIDES}},
-        couplings={"impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the toes, exchange every "
-                   "0.005 ms"},
-        make=make, one_size=("sand.elements", "beam.elements"), derived=derived, layer=full_scale.layer(impact))
+        shed_on_piles.NAME,
+        "the girders of 8 m on two piles in the ground, assumed",
+        models={
+            "sand": "SandCushion",
+            "rock": "FallingRock",
+            "beam": "RBSMBeam",
+            **{f"rod_{side}": "PileRod" for side in shed_on_piles.SIDES},
+            **{f"ground_{side}": "ImpulsiveGround" for side in shed_on_piles.SIDES},
+        },
+        sizes={
+            "sand": {"discs": impact.discs, "elements": impact.elements},
+            "beam": {"elements": impact.elements},
+            **{f"rod_{side}": segments for side in shed_on_piles.SIDES},
+        },
+        couplings={
+            "impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the toes, exchange every "
+            "0.005 ms"
+        },
+        make=make,
+        one_size=("sand.elements", "beam.elements"),
+        derived=derived,
+        layer=full_scale.layer(impact),
+    )
 
 
 def _spt() -> Case:
@@ -195,56 +281,92 @@ def _spt() -> Case:
         return spt.spt_system(fmus, coupling)
 
     def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
-        with suppress(ValueError, ZeroDivisionError):  # a value that is no number, or 0: its FMU says so
+        with suppress(
+            ValueError, ZeroDivisionError
+        ):  # a value that is no number, or 0: its FMU says so
             return spt.partner_stiffness(system)
         return {}
 
     return Case(
-        spt.NAME, "Uto et al., table 1: standard penetration test, hammer, rod and ground",
+        spt.NAME,
+        "Uto et al., table 1: standard penetration test, hammer, rod and ground",
         models={"hammer": "Hammer", "rod": "PileRod", "ground": "ImpulsiveGround"},
         sizes={"rod": {"segments": spt.SEGMENTS}},
-        couplings={"waves": "rod last, waves at head and toe, exchange every 0.1 ms",
-                   "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms"},
-        make=make, derived=derived)
+        couplings={
+            "waves": "rod last, waves at head and toe, exchange every 0.1 ms",
+            "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms",
+        },
+        make=make,
+        derived=derived,
+    )
 
 
-_FULL_SCALE_COUPLINGS = {"paper": "sand first, inputs held, exchange every 0.05 ms",
-                         "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms"}
+_FULL_SCALE_COUPLINGS = {
+    "paper": "sand first, inputs held, exchange every 0.05 ms",
+    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms",
+}
 
 
 def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
     """The weight of the sand, under which a beam starts bent."""
     with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
-        return {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])} if "beam" in sizes else {}
+        return (
+            {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])}
+            if "beam" in sizes
+            else {}
+        )
     return {}
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:
     def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
-        return full_scale.full_scale_system(fmus, impact, cast(full_scale.Coupling, coupling), sizes["sand"]["discs"],
-                                            sizes["sand"]["elements"])
+        return full_scale.full_scale_system(
+            fmus,
+            impact,
+            cast(full_scale.Coupling, coupling),
+            sizes["sand"]["discs"],
+            sizes["sand"]["elements"],
+        )
 
     beam = {"beam": "RBSMBeam"} if impact.span else {}
     elements = {"elements": impact.elements}
     return Case(
-        impact.name, f"Sonoda et al. 1993, full scale: {impact.summary}",
+        impact.name,
+        f"Sonoda et al. 1993, full scale: {impact.summary}",
         models={"sand": "SandCushion", "rock": "FallingRock", **beam},
         sizes={"sand": {"discs": impact.discs, **elements}, **dict.fromkeys(beam, elements)},
-        couplings=_FULL_SCALE_COUPLINGS, make=make, one_size=("sand.elements", "beam.elements") if beam else (),
+        couplings=_FULL_SCALE_COUPLINGS,
+        make=make,
+        one_size=("sand.elements", "beam.elements") if beam else (),
         derived=_weight_on_beam,
-        references=partial(full_scale.references, impact), layer=full_scale.layer(impact))
+        references=partial(full_scale.references, impact),
+        layer=full_scale.layer(impact),
+    )
 
 
 def _slope_to_cushion() -> Case:
     def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
-        return slope_to_cushion.slope_system(fmus, cast(full_scale.Coupling, coupling), sizes["sand"]["discs"],
-                                             sizes["sand"]["elements"])
+        return slope_to_cushion.slope_system(
+            fmus,
+            cast(full_scale.Coupling, coupling),
+            sizes["sand"]["discs"],
+            sizes["sand"]["elements"],
+        )
 
     impact = slope_to_cushion.IMPACT
     elements = {"elements": impact.elements}
     return Case(
-        impact.name, f"Slope, sand and girders: {impact.summary}",
+        impact.name,
+        f"Slope, sand and girders: {impact.summary}",
         models={"sand": "SandCushion", "rock": "SlopeRockfall", "beam": "RBSMBeam"},
-        sizes={"sand": {"discs": impact.discs, **elements}, "beam": elements, "rock": {"cells": slope_to_cushion.cells()}},
-        couplings=_FULL_SCALE_COUPLINGS, make=make, one_size=("sand.elements", "beam.elements"), derived=_weight_on_beam,
-        layer=slope_to_cushion.sand_layer())
+        sizes={
+            "sand": {"discs": impact.discs, **elements},
+            "beam": elements,
+            "rock": {"cells": slope_to_cushion.cells()},
+        },
+        couplings=_FULL_SCALE_COUPLINGS,
+        make=make,
+        one_size=("sand.elements", "beam.elements"),
+        derived=_weight_on_beam,
+        layer=slope_to_cushion.sand_layer(),
+    )

@@ -74,14 +74,28 @@ FULL_SCALE_SOIL = Soil(0.05 * _KGF_PER_CM2, DENSE)
 """Nothing is known of the sand on rigid base and girders; taken as moist and compacted."""
 
 MODELS: Mapping[str, SandModel] = {
-    "calibrated": SandModel("rotation locked and a factor on the stiffness, fitted to the paper's own figures", {}),
-    "literal": SandModel("eq. (1) to the letter: three freedoms a disc, no factor", {
-        "rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"}),
-    "one-law": SandModel("one contact law for all tests: discs of many sizes that resist rolling, yield and stick; the soil's "
-                         "cohesion and solid fraction are what differs", {
-        "rotation": "free", "stiffness_factor": 1.0, "modulus": ONE_LAW_MODULUS * _KGF_PER_CM2, "packing": "prepared",
-        "disc.spread": SPREAD, "rolling_resistance": ROLLING, "unloading_ratio": ONE_LAW_UNLOADING, "unit_weight_of": "layer"},
-                         prepared=True),
+    "calibrated": SandModel(
+        "rotation locked and a factor on the stiffness, fitted to the paper's own figures", {}
+    ),
+    "literal": SandModel(
+        "eq. (1) to the letter: three freedoms a disc, no factor",
+        {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"},
+    ),
+    "one-law": SandModel(
+        "one contact law for all tests: discs of many sizes that resist rolling, yield and stick; the soil's "
+        "cohesion and solid fraction are what differs",
+        {
+            "rotation": "free",
+            "stiffness_factor": 1.0,
+            "modulus": ONE_LAW_MODULUS * _KGF_PER_CM2,
+            "packing": "prepared",
+            "disc.spread": SPREAD,
+            "rolling_resistance": ROLLING,
+            "unloading_ratio": ONE_LAW_UNLOADING,
+            "unit_weight_of": "layer",
+        },
+        prepared=True,
+    ),
 }
 
 
@@ -92,19 +106,43 @@ def sand_model(name: str) -> SandModel:
         InputRefused: there is none.
     """
     if name not in MODELS:
-        raise InputRefused([Problem(f"--model {name}", "there is no such model of the sand", nearest(name, MODELS))])
+        raise InputRefused(
+            [
+                Problem(
+                    f"--model {name}", "there is no such model of the sand", nearest(name, MODELS)
+                )
+            ]
+        )
     return MODELS[name]
 
 
 def model_of(values: Mapping[str, Value]) -> str | None:
     """The model that the parameters of a sand cushion belong to, whatever its soil and modulus; None if to none of them."""
-    def same(name: str, value: Value) -> bool:
-        return math.isclose(float(values[name]), float(value)) if isinstance(value, float) else values[name] == value
 
-    own = {v.name: v.choices[int(v.start_at(0, {})) - 1] if v.choices else v.start_at(0, {})
-           for v in component("SandCushion").layout.ordered if v.name in {key for m in MODELS.values() for key in m.parameters}}
-    return next((name for name, model in MODELS.items()
-                 if all(same(key, value) for key, value in {**own, **model.parameters}.items() if key not in _FREE)), None)
+    def same(name: str, value: Value) -> bool:
+        return (
+            math.isclose(float(values[name]), float(value))
+            if isinstance(value, float)
+            else values[name] == value
+        )
+
+    own = {
+        v.name: v.choices[int(v.start_at(0, {})) - 1] if v.choices else v.start_at(0, {})
+        for v in component("SandCushion").layout.ordered
+        if v.name in {key for m in MODELS.values() for key in m.parameters}
+    }
+    return next(
+        (
+            name
+            for name, model in MODELS.items()
+            if all(
+                same(key, value)
+                for key, value in {**own, **model.parameters}.items()
+                if key not in _FREE
+            )
+        ),
+        None,
+    )
 
 
 _FREE = ("modulus", "packing", "disc.spread")
@@ -135,17 +173,25 @@ def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes
     state, largest = soil or layer.soil, 2.0 * layer.disc_radius * (1.0 + SPREAD)
     clearance = 1.5 * largest
     gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
-    values |= {"sand.cohesion": state.cohesion, "sand.solid_fraction": state.solid_fraction,
-               "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665)}
+    values |= {
+        "sand.cohesion": state.cohesion,
+        "sand.solid_fraction": state.solid_fraction,
+        "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665),
+    }
     if layer.dropped:
-        values |= {"rock.position0.y": layer.height + clearance + layer.rock_radius,
-                   "rock.velocity0.y": -math.sqrt(layer.speed**2 - gained)}
+        values |= {
+            "rock.position0.y": layer.height + clearance + layer.rock_radius,
+            "rock.velocity0.y": -math.sqrt(layer.speed**2 - gained),
+        }
     if layer.step:
         values["sand.internal_step"] = layer.step
     if layer.on_beam:
         values["sand.base"] = "beam_surface"
-    return Changes(values, {"sand.discs": discs_of(layer, state.solid_fraction)},
-                   {"stop_time": math.ceil(1e3 * (layer.duration + clearance / layer.speed)) / 1e3})
+    return Changes(
+        values,
+        {"sand.discs": discs_of(layer, state.solid_fraction)},
+        {"stop_time": math.ceil(1e3 * (layer.duration + clearance / layer.speed)) / 1e3},
+    )
 
 
 _SETTLING = 15.0

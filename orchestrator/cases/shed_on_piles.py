@@ -52,47 +52,101 @@ class Pile:
 PILE = Pile()
 
 
-def shed_system(fmus: Mapping[str, str], discs: int, elements: int, segments: int = PILE.segments) -> System:
+def shed_system(
+    fmus: Mapping[str, str], discs: int, elements: int, segments: int = PILE.segments
+) -> System:
     """The shed as a co-simulation of ``sand``, ``rock``, ``beam``, and ``rod_left``, ``ground_left``, ``rod_right``,
     ``ground_right``; the rods come last. Sizes are those that the FMUs were built with.
     """
-    base = full_scale.full_scale_system(fmus, full_scale.impacts()[GIRDERS], "impulse", discs, elements)
+    base = full_scale.full_scale_system(
+        fmus, full_scale.impacts()[GIRDERS], "impulse", discs, elements
+    )
     components = dict(base.components)
     connections, bonds = list(base.connections), dict(base.bonds)
     for number, side in enumerate(SIDES, 1):
         rod, ground = f"rod_{side}", f"ground_{side}"
         components[rod] = ComponentSpec(fmu=fmus[rod], parameters=_rod(segments))
-        components[ground] = ComponentSpec(fmu=fmus[ground], parameters={
-            "port": "wave", "law": "smith", "ultimate_resistance": PILE.toe, "quake": PILE.quake, "damping": PILE.toe_damping,
-            "internal_step": EXCHANGE})
+        components[ground] = ComponentSpec(
+            fmu=fmus[ground],
+            parameters={
+                "port": "wave",
+                "law": "smith",
+                "ultimate_resistance": PILE.toe,
+                "quake": PILE.quake,
+                "damping": PILE.toe_damping,
+                "internal_step": EXCHANGE,
+            },
+        )
         connections += [*support_connections("beam", number, rod), *toe_connections(rod, ground)]
-        bonds[f"beam_{rod}"] = PowerBond(giver="beam", force=[f"support.mean_force.y[{number}]"], taker=rod,
-                                         position=["head.position"], work=f"support.work[{number}]")
+        bonds[f"beam_{rod}"] = PowerBond(
+            giver="beam",
+            force=[f"support.mean_force.y[{number}]"],
+            taker=rod,
+            position=["head.position"],
+            work=f"support.work[{number}]",
+        )
         bonds[f"{ground}_{rod}"] = toe_bond(rod, ground)
-    order = ["sand", "rock", "beam", *(f"ground_{side}" for side in SIDES), *(f"rod_{side}" for side in SIDES)]
-    return base.model_copy(update={
-        "name": NAME, "description": "1 tf from 10 m on 90 cm of crushed sand on girders of 8 m that stand on two piles",
-        "components": components, "connections": connections, "bonds": bonds, "order": order, "exchange_step": EXCHANGE,
-        "record": ["sand.*", "rock.*", "beam.*", *(f"ground_{side}.*" for side in SIDES),
-                   *(f"rod_{side}.{what}.*" for side in SIDES for what in ("head", "toe", "energy", "stress"))],
-        "watch": [*base.watch, *(f"rod_{side}.head.contact_force" for side in SIDES),
-                  *(f"ground_{side}.settlement" for side in SIDES)]})
+    order = [
+        "sand",
+        "rock",
+        "beam",
+        *(f"ground_{side}" for side in SIDES),
+        *(f"rod_{side}" for side in SIDES),
+    ]
+    return base.model_copy(
+        update={
+            "name": NAME,
+            "description": "1 tf from 10 m on 90 cm of crushed sand on girders of 8 m that stand on two piles",
+            "components": components,
+            "connections": connections,
+            "bonds": bonds,
+            "order": order,
+            "exchange_step": EXCHANGE,
+            "record": [
+                "sand.*",
+                "rock.*",
+                "beam.*",
+                *(f"ground_{side}.*" for side in SIDES),
+                *(
+                    f"rod_{side}.{what}.*"
+                    for side in SIDES
+                    for what in ("head", "toe", "energy", "stress")
+                ),
+            ],
+            "watch": [
+                *base.watch,
+                *(f"rod_{side}.head.contact_force" for side in SIDES),
+                *(f"ground_{side}.settlement" for side in SIDES),
+            ],
+        }
+    )
 
 
 def _rod(segments: int) -> dict[str, Value]:
     """Parameters of a rod. The last segment has no shaft resistance: the toe's port of waves needs one that reflects nothing."""
     return {
-        "section.length[1]": PILE.length, "section.area[1]": PILE.area, "section.modulus[1]": PILE.density * PILE.speed**2,
-        "section.density[1]": PILE.density, "head.port": "kinematics", "head.direction": "up", "toe.condition": "port",
-        "toe.port": "waves", "exchange": "sequential", "shaft.quake[*]": PILE.quake, "shaft.damping[*]": PILE.shaft_damping,
-        **{f"shaft.resistance[{i}]": PILE.shaft / (segments - 1) for i in range(1, segments)}}
+        "section.length[1]": PILE.length,
+        "section.area[1]": PILE.area,
+        "section.modulus[1]": PILE.density * PILE.speed**2,
+        "section.density[1]": PILE.density,
+        "head.port": "kinematics",
+        "head.direction": "up",
+        "toe.condition": "port",
+        "toe.port": "waves",
+        "exchange": "sequential",
+        "shaft.quake[*]": PILE.quake,
+        "shaft.damping[*]": PILE.shaft_damping,
+        **{f"shaft.resistance[{i}]": PILE.shaft / (segments - 1) for i in range(1, segments)},
+    }
 
 
 def support_connections(beam: str, number: int, rod: str) -> list[Connection]:
     """A support of a beam on the head of a rod that counts upwards."""
-    return [Connection(source=f"{beam}.support.mean_force.y[{number}]", target=f"{rod}.head.force"),
-            Connection(source=f"{rod}.head.position", target=f"{beam}.support.position.y[{number}]"),
-            Connection(source=f"{rod}.head.velocity", target=f"{beam}.support.velocity.y[{number}]")]
+    return [
+        Connection(source=f"{beam}.support.mean_force.y[{number}]", target=f"{rod}.head.force"),
+        Connection(source=f"{rod}.head.position", target=f"{beam}.support.position.y[{number}]"),
+        Connection(source=f"{rod}.head.velocity", target=f"{beam}.support.velocity.y[{number}]"),
+    ]
 
 
 def derived(system: System, discs: int, elements: int) -> dict[str, Value]:
@@ -100,13 +154,23 @@ def derived(system: System, discs: int, elements: int) -> dict[str, Value]:
     beam = system.components["beam"].parameters
     cushion = float(beam.get("cushion.weight", full_scale.cushion_weight(system, discs)))
     span, density = float(beam["span"]), float(beam.get("density", 7850.0))
-    mass = (density * float(beam["section.area"]) + float(beam.get("deck.mass", 0.0))) * span + float(beam.get("box.mass", 0.0))
+    mass = (
+        density * float(beam["section.area"]) + float(beam.get("deck.mass", 0.0))
+    ) * span + float(beam.get("box.mass", 0.0))
     at_head = 0.5 * (mass * float(beam["gravity"]) + cushion)
-    stiffness = 4.0 * float(beam.get("elastic_modulus", _STEEL)) * float(beam["section.second_moment"]) / (span / elements) ** 3
+    stiffness = (
+        4.0
+        * float(beam.get("elastic_modulus", _STEEL))
+        * float(beam["section.second_moment"])
+        / (span / elements) ** 3
+    )
     values: dict[str, Value] = {"beam.cushion.weight": cushion}
     for side in SIDES:
-        values |= {f"rod_{side}.head.preload": at_head, f"rod_{side}.head.partner.stiffness": stiffness,
-                   f"ground_{side}.preload": at_head + PILE.weight}
+        values |= {
+            f"rod_{side}.head.preload": at_head,
+            f"rod_{side}.head.partner.stiffness": stiffness,
+            f"ground_{side}.preload": at_head + PILE.weight,
+        }
     return values
 
 

@@ -23,8 +23,15 @@ LINE, SHARE = "cushion", 0.95
 TRIAL = 7649
 """The trial at this percentile in the site's 10,000; a test finds it again."""
 
-IMPACT = Impact("slope-to-cushion", "95th-percentile rock of a 35 m slope on 90 cm of crushed sand on H-300x400 girders of 10 m",
-                100.0 * kgf / cm2, 10.0, GIRDER_DEPTH, 0.6, 10.0)
+IMPACT = Impact(
+    "slope-to-cushion",
+    "95th-percentile rock of a 35 m slope on 90 cm of crushed sand on H-300x400 girders of 10 m",
+    100.0 * kgf / cm2,
+    10.0,
+    GIRDER_DEPTH,
+    0.6,
+    10.0,
+)
 """The girders of the case ``girders-10`` with sand on their whole length, as on a roof; the rock is that of the site."""
 # A roof is flat: the sand lies on the surface of the beam, and not between its discs, where it chatters.
 WALL_HEIGHT, WALL_THICKNESS = 89 * cm, 50 * cm
@@ -60,8 +67,12 @@ def site_parameters(instance: Instance) -> dict[str, Value]:
         for number in range(1 if variable.size is None else instance.sizes[variable.size]):
             name, index = next(names)
             value = float(instance.w[index])
-            if variable.causality is Causality.PARAMETER and value != variable.start_at(number, instance.sizes):
-                found[name] = variable.choices[int(value) - 1] if variable.kind is Kind.ENUMERATION else value
+            if variable.causality is Causality.PARAMETER and value != variable.start_at(
+                number, instance.sizes
+            ):
+                found[name] = (
+                    variable.choices[int(value) - 1] if variable.kind is Kind.ENUMERATION else value
+                )
     return found
 
 
@@ -70,29 +81,64 @@ def receiver(radius: float) -> dict[str, Value]:
     downhill side until the rock has fallen clear of them; its upper side is the search line."""
     with SITE.open("rb") as file:
         line = next(entry for entry in tomllib.load(file)["line"] if entry["name"] == LINE)
-    return {"receiver.present": True, "receiver.left": -WALL_THICKNESS + _MARGIN, "receiver.bottom": -1.0,
-            "receiver.right": IMPACT.width + WALL_THICKNESS + radius + _MARGIN, "receiver.top": line["points"][0][1]}
+    return {
+        "receiver.present": True,
+        "receiver.left": -WALL_THICKNESS + _MARGIN,
+        "receiver.bottom": -1.0,
+        "receiver.right": IMPACT.width + WALL_THICKNESS + radius + _MARGIN,
+        "receiver.top": line["points"][0][1],
+    }
 
 
-def slope_system(fmus: Mapping[str, str], coupling: Coupling = "paper", discs: int | None = None,
-                 elements: int | None = None) -> System:
+def slope_system(
+    fmus: Mapping[str, str],
+    coupling: Coupling = "paper",
+    discs: int | None = None,
+    elements: int | None = None,
+) -> System:
     """Slope, sand and girders as a co-simulation of FMUs. The origin is the left support, below the surface of the beam.
 
     discs, elements: sizes that ``sand`` and ``beam`` were built with, by default those of the impact.
     """
     system = full_scale_system(fmus, IMPACT, coupling, discs, elements)
     site, sand, beam = _site(), system.components["sand"], system.components["beam"]
-    shared = {name: value.model_copy(update={"value": site[name.removeprefix("rock_")]}) if name.startswith("rock_") else value
-              for name, value in system.shared.items()}
-    given = {name: value for name, value in site_parameters(site).items() if name not in ("mass", "radius")}
-    rock = {**given, "trial": TRIAL, "lead_time": LEAD_TIME, **receiver(site["radius"]),
-            "internal_step": system.components["rock"].parameters["internal_step"]}
-    roof = {"base": "beam_surface", "box.wall_height": WALL_HEIGHT, "box.wall_thickness": WALL_THICKNESS}
-    return system.model_copy(update={
-        "description": IMPACT.summary, "shared": shared,
-        "components": {**system.components, "rock": ComponentSpec(fmu=fmus["rock"], parameters=rock),
-                       "sand": sand.model_copy(update={"parameters": {**sand.parameters, **roof}}),
-                       "beam": beam.model_copy(update={"parameters": {**beam.parameters, "damping.stiffness": BEAM_DAMPING}})}})
+    shared = {
+        name: value.model_copy(update={"value": site[name.removeprefix("rock_")]})
+        if name.startswith("rock_")
+        else value
+        for name, value in system.shared.items()
+    }
+    given = {
+        name: value
+        for name, value in site_parameters(site).items()
+        if name not in ("mass", "radius")
+    }
+    rock = {
+        **given,
+        "trial": TRIAL,
+        "lead_time": LEAD_TIME,
+        **receiver(site["radius"]),
+        "internal_step": system.components["rock"].parameters["internal_step"],
+    }
+    roof = {
+        "base": "beam_surface",
+        "box.wall_height": WALL_HEIGHT,
+        "box.wall_thickness": WALL_THICKNESS,
+    }
+    return system.model_copy(
+        update={
+            "description": IMPACT.summary,
+            "shared": shared,
+            "components": {
+                **system.components,
+                "rock": ComponentSpec(fmu=fmus["rock"], parameters=rock),
+                "sand": sand.model_copy(update={"parameters": {**sand.parameters, **roof}}),
+                "beam": beam.model_copy(
+                    update={"parameters": {**beam.parameters, "damping.stiffness": BEAM_DAMPING}}
+                ),
+            },
+        }
+    )
 
 
 def sand_layer() -> Layer:

@@ -12,8 +12,24 @@ from typing import Literal
 from rockshed.components.common.units import cm, kgf, mm
 
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue, System, Value
-from ..metrics.headlines import BEAM_ENERGY_FROM_STRAIN, PEAK_LOAD_CELL, PEAK_TRANSMITTED, PENETRATION, Known, Reference, References
+from ..core.system.system import (
+    ComponentSpec,
+    Connection,
+    EnergyAlarm,
+    PowerBond,
+    SharedValue,
+    System,
+    Value,
+)
+from ..metrics.headlines import (
+    BEAM_ENERGY_FROM_STRAIN,
+    PEAK_LOAD_CELL,
+    PEAK_TRANSMITTED,
+    PENETRATION,
+    Known,
+    Reference,
+    References,
+)
 from .sand_models import DENSE, LOOSE, Layer, Soil
 
 _DATA = Path(__file__).parent / "data"
@@ -54,7 +70,11 @@ class Test:
     @property
     def state(self) -> str:
         """The sand as it lay in the box."""
-        how = f"compacted at {self.compaction / (kgf / cm**2):g} kgf/cm²" if self.compaction else "as poured"
+        how = (
+            f"compacted at {self.compaction / (kgf / cm**2):g} kgf/cm²"
+            if self.compaction
+            else "as poured"
+        )
         return f"sand {self.sand}, {how}, water content {self.water_content:g} %, box {self.box}"
 
 
@@ -72,10 +92,16 @@ def tests() -> dict[int, Test]:
     for row in printed_rows("table2"):
         number, stiffness = int(row["no"]), float(row["k_kgf_per_cm"])
         found[number] = Test(
-            number, row["sand"], int(row["box"]), float(row["water_content_percent"]),
-            float(row["compaction_pressure_kgf_per_cm2"]) * kgf / cm**2, stiffness * kgf / cm,
+            number,
+            row["sand"],
+            int(row["box"]),
+            float(row["water_content_percent"]),
+            float(row["compaction_pressure_kgf_per_cm2"]) * kgf / cm**2,
+            stiffness * kgf / cm,
             float(row["peak_transmitted_force_kgf"]) * kgf,
-            printed.get(number, stiffness / STATIC_RATIO) * kgf / cm**2, number in printed)
+            printed.get(number, stiffness / STATIC_RATIO) * kgf / cm**2,
+            number in printed,
+        )
     return found
 
 
@@ -95,9 +121,16 @@ class Sand:
 @cache
 def sands() -> dict[str, Sand]:
     """The two sands of table 1 by their letter."""
-    return {row["sand"]: Sand(row["name"], float(row["specific_gravity"]), float(row["uniformity_coefficient"]),
-                              float(row["curvature_coefficient"]), *(float(row[f"{d}_mm"]) * mm for d in ("d10", "d30", "d60")))
-            for row in printed_rows("table1")}
+    return {
+        row["sand"]: Sand(
+            row["name"],
+            float(row["specific_gravity"]),
+            float(row["uniformity_coefficient"]),
+            float(row["curvature_coefficient"]),
+            *(float(row[f"{d}_mm"]) * mm for d in ("d10", "d30", "d60")),
+        )
+        for row in printed_rows("table1")
+    }
 
 
 @dataclass(frozen=True)
@@ -116,8 +149,15 @@ class TableFiveRow:
 @cache
 def table_5() -> list[TableFiveRow]:
     """Influence of the damping constant h, computed in the paper."""
-    return [TableFiveRow(float(r["e_bar_kgf_per_cm2"]) * kgf / cm**2, float(r["h"]), float(r["penetration_cm"]) * cm,
-                         float(r["peak_transmitted_force_kgf"]) * kgf) for r in printed_rows("table5")]
+    return [
+        TableFiveRow(
+            float(r["e_bar_kgf_per_cm2"]) * kgf / cm**2,
+            float(r["h"]),
+            float(r["penetration_cm"]) * cm,
+            float(r["peak_transmitted_force_kgf"]) * kgf,
+        )
+        for r in printed_rows("table5")
+    ]
 
 
 BALL_MASS = 4.0
@@ -159,8 +199,13 @@ def discs_in(box: int) -> int:
     return discs_across(box) * round(LAYER / (2 * DISC_RADIUS))
 
 
-def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper", discs: int | None = None,
-               elements: int = ELEMENTS) -> System:
+def lab_system(
+    fmus: Mapping[str, str],
+    test: Test,
+    coupling: Coupling = "paper",
+    discs: int | None = None,
+    elements: int = ELEMENTS,
+) -> System:
     """The laboratory impact of fig. 14 as a co-simulation of three FMUs.
 
     fmus: files of the FMUs ``rock``, ``sand`` and ``beam``.
@@ -173,18 +218,35 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
     return System(
         name=case_name(test.number),
         description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand on an H-100x50x7 beam of 120 cm"
-                    f"; {test.state}",
+        f"; {test.state}",
         components={
-            "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
-                "modulus": test.modulus, "box.left": 0.5 * (SPAN - width), "box.width": width,
-                "kinematics": kinematics, "forces": forces}),
-            "rock": ComponentSpec(fmu=fmus["rock"], parameters={
-                "position0.x": 0.5 * SPAN, "position0.y": rows * 2 * DISC_RADIUS + BALL_RADIUS + _GAP,
-                "velocity0.y": -BALL_SPEED}),
-            "beam": ComponentSpec(fmu=fmus["beam"], parameters={"span": SPAN, "axis.y": -0.5 * spacing}),
+            "sand": ComponentSpec(
+                fmu=fmus["sand"],
+                record_states=True,
+                parameters={
+                    "modulus": test.modulus,
+                    "box.left": 0.5 * (SPAN - width),
+                    "box.width": width,
+                    "kinematics": kinematics,
+                    "forces": forces,
+                },
+            ),
+            "rock": ComponentSpec(
+                fmu=fmus["rock"],
+                parameters={
+                    "position0.x": 0.5 * SPAN,
+                    "position0.y": rows * 2 * DISC_RADIUS + BALL_RADIUS + _GAP,
+                    "velocity0.y": -BALL_SPEED,
+                },
+            ),
+            "beam": ComponentSpec(
+                fmu=fmus["beam"], parameters={"span": SPAN, "axis.y": -0.5 * spacing}
+            ),
         },
         shared={
-            "rock_radius": SharedValue(value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
+            "rock_radius": SharedValue(
+                value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]
+            ),
             "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
             "beam_radius": SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"]),
         },
@@ -197,14 +259,29 @@ def lab_system(fmus: Mapping[str, str], test: Test, coupling: Coupling = "paper"
         exchange_step=exchange,
         output_interval=1e-4,
         state_interval=5e-4,
-        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "beam.midspan.deflection", "beam.energy.elastic",
-               "beam.energy.strain_estimate"],
+        watch=[
+            "sand.transmitted_force",
+            "sand.rock.force.y",
+            "sand.penetration",
+            "beam.midspan.deflection",
+            "beam.energy.elastic",
+            "beam.energy.strain_estimate",
+        ],
     )
 
 
 def layer(test: Test) -> Layer:
     """The sand of a test, for the models of it."""
-    return Layer(BOX_WIDTH[test.box], LAYER, DISC_RADIUS, BALL_RADIUS, BALL_SPEED, soil(test), 0.04, on_beam=True)
+    return Layer(
+        BOX_WIDTH[test.box],
+        LAYER,
+        DISC_RADIUS,
+        BALL_RADIUS,
+        BALL_SPEED,
+        soil(test),
+        0.04,
+        on_beam=True,
+    )
 
 
 def soil(test: Test) -> Soil:
@@ -215,7 +292,10 @@ def soil(test: Test) -> Soil:
 @cache
 def _cohesions() -> dict[int, float]:
     """Cohesion (Pa) by the number of the test."""
-    return {int(row["no"]): float(row["cohesion_kgf_per_cm2"]) * kgf / cm**2 for row in printed_rows("soil")}
+    return {
+        int(row["no"]): float(row["cohesion_kgf_per_cm2"]) * kgf / cm**2
+        for row in printed_rows("soil")
+    }
 
 
 _MOTION = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity")
@@ -225,15 +305,29 @@ _FORCES = ("force.x", "force.y", "torque")
 def impact_connections(partners: Iterable[str]) -> list[Connection]:
     """Kinematics of ``partners``, of rock and beam, to the sand; contact forces back."""
     ends = [(name, "[*]" if name == "beam" else "") for name in partners]
-    return ([Connection(source=f"{name}.{q}{all_}", target=f"sand.{name}.{q}{all_}") for name, all_ in ends for q in _MOTION]
-            + [Connection(source=f"sand.{name}.{q}{all_}", target=f"{name}.{q}{all_}") for name, all_ in ends for q in _FORCES])
+    return [
+        Connection(source=f"{name}.{q}{all_}", target=f"sand.{name}.{q}{all_}")
+        for name, all_ in ends
+        for q in _MOTION
+    ] + [
+        Connection(source=f"sand.{name}.{q}{all_}", target=f"{name}.{q}{all_}")
+        for name, all_ in ends
+        for q in _FORCES
+    ]
 
 
 def impact_bonds(partners: Iterable[str]) -> dict[str, PowerBond]:
     """The interfaces of the cushion with ``partners``, of rock and beam."""
-    return {f"sand_{name}": PowerBond(
-        giver="sand", force=[f"{name}.{q}{all_}" for q in _FORCES], taker=name, position=[f"{q}{all_}" for q in _MOTION[:3]],
-        work=f"energy.work.{name}") for name, all_ in ((name, "[*]" if name == "beam" else "") for name in partners)}
+    return {
+        f"sand_{name}": PowerBond(
+            giver="sand",
+            force=[f"{name}.{q}{all_}" for q in _FORCES],
+            taker=name,
+            position=[f"{q}{all_}" for q in _MOTION[:3]],
+            work=f"energy.work.{name}",
+        )
+        for name, all_ in ((name, "[*]" if name == "beam" else "") for name in partners)
+    }
 
 
 def known_of(test: Test) -> dict[str, Known]:
@@ -243,7 +337,9 @@ def known_of(test: Test) -> dict[str, Known]:
         PEAK_TRANSMITTED: Known(computed[PEAK_TRANSMITTED].paper, Reference(test.peak_force)),
         PEAK_LOAD_CELL: Known(experiment=Reference(test.peak_force)),
         PENETRATION: computed[PENETRATION],
-        BEAM_ENERGY_FROM_STRAIN: Known(experiment=Reference(measured, "read from fig. 17 or 18") if measured else None),
+        BEAM_ENERGY_FROM_STRAIN: Known(
+            experiment=Reference(measured, "read from fig. 17 or 18") if measured else None
+        ),
     }
 
 
@@ -268,12 +364,20 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
     varied = [name for name in SAND if name in changed]
     if not varied:
         return References(known_of(test))
-    modulus, damping = float(changed.get(SAND[0], test.modulus)), float(changed.get(SAND[1], _DAMPING))
+    modulus, damping = (
+        float(changed.get(SAND[0], test.modulus)),
+        float(changed.get(SAND[1], _DAMPING)),
+    )
     remarks = [f"not compared with the experiment: {differs(varied)}"]
     given = sorted({row.damping for row in table_5()})
     if damping not in given:
-        return References(remarks=[*remarks, f"not compared with the paper: its table 5 has damping constants h of "
-                                   f"{', '.join(map(str, given))}, not {damping:g}"])
+        return References(
+            remarks=[
+                *remarks,
+                f"not compared with the paper: its table 5 has damping constants h of "
+                f"{', '.join(map(str, given))}, not {damping:g}",
+            ]
+        )
     return References(_analysis(modulus, damping), remarks)
 
 
@@ -292,19 +396,27 @@ def differs(names: Sequence[str]) -> str:
 
 def _analysis(modulus: float, damping: float) -> dict[str, Known]:
     """What the paper computed, or would have."""
-    return {PEAK_TRANSMITTED: Known(_trend(modulus, damping, lambda row: row.peak_force)),
-            PENETRATION: Known(_trend(modulus, damping, lambda row: row.penetration))}
+    return {
+        PEAK_TRANSMITTED: Known(_trend(modulus, damping, lambda row: row.peak_force)),
+        PENETRATION: Known(_trend(modulus, damping, lambda row: row.penetration)),
+    }
 
 
 def _trend(modulus: float, damping: float, value: Callable[[TableFiveRow], float]) -> Reference:
     """The paper's own result; for a modulus that is not in table 5, from a power law through the two nearest rows."""
     rows = sorted((row for row in table_5() if row.damping == damping), key=lambda row: row.modulus)
-    if (printed := next((row for row in rows if math.isclose(row.modulus, modulus, rel_tol=1e-3)), None)) is not None:
+    if (
+        printed := next(
+            (row for row in rows if math.isclose(row.modulus, modulus, rel_tol=1e-3)), None
+        )
+    ) is not None:
         return Reference(value(printed))
     above = min(max(1, bisect([row.modulus for row in rows], modulus)), len(rows) - 1)
     low, high = rows[above - 1], rows[above]
     exponent = math.log(value(high) / value(low)) / math.log(high.modulus / low.modulus)
     inside = rows[0].modulus <= modulus <= rows[-1].modulus
-    return Reference(value(low) * (modulus / low.modulus) ** exponent,
-                     f"the paper's table 5, h = {damping:g}, {'interpolated' if inside else 'extrapolated'} to "
-                     f"E_bar = {modulus / kgf * cm ** 2:.1f} kgf/cm2")
+    return Reference(
+        value(low) * (modulus / low.modulus) ** exponent,
+        f"the paper's table 5, h = {damping:g}, {'interpolated' if inside else 'extrapolated'} to "
+        f"E_bar = {modulus / kgf * cm**2:.1f} kgf/cm2",
+    )

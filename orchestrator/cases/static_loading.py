@@ -51,7 +51,17 @@ E_BAR = (20.0, 40.0, 60.0, 80.0, 100.0)
 """Fictitious moduli of fig. 13 (kgf/cm2)."""
 
 
-LAYER_OF_SAND = Layer(_WIDTH, LAYER, DISC_RADIUS, BALL_RADIUS, SPEED, soil(tests()[DEFAULT_TEST]), STOP, falling=False, step=4e-5)
+LAYER_OF_SAND = Layer(
+    _WIDTH,
+    LAYER,
+    DISC_RADIUS,
+    BALL_RADIUS,
+    SPEED,
+    soil(tests()[DEFAULT_TEST]),
+    STOP,
+    falling=False,
+    step=4e-5,
+)
 """The sand of test 4, for the models of it."""
 
 
@@ -70,21 +80,51 @@ def static_system(fmus: Mapping[str, str], coupling: str = "impulse", discs: int
     modulus = tests()[DEFAULT_TEST].modulus
     columns = round(_WIDTH / (2 * DISC_RADIUS))
     return System(
-        name=NAME, description="Sonoda et al. 1993, fig. 12: static loading test", master=master, order=["sand", "rock"],
+        name=NAME,
+        description="Sonoda et al. 1993, fig. 12: static loading test",
+        master=master,
+        order=["sand", "rock"],
         components={
-            "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters={
-                "modulus": modulus, "box.left": 0.0, "box.width": _WIDTH, "base": "floor", "kinematics": kinematics,
-                "forces": forces, "internal_step": _SAND_STEP}),
-            "rock": ComponentSpec(fmu=fmus["rock"], parameters={
-                "motion": "driven", "shape": "disc", "position0.x": 0.5 * _WIDTH,
-                "position0.y": rock_height(-(-discs // columns) * 2 * DISC_RADIUS), "velocity0.y": -SPEED,
-                "internal_step": exchange})},
-        shared={"rock_radius": SharedValue(value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
-                "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"])},
-        connections=impact_connections(["rock"]), bonds=impact_bonds(["rock"]),
+            "sand": ComponentSpec(
+                fmu=fmus["sand"],
+                record_states=True,
+                parameters={
+                    "modulus": modulus,
+                    "box.left": 0.0,
+                    "box.width": _WIDTH,
+                    "base": "floor",
+                    "kinematics": kinematics,
+                    "forces": forces,
+                    "internal_step": _SAND_STEP,
+                },
+            ),
+            "rock": ComponentSpec(
+                fmu=fmus["rock"],
+                parameters={
+                    "motion": "driven",
+                    "shape": "disc",
+                    "position0.x": 0.5 * _WIDTH,
+                    "position0.y": rock_height(-(-discs // columns) * 2 * DISC_RADIUS),
+                    "velocity0.y": -SPEED,
+                    "internal_step": exchange,
+                },
+            ),
+        },
+        shared={
+            "rock_radius": SharedValue(
+                value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]
+            ),
+            "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
+        },
+        connections=impact_connections(["rock"]),
+        bonds=impact_bonds(["rock"]),
         energy_alarm=EnergyAlarm(share=0.005, reference=0.5 * paper_stiffness(modulus) * DEPTH**2),
-        stop_time=STOP, exchange_step=exchange, output_interval=5e-3, state_interval=0.1,
-        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"])
+        stop_time=STOP,
+        exchange_step=exchange,
+        output_interval=5e-3,
+        state_interval=0.1,
+        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"],
+    )
 
 
 def paper_stiffness(modulus: float) -> float:
@@ -94,11 +134,22 @@ def paper_stiffness(modulus: float) -> float:
 
 def references(changed: Mapping[str, Value]) -> References:
     """What is known of a static test with other values or sizes, by ``component.name``: with every E_bar, but only that test."""
-    others = [name for name in changed if name == "sand.damping" or (of_the_test(name) and name != "rock.position0.y")]
+    others = [
+        name
+        for name in changed
+        if name == "sand.damping" or (of_the_test(name) and name != "rock.position0.y")
+    ]
     if others:
         return References(remarks=[f"not compared: {differs(others)}"])
     modulus = float(changed.get(SAND[0], tests()[DEFAULT_TEST].modulus))
     stiffness = paper_stiffness(modulus)
     inside = min(E_BAR) <= round(modulus / kgf * cm**2, 6) <= max(E_BAR)
-    note = "table 4: k = 1.29 E_bar" + ("" if inside else f", extrapolated from E_bar = {min(E_BAR):g} to {max(E_BAR):g} kgf/cm2")
-    return References({STATIC_STIFFNESS: Known(Reference(stiffness, note)), STATIC_LOAD: Known(Reference(stiffness * DEPTH, note))})
+    note = "table 4: k = 1.29 E_bar" + (
+        "" if inside else f", extrapolated from E_bar = {min(E_BAR):g} to {max(E_BAR):g} kgf/cm2"
+    )
+    return References(
+        {
+            STATIC_STIFFNESS: Known(Reference(stiffness, note)),
+            STATIC_LOAD: Known(Reference(stiffness * DEPTH, note)),
+        }
+    )

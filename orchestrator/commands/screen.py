@@ -48,10 +48,20 @@ class Estimate:
         """The wall time from ``reached`` to ``stop`` (s) in words; nothing as long as that cannot be told."""
         gone = self.gone(reached)
         done = reached - self._began[1] if self._began else 0.0
-        return f"about {spoken(gone * (stop - reached) / done)} left" if gone >= _SURE_AFTER and done > 0.0 else ""
+        return (
+            f"about {spoken(gone * (stop - reached) / done)} left"
+            if gone >= _SURE_AFTER and done > 0.0
+            else ""
+        )
 
 
-_SPANS = (("s", 1.0, 90.0), ("min", 60.0, 5.4e3), ("h", 3.6e3, 1.8e5), ("days", 8.64e4, 6e7), ("years", 3.156e7, float("inf")))
+_SPANS = (
+    ("s", 1.0, 90.0),
+    ("min", 60.0, 5.4e3),
+    ("h", 3.6e3, 1.8e5),
+    ("days", 8.64e4, 6e7),
+    ("years", 3.156e7, float("inf")),
+)
 """Unit, its length (s), and where it ends to be used (s)."""
 
 
@@ -108,7 +118,9 @@ class Screen:
         count = "" if len(problems) == 1 else f"{len(problems)} problems"
         self.err.print(f"[bold red]refused:[/] {count}" if count else "[bold red]refused:[/]")
         for problem in problems:
-            self.err.print(Padding(f"[bold]{escape(problem.where)}[/]: {escape(problem.what)}", (0, 0, 0, 2)))
+            self.err.print(
+                Padding(f"[bold]{escape(problem.where)}[/]: {escape(problem.what)}", (0, 0, 0, 2))
+            )
             if problem.remedy:
                 self.err.print(Padding(f"[dim]→[/] {escape(problem.remedy)}", (0, 0, 0, 4)))
 
@@ -131,16 +143,27 @@ class Screen:
             return
         from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
-        with Progress(SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[reached]}"),
-                      console=self.err, transient=True) as shown:
+        with Progress(
+            SpinnerColumn(),
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.fields[reached]}"),
+            console=self.err,
+            transient=True,
+        ) as shown:
             task = shown.add_task(preparing, total=None, reached="")
 
             def describe(text: str) -> None:
                 shown.update(task, description=text)
 
             def show(reached: float, stop: float) -> None:
-                shown.update(task, description="running", total=stop, completed=reached,
-                             reached=f"{_reached(reached, stop)} {estimate.left(reached, stop)}")
+                shown.update(
+                    task,
+                    description="running",
+                    total=stop,
+                    completed=reached,
+                    reached=f"{_reached(reached, stop)} {estimate.left(reached, stop)}",
+                )
 
             yield Bar(describe, show)
 
@@ -170,10 +193,24 @@ class Screen:
 
             yield tell
             return
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            SpinnerColumn,
+            TextColumn,
+            TimeRemainingColumn,
+        )
 
-        with Progress(SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
-                      console=self.err, transient=True) as shown:
+        with Progress(
+            SpinnerColumn(),
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeRemainingColumn(),
+            console=self.err,
+            transient=True,
+        ) as shown:
             task = shown.add_task(text, total=None)
             yield lambda done, total: shown.update(task, total=total, completed=done)
 

@@ -29,8 +29,16 @@ def sources_of(system: System) -> dict[str, Source]:
     return {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
 
 
-def simulate(system: System, folder: Path, *, sources: Mapping[str, Source] | None = None, allow_unstable: bool = False,
-             plain: bool = False, progress: Progress | None = None, facts: Mapping[str, Any] | None = None) -> Run:
+def simulate(
+    system: System,
+    folder: Path,
+    *,
+    sources: Mapping[str, Source] | None = None,
+    allow_unstable: bool = False,
+    plain: bool = False,
+    progress: Progress | None = None,
+    facts: Mapping[str, Any] | None = None,
+) -> Run:
     """Run a system and write its results into ``folder``. Ctrl-C ends the run and keeps what was computed.
 
     sources: what to make components from instead of their FMU files.
@@ -70,15 +78,27 @@ class _Session:
         self.journal = Journal(self.results.running, self.plan.order)
         self.slaves = instantiate(self.plan, self.sources, self.journal.prepares)
         state = State(self.plan, self.journal.entries)
-        self.warnings = [*self.plan.warnings, *initialise(self.plan, self.slaves, state, allow_unstable, self.journal.prepares)]
+        self.warnings = [
+            *self.plan.warnings,
+            *initialise(self.plan, self.slaves, state, allow_unstable, self.journal.prepares),
+        ]
         self.initialised = True
         self.accounts = Accounts(self.plan, self.slaves, state)
         recorder = Recorder(self.plan, self.slaves, state.snapshots, self.accounts, self.results)
         self.watched = state.watched
-        self.master = Master(self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder)
-        self.journal.legend(state.operations, self.plan.timing.start, self.plan.timing.exchange, self.plan.schedule.period)
+        self.master = Master(
+            self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder
+        )
+        self.journal.legend(
+            state.operations,
+            self.plan.timing.start,
+            self.plan.timing.exchange,
+            self.plan.schedule.period,
+        )
         self.preparation = time.perf_counter() - began
-        self.results.begin(recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts})
+        self.results.begin(
+            recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts}
+        )
 
     def run(self, interruption: Interruption, progress: Progress | None) -> None:
         """Carry out the exchanges and finish the results, also those of a run that fails."""
@@ -88,11 +108,19 @@ class _Session:
         except RunFailed as error:
             status, failure = "failed", error
         self.journal.close()
-        self.results.finish(status, self._figures(), error=str(failure) if failure else None, ended=datetime.now(UTC).isoformat(),
-                            warnings=self.warnings + self.accounts.warnings,
-                            wall_time={"preparation": self.preparation, "exchanges": self.master.wall_time,
-                                       "recording": self.master.recording_time},
-                            cpu_time={"exchanges": self.master.cpu_time})
+        self.results.finish(
+            status,
+            self._figures(),
+            error=str(failure) if failure else None,
+            ended=datetime.now(UTC).isoformat(),
+            warnings=self.warnings + self.accounts.warnings,
+            wall_time={
+                "preparation": self.preparation,
+                "exchanges": self.master.wall_time,
+                "recording": self.master.recording_time,
+            },
+            cpu_time={"exchanges": self.master.cpu_time},
+        )
         if failure is not None:
             raise failure
 
@@ -101,13 +129,27 @@ class _Session:
         for entry in self.watched:
             end = self.plan.outputs[entry["place"]]
             for which, bound in (("maximum", "high"), ("minimum", "low")):
-                figures += [Figure(f"{end.name} {which}", float(entry[bound]), end.port.unit_name),
-                            Figure(f"{end.name} {which} at", timing.seconds(int(entry[bound + "_at"])), "s")]
-            figures.append(Figure(f"{end.name} integral", float(entry["area"]) * to_seconds(timing.exchange),
-                                  "s" if end.port.unit_name == "1" else f"{end.port.unit_name}.s"))
+                figures += [
+                    Figure(f"{end.name} {which}", float(entry[bound]), end.port.unit_name),
+                    Figure(
+                        f"{end.name} {which} at", timing.seconds(int(entry[bound + "_at"])), "s"
+                    ),
+                ]
+            figures.append(
+                Figure(
+                    f"{end.name} integral",
+                    float(entry["area"]) * to_seconds(timing.exchange),
+                    "s" if end.port.unit_name == "1" else f"{end.port.unit_name}.s",
+                )
+            )
         simulated = to_seconds(self.master.exchanges * timing.exchange)
-        return [*figures, *self.accounts.figures(), Figure("simulated time", simulated, "s"),
-                Figure("exchanges", self.master.exchanges), Figure("wall time of the exchanges", self.master.wall_time, "s")]
+        return [
+            *figures,
+            *self.accounts.figures(),
+            Figure("simulated time", simulated, "s"),
+            Figure("exchanges", self.master.exchanges),
+            Figure("wall time of the exchanges", self.master.wall_time, "s"),
+        ]
 
     def close(self) -> None:
         """End and free all slaves; one that has failed beyond repair may not be called any more."""

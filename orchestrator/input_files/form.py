@@ -40,17 +40,27 @@ def read_toml(path: Path) -> tuple[dict[str, Any], Places]:
     except tomllib.TOMLDecodeError as error:
         raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
     except UnicodeDecodeError as error:
-        raise InputRefused([Problem(f"{path}, {_undecodable(path, error)}", "is not UTF-8 text", "save it as UTF-8")]) from error
+        raise InputRefused(
+            [
+                Problem(
+                    f"{path}, {_undecodable(path, error)}", "is not UTF-8 text", "save it as UTF-8"
+                )
+            ]
+        ) from error
     except OSError as error:
-        raise InputRefused([Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]) from error
+        raise InputRefused(
+            [Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]
+        ) from error
 
 
 def _undecodable(path: Path, error: UnicodeDecodeError) -> str:
-    before = path.read_bytes()[:error.start].decode("utf-8")
+    before = path.read_bytes()[: error.start].decode("utf-8")
     return line_and_column(before, len(before))
 
 
-def formed(model: type[D], data: Mapping[str, Any], where: Places, problems: list[Problem]) -> D | None:
+def formed(
+    model: type[D], data: Mapping[str, Any], where: Places, problems: list[Problem]
+) -> D | None:
     """The data as a ``model``; None, and the reasons in ``problems``, if its form is wrong."""
     try:
         return model.model_validate(data)
@@ -58,8 +68,14 @@ def formed(model: type[D], data: Mapping[str, Any], where: Places, problems: lis
         found: dict[tuple[Any, ...], list[str]] = {}
         for entry in error.errors():
             found.setdefault(_key(entry["loc"]), []).append(_sentence(entry))
-        problems += [Problem(where.of(key), f"{_name(key)}: {' or '.join(dict.fromkeys(texts))}", _remedy(model, key, texts))
-                     for key, texts in found.items()]
+        problems += [
+            Problem(
+                where.of(key),
+                f"{_name(key)}: {' or '.join(dict.fromkeys(texts))}",
+                _remedy(model, key, texts),
+            )
+            for key, texts in found.items()
+        ]
         return None
 
 
@@ -67,7 +83,11 @@ def first(problems: list[Problem]) -> list[Problem]:
     """As many problems as a person reads, each once."""
     each = list(dict.fromkeys(problems))
     more = len(each) - _SHOWN
-    return each if more <= 0 else [*each[:_SHOWN], Problem(f"{more} more", "are not listed", "correct these first")]
+    return (
+        each
+        if more <= 0
+        else [*each[:_SHOWN], Problem(f"{more} more", "are not listed", "correct these first")]
+    )
 
 
 def _key(location: tuple[Any, ...]) -> tuple[Any, ...]:

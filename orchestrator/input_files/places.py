@@ -9,7 +9,10 @@ Path = tuple[str | int, ...]
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
-_STRING = re.compile(r'"""(?:\\.|[^\\])*?"{3,5}|' r"'''(?:.|\n)*?'{3,5}|" r'"(?:\\.|[^"\\\n])*"|' r"'[^'\n]*'", re.DOTALL)
+_STRING = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}|' r"'''(?:.|\n)*?'{3,5}|" r'"(?:\\.|[^"\\\n])*"|' r"'[^'\n]*'",
+    re.DOTALL,
+)
 _PLAIN = re.compile(r"[^,\]}#\n]*")
 
 
@@ -62,7 +65,7 @@ class _Scanner:
             names.append(match.group()[1:-1] if quoted else match.group())
             self.at = match.end()
             self.skip()
-            if self.text[self.at:self.at + 1] != ".":
+            if self.text[self.at : self.at + 1] != ".":
                 return names
             self.at += 1
 

@@ -20,12 +20,23 @@ def setter(made: Instance, where: Places, problems: list[Problem]) -> Setting:
 
     def set_(name: str, value: Any, key: Key) -> bool:
         if isinstance(value, str) and value not in variables[name].choices:
-            problems.append(Problem(where.of(key), f"{name} = {value!r} is no choice", nearest(value, variables[name].choices)))
+            problems.append(
+                Problem(
+                    where.of(key),
+                    f"{name} = {value!r} is no choice",
+                    nearest(value, variables[name].choices),
+                )
+            )
             return False
-        number = float(variables[name].choices.index(value) + 1) if isinstance(value, str) else float(value)
+        number = (
+            float(variables[name].choices.index(value) + 1)
+            if isinstance(value, str)
+            else float(value)
+        )
         found = value_problems(variables[name], name, number)
         problems.extend(Problem(where.of(key), text) for text in found)
         if not found and variables[name].size is None:
             made[name] = number
         return not found
+
     return set_

@@ -106,17 +106,24 @@ def named(run: "Run", model: str) -> list[str]:
 
 def roles(run: "Run") -> Roles:
     """Who is who in a run, by the names of the models."""
+
     def only(model: str) -> str | None:
         names = named(run, model)
         return names[0] if len(names) == 1 else None
 
-    return Roles(only("FallingRock") or only("SlopeRockfall"), only("SandCushion"), only("RBSMBeam"))
+    return Roles(
+        only("FallingRock") or only("SlopeRockfall"), only("SandCushion"), only("RBSMBeam")
+    )
 
 
 def driven(run: "Run") -> bool:
     """Whether the rock is driven by a machine: a static test, no impact."""
     rock = roles(run).rock
-    return rock is not None and run.provenance["components"][rock]["parameters"].get("motion", {}).get("value") == "driven"
+    return (
+        rock is not None
+        and run.provenance["components"][rock]["parameters"].get("motion", {}).get("value")
+        == "driven"
+    )
 
 
 def extreme(run: "Run", column: str) -> tuple[float, float]:
@@ -149,7 +156,11 @@ def system_residual(run: "Run") -> "NDArray[np.float64] | None":
     for name in run.provenance["components"]:
         if f"{name}.energy.residual" not in run.series:
             return None
-        works = [column for column in run.series if column.startswith(f"{name}.energy.work.") and not column.endswith(_OUTSIDE)]
+        works = [
+            column
+            for column in run.series
+            if column.startswith(f"{name}.energy.work.") and not column.endswith(_OUTSIDE)
+        ]
         for column in [f"{name}.energy.residual", *works]:
             part = run.series[column] - run.series[column][0]
             total = part if total is None else total + part
@@ -168,7 +179,9 @@ def carried_work(run: "Run") -> "NDArray[np.float64] | None":
 def preload(run: "Run", rod: str) -> float:
     """Static load (N) at the head of a rod, positive in the direction of its head."""
     parameters = run.provenance["components"][rod]["parameters"]
-    return float(parameters["head.preload"]["value"]) * (-1.0 if parameters["head.direction"]["value"] == "up" else 1.0)
+    return float(parameters["head.preload"]["value"]) * (
+        -1.0 if parameters["head.direction"]["value"] == "up" else 1.0
+    )
 
 
 def impact_energy(run: "Run") -> float | None:
@@ -186,8 +199,10 @@ def beam_energies(run: "Run") -> tuple[float | None, float | None]:
     """Largest energy (J) that the impact has put into the beam: the springs' beyond that at the start, and by the strain."""
     beam = roles(run).beam
     elastic, by_strain = f"{beam}.energy.elastic", f"{beam}.energy.strain_estimate"
-    return (extreme(run, elastic)[0] - float(run.series[elastic][0]) if elastic in run.series else None,
-            extreme(run, by_strain)[0] if by_strain in run.series else None)
+    return (
+        extreme(run, elastic)[0] - float(run.series[elastic][0]) if elastic in run.series else None,
+        extreme(run, by_strain)[0] if by_strain in run.series else None,
+    )
 
 
 def headlines(run: "Run") -> list[Figure]:
@@ -241,14 +256,18 @@ def cut_off(run: "Run") -> float:
     the size of the discs, not from the impact, which lasts many times as long.
     """
     sand = run.provenance["components"][roles(run).sand]["parameters"]
-    factor, modulus, density, radius, solid = (float(sand[name]["value"]) for name in (
-        "stiffness_factor", "modulus", "unit_weight", "disc.radius", "solid_fraction"))
+    factor, modulus, density, radius, solid = (
+        float(sand[name]["value"])
+        for name in ("stiffness_factor", "modulus", "unit_weight", "disc.radius", "solid_fraction")
+    )
     if sand["unit_weight_of"]["value"] == "layer":
         density /= solid
     return SETTLING * math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
 
 
-def load_cell(time: "NDArray[np.float64]", force: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64]":
+def load_cell(
+    time: "NDArray[np.float64]", force: "NDArray[np.float64]", cut_off: float
+) -> "NDArray[np.float64]":
     """What a load cell shows of a force (N) given at even times (s): a Butterworth low-pass of second order (scipy.signal), the
     response of an oscillator with the damping ratio 1/sqrt(2). It looks back only, so it lags; at the start it is steady.
 
@@ -259,7 +278,9 @@ def load_cell(time: "NDArray[np.float64]", force: "NDArray[np.float64]", cut_off
 
     rate = (time.size - 1) / float(time[-1] - time[0])
     if cut_off * LOAD_CELL_ROWS > rate * (1.0 + 1e-9):
-        raise ValueError(f"rows {1.0 / rate:.3g} s apart carry a cut-off of {rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}")
+        raise ValueError(
+            f"rows {1.0 / rate:.3g} s apart carry a cut-off of {rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}"
+        )
     sections = butter(_LOAD_CELL_ORDER, cut_off, fs=rate, output="sos")
     shown: NDArray[np.float64] = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]
     return shown
@@ -269,7 +290,11 @@ def _load_cell(run: "Run") -> Iterator[Figure]:
     """Peak through the load cell that the run was asked to have."""
     cut_off, column = run.provenance.get("load_cell"), f"{roles(run).sand}.transmitted_force"
     if cut_off and column in run.series and run.series["time"].size > 1:
-        yield Figure(PEAK_LOAD_CELL, float(load_cell(run.series["time"], run.series[column], cut_off).max()), "N")
+        yield Figure(
+            PEAK_LOAD_CELL,
+            float(load_cell(run.series["time"], run.series[column], cut_off).max()),
+            "N",
+        )
         yield Figure(LOAD_CELL_CUT_OFF, cut_off, "1/s")
 
 
@@ -278,7 +303,9 @@ def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":
     return low_pass(run.series["time"], run.series[column], cut_off(run))
 
 
-def low_pass(time: "NDArray[np.float64]", values: "NDArray[np.float64]", cut_off: float) -> "NDArray[np.float64] | None":
+def low_pass(
+    time: "NDArray[np.float64]", values: "NDArray[np.float64]", cut_off: float
+) -> "NDArray[np.float64] | None":
     """Values without what is faster than the cut-off (Hz): a Butterworth low-pass filter run forwards and backwards, so that
     nothing lags, which divides the spectrum by 1 + (f/cut_off)^(2 order). Beyond both ends the values are continued by their
     reflection.
@@ -296,8 +323,10 @@ def low_pass(time: "NDArray[np.float64]", values: "NDArray[np.float64]", cut_off
     even = np.linspace(time[0], time[-1], time.size)
     shown = np.interp(even, time, values)
     period = np.concatenate((shown, shown[-2:0:-1]))
-    spectrum = np.fft.rfft(period) / (1.0 + (np.fft.rfftfreq(period.size, 1.0 / rate) / cut_off) ** (2 * _ORDER))
-    filtered = np.fft.irfft(spectrum, period.size)[:shown.size]
+    spectrum = np.fft.rfft(period) / (
+        1.0 + (np.fft.rfftfreq(period.size, 1.0 / rate) / cut_off) ** (2 * _ORDER)
+    )
+    filtered = np.fft.irfft(spectrum, period.size)[: shown.size]
     return np.interp(time, even, filtered)
 
 
@@ -317,7 +346,11 @@ def _settled(run: "Run") -> Iterator[Figure]:
 def still_in_contact(run: "Run") -> bool:
     """Whether the force on the rock has not ended with the run, as it does after an impact."""
     column = f"{roles(run).sand}.rock.force.y"
-    return column in run.series and not driven(run) and bool(run.series[column][-1] > CONTACT_SHARE * extreme(run, column)[0])
+    return (
+        column in run.series
+        and not driven(run)
+        and bool(run.series[column][-1] > CONTACT_SHARE * extreme(run, column)[0])
+    )
 
 
 def still_sinking(run: "Run") -> bool:
@@ -325,12 +358,16 @@ def still_sinking(run: "Run") -> bool:
     if driven(run):
         return not any(figure.name == STATIC_STIFFNESS for figure in _static(run))
     depth = run.series.get(f"{roles(run).sand}.penetration")
-    return depth is not None and (int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0)
+    return depth is not None and (
+        int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0
+    )
 
 
 def integral(run: "Run", column: str) -> float:
     """Integral of an output over the time: over all exchanges if the run watched it and has ended, else over the rows."""
-    known = next((figure.value for figure in run.summary if figure.name == f"{column} integral"), None)
+    known = next(
+        (figure.value for figure in run.summary if figure.name == f"{column} integral"), None
+    )
     if known is not None:
         return float(known)
     values, time = run.series[column], run.series["time"]
@@ -344,15 +381,26 @@ def _cushion(run: "Run") -> Iterator[Figure]:
     depth, _ = extreme(run, f"{sand}.penetration")
     yield Figure(PENETRATION, depth, "m")
     if sand and f"{sand}.surface_height" in run.series:
-        yield Figure(CLEARANCE, float(run.series[f"{sand}.surface_height"][0]) - base_height(run) - depth, "m")
+        yield Figure(
+            CLEARANCE,
+            float(run.series[f"{sand}.surface_height"][0]) - base_height(run) - depth,
+            "m",
+        )
 
 
 def base_height(run: "Run") -> float:
     """Height (m) of what the sand rests on, at the start: the top of the beam's discs, or the floor."""
-    sand, beam = (run.provenance["components"][name] if name else None for name in (roles(run).sand, roles(run).beam))
+    sand, beam = (
+        run.provenance["components"][name] if name else None
+        for name in (roles(run).sand, roles(run).beam)
+    )
     if sand is None or beam is None or sand["parameters"]["base"]["value"] == "floor":
         return float(sand["parameters"]["base.y"]["value"]) if sand else 0.0
-    tops = [values[0] for name, values in run.series.items() if name.startswith(f"{roles(run).beam}.position.y[")]
+    tops = [
+        values[0]
+        for name, values in run.series.items()
+        if name.startswith(f"{roles(run).beam}.position.y[")
+    ]
     return float(max(tops, default=0.0)) + float(sand["parameters"]["beam.radius"]["value"])
 
 
@@ -383,16 +431,24 @@ def _piles(run: "Run") -> Iterator[Figure]:
             if f"{rod}.{column}" in series:
                 yield Figure(pile_figure(rod, what), extreme(run, f"{rod}.{column}")[0], "N")
         for what, column in ((COMPRESSION, "stress.compression"), (TENSION, "stress.tension")):
-            values = [float(series[name][-1]) for name in series if name.startswith(f"{rod}.{column}[")]
+            values = [
+                float(series[name][-1]) for name in series if name.startswith(f"{rod}.{column}[")
+            ]
             if values:
                 yield Figure(pile_figure(rod, what), max(values), "Pa")
         if f"{rod}.energy.transferred" in series:
-            yield Figure(pile_figure(rod, TRANSFERRED), float(series[f"{rod}.energy.transferred"][-1]), "J")
+            yield Figure(
+                pile_figure(rod, TRANSFERRED), float(series[f"{rod}.energy.transferred"][-1]), "J"
+            )
     for ground in named(run, "ImpulsiveGround"):
         if f"{ground}.settlement" in series:
-            yield Figure(pile_figure(ground, SETTLEMENT), extreme(run, f"{ground}.settlement")[0], "m")
+            yield Figure(
+                pile_figure(ground, SETTLEMENT), extreme(run, f"{ground}.settlement")[0], "m"
+            )
         if f"{ground}.permanent_set" in series:
-            yield Figure(pile_figure(ground, SET), float(series[f"{ground}.permanent_set"][-1]), "m")
+            yield Figure(
+                pile_figure(ground, SET), float(series[f"{ground}.permanent_set"][-1]), "m"
+            )
 
 
 def _energy(run: "Run") -> Iterator[Figure]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.units import cm, mm
 
 DEPTH = 4 * cm
@@ -24,7 +25,9 @@ class LoadCurve:
 
     def reaches(self, depth: float) -> bool:
         """Whether the load at a penetration (m) can be told."""
-        return self.depth.size > 1 and bool(self.depth[0] <= depth - 0.5 * WINDOW and depth + 0.5 * WINDOW <= self.depth[-1])
+        return self.depth.size > 1 and bool(
+            self.depth[0] <= depth - 0.5 * WINDOW and depth + 0.5 * WINDOW <= self.depth[-1]
+        )
 
     def at(self, depth: Values | float) -> Values:
         """Load (N) at penetrations (m): work over the :data:`WINDOW` around them / the way; at the ends over what there is."""
@@ -42,7 +45,11 @@ class LoadCurve:
         places = np.linspace(0.0, depth, round(depth / WINDOW) + 1)[1:]
         loads, end = self.at(places), float(self.at(depth))
         largest = float(loads.max())
-        return float(np.sqrt(np.mean((loads - end * places / depth) ** 2))) / largest if largest > 0.0 else np.inf
+        return (
+            float(np.sqrt(np.mean((loads - end * places / depth) ** 2))) / largest
+            if largest > 0.0
+            else np.inf
+        )
 
 
 def load_curve(series: Mapping[str, Values], sand: str) -> LoadCurve | None:

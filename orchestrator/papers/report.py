@@ -12,7 +12,17 @@ from .study import Outcome, Row, Study, Task
 
 FORMAT = "rockshed reproduction 1"
 """Name and version of the form of ``reproduction.json``."""
-HEADINGS = ("quantity", "unit", "paper", "experiment", "computed", "±", "to paper", "to exp.", "model")
+HEADINGS = (
+    "quantity",
+    "unit",
+    "paper",
+    "experiment",
+    "computed",
+    "±",
+    "to paper",
+    "to exp.",
+    "model",
+)
 NUMBERS = HEADINGS[2:8]
 
 
@@ -27,9 +37,17 @@ class Part:
 
 def cells(row: Row) -> tuple[str, ...]:
     """A row as text, in the order of :data:`HEADINGS`. A claim has its verdict in the place of the deviations' model."""
-    return (row.quantity, "" if row.unit == "1" else row.unit, _number(row.paper), _number(row.experiment), _number(row.computed),
-            _number(row.spread), _percent(row.deviation(row.paper)), _percent(row.deviation(row.experiment)),
-            ": ".join(filter(None, (row.model, row.verdict))))
+    return (
+        row.quantity,
+        "" if row.unit == "1" else row.unit,
+        _number(row.paper),
+        _number(row.experiment),
+        _number(row.computed),
+        _number(row.spread),
+        _percent(row.deviation(row.paper)),
+        _percent(row.deviation(row.experiment)),
+        ": ".join(filter(None, (row.model, row.verdict))),
+    )
 
 
 def is_empty(row: Row) -> bool:
@@ -51,7 +69,9 @@ def table(parts: Sequence[Part]) -> Table:
     """All studies in one table, details left out; a row without a result says why below."""
     made = plain_table(*HEADINGS, right=NUMBERS)
     for number, part in enumerate(parts):
-        made.add_row(f"[bold]{part.study.title}[/]" if number == 0 else f"\n[bold]{part.study.title}[/]")
+        made.add_row(
+            f"[bold]{part.study.title}[/]" if number == 0 else f"\n[bold]{part.study.title}[/]"
+        )
         for row in part.rows:
             if row.detail:
                 continue
@@ -67,29 +87,65 @@ def _plain(text: str) -> str:
     return escape(text)
 
 
-def as_data(parts: Sequence[Part], tasks: Sequence[Task], outcomes: Sequence[Outcome], folder: Path,
-            **facts: Any) -> dict[str, Any]:
+def as_data(
+    parts: Sequence[Part],
+    tasks: Sequence[Task],
+    outcomes: Sequence[Outcome],
+    folder: Path,
+    **facts: Any,
+) -> dict[str, Any]:
     """Everything of a reproduction as plain data: studies with their rows, and what was run."""
     by_key = {task.key: task for task in tasks}
-    return {"format": FORMAT, **facts,
-            "studies": [{"name": p.study.name, "title": p.study.title, "notes": list(p.study.notes),
-                         "figures": [file.relative_to(folder).as_posix() for file in p.figures],
-                         "rows": [row_data(row) for row in p.rows]} for p in parts],
-            "runs": [_run(by_key[outcome.key], outcome) for outcome in outcomes]}
+    return {
+        "format": FORMAT,
+        **facts,
+        "studies": [
+            {
+                "name": p.study.name,
+                "title": p.study.title,
+                "notes": list(p.study.notes),
+                "figures": [file.relative_to(folder).as_posix() for file in p.figures],
+                "rows": [row_data(row) for row in p.rows],
+            }
+            for p in parts
+        ],
+        "runs": [_run(by_key[outcome.key], outcome) for outcome in outcomes],
+    }
 
 
 def row_data(row: Row) -> dict[str, Any]:
     """A row as plain data."""
-    return {"quantity": row.quantity, "unit": row.unit, "paper": row.paper, "experiment": row.experiment,
-            "computed": row.computed, "spread": row.spread, "deviation_from_paper": row.deviation(row.paper),
-            "deviation_from_experiment": row.deviation(row.experiment), "model": row.model, "verdict": row.verdict,
-            "note": row.note,
-            "model_options": dict(row.options), "seeds": list(row.seeds), "fmus": dict(row.fmus), "runs": list(row.runs)}
+    return {
+        "quantity": row.quantity,
+        "unit": row.unit,
+        "paper": row.paper,
+        "experiment": row.experiment,
+        "computed": row.computed,
+        "spread": row.spread,
+        "deviation_from_paper": row.deviation(row.paper),
+        "deviation_from_experiment": row.deviation(row.experiment),
+        "model": row.model,
+        "verdict": row.verdict,
+        "note": row.note,
+        "model_options": dict(row.options),
+        "seeds": list(row.seeds),
+        "fmus": dict(row.fmus),
+        "runs": list(row.runs),
+    }
 
 
 def _run(task: Task, outcome: Outcome) -> dict[str, Any]:
-    return {"name": task.key, "case": task.request.target, "model": task.request.model,
-            "settings": list(task.request.settings),
-            "coupling": task.request.coupling, "options": dict(task.request.options), "seed": task.seed,
-            "status": outcome.status, "error": outcome.error, "wall_time": outcome.wall_time,
-            "model_options": dict(outcome.options), "fmus": dict(outcome.fmus)}
+    return {
+        "name": task.key,
+        "case": task.request.target,
+        "model": task.request.model,
+        "settings": list(task.request.settings),
+        "coupling": task.request.coupling,
+        "options": dict(task.request.options),
+        "seed": task.seed,
+        "status": outcome.status,
+        "error": outcome.error,
+        "wall_time": outcome.wall_time,
+        "model_options": dict(outcome.options),
+        "fmus": dict(outcome.fmus),
+    }

@@ -21,10 +21,12 @@ from .report import Part, as_data
 from .running import Done, run_all
 from .study import INTERRUPTED, Outcomes, Study
 
-PAPERS = {"sonoda1993": "Sonoda, Satoh, Ishikawa, Ohta 1993",
-          "mogami1973": "Mogami, Tamura 1973, settlement of sandy ground under an impulsive load",
-          "uto1974": "Uto, Fuyuki, Kondo, Yamada, about 1974",
-          "ushiro": "Ushiro, A study on computer simulation of rockfalls (DRSP)"}
+PAPERS = {
+    "sonoda1993": "Sonoda, Satoh, Ishikawa, Ohta 1993",
+    "mogami1973": "Mogami, Tamura 1973, settlement of sandy ground under an impulsive load",
+    "uto1974": "Uto, Fuyuki, Kondo, Yamada, about 1974",
+    "ushiro": "Ushiro, A study on computer simulation of rockfalls (DRSP)",
+}
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
 _PACKAGES = ("rockshed", "numpy", "numba", "fmpy", "pythonfmu")
@@ -51,10 +53,18 @@ def studies(paper: str) -> list[Study]:
         InputRefused: there is no such paper.
     """
     if paper not in PAPERS:
-        raise InputRefused([Problem(paper, "there are no studies of such a paper", nearest(paper, PAPERS))])
+        raise InputRefused(
+            [Problem(paper, "there are no studies of such a paper", nearest(paper, PAPERS))]
+        )
     package = import_module(f".{paper}", __package__)
-    modules = [import_module(f".{found.name}", package.__name__) for found in iter_modules(package.__path__)]
-    return sorted((module.STUDY for module in modules if hasattr(module, "STUDY")), key=lambda study: study.place)
+    modules = [
+        import_module(f".{found.name}", package.__name__)
+        for found in iter_modules(package.__path__)
+    ]
+    return sorted(
+        (module.STUDY for module in modules if hasattr(module, "STUDY")),
+        key=lambda study: study.place,
+    )
 
 
 def chosen(paper: str, only: Sequence[str]) -> list[Study]:
@@ -65,15 +75,26 @@ def chosen(paper: str, only: Sequence[str]) -> list[Study]:
     """
     known = studies(paper)
     names = [study.name for study in known]
-    problems = [Problem(f"--only {name}", "there is no such study", nearest(name, names)) for name in only if name not in names]
+    problems = [
+        Problem(f"--only {name}", "there is no such study", nearest(name, names))
+        for name in only
+        if name not in names
+    ]
     if problems:
         raise InputRefused(problems)
     return [study for study in known if not only or study.name in only]
 
 
-def reproduce(paper: str, folder: Path, only: Sequence[str] = (), quick: bool = False, workers: int | None = None,
-              note: Note = lambda text: None, done: Done = lambda count, total: None,
-              drawing: Callable[[], None] = lambda: None) -> Reproduction:
+def reproduce(
+    paper: str,
+    folder: Path,
+    only: Sequence[str] = (),
+    quick: bool = False,
+    workers: int | None = None,
+    note: Note = lambda text: None,
+    done: Done = lambda count, total: None,
+    drawing: Callable[[], None] = lambda: None,
+) -> Reproduction:
     """Carry out studies and write ``reproduction.json``, ``reproduction.html`` and figures into ``folder``.
 
     Raises:
@@ -86,9 +107,17 @@ def reproduce(paper: str, folder: Path, only: Sequence[str] = (), quick: bool = 
     outcomes = Outcomes(run_all(tasks, workers, note, done), quick)
     drawing()
     parts = [_part(study, outcomes, folder / FIGURES) for study in selected]
-    facts = {"paper": PAPERS[paper], "started": started, "quick": quick, "workers": workers or os.cpu_count() or 1,
-             "wall_time": time.perf_counter() - began,
-             "versions": {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}}
+    facts = {
+        "paper": PAPERS[paper],
+        "started": started,
+        "quick": quick,
+        "workers": workers or os.cpu_count() or 1,
+        "wall_time": time.perf_counter() - began,
+        "versions": {
+            "python": platform.python_version(),
+            **{package: version(package) for package in _PACKAGES},
+        },
+    }
     content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, **facts)
     write_json(folder / DATA, content)
     _write(folder / PAGE, page(parts, content))
@@ -104,8 +133,15 @@ def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputRefused([Problem(str(folder), f"cannot be written: {error.strerror or error}",
-                                    "name another folder with --output-dir")]) from error
+        raise InputRefused(
+            [
+                Problem(
+                    str(folder),
+                    f"cannot be written: {error.strerror or error}",
+                    "name another folder with --output-dir",
+                )
+            ]
+        ) from error
 
 
 def _write(file: Path, text: str) -> None:

@@ -24,13 +24,41 @@ if TYPE_CHECKING:
 Done = Callable[[int, int], None]
 """Told the number of runs that have ended, and of all."""
 
-COLUMNS = ("sand.transmitted_force", "sand.rock.force.y", "sand.penetration", "sand.surface_height", "sand.stable_step",
-           "beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate", "rock.energy.kinetic")
+COLUMNS = (
+    "sand.transmitted_force",
+    "sand.rock.force.y",
+    "sand.penetration",
+    "sand.surface_height",
+    "sand.stable_step",
+    "beam.midspan.deflection",
+    "beam.energy.elastic",
+    "beam.energy.strain_estimate",
+    "rock.energy.kinetic",
+)
 """What is recorded of a run, besides the energy of its interfaces."""
 _MODEL = {
-    "sand": ("modulus", "damping", "rotation", "stiffness_factor", "base", "base.shape", "beam.disc_mass", "rolling_resistance",
-             "unloading_ratio", "cohesion", "packing", "disc.spread", "solid_fraction", "unit_weight", "unit_weight_of",
-             "lattice_shift", "seed", "kinematics", "forces", "internal_step"),
+    "sand": (
+        "modulus",
+        "damping",
+        "rotation",
+        "stiffness_factor",
+        "base",
+        "base.shape",
+        "beam.disc_mass",
+        "rolling_resistance",
+        "unloading_ratio",
+        "cohesion",
+        "packing",
+        "disc.spread",
+        "solid_fraction",
+        "unit_weight",
+        "unit_weight_of",
+        "lattice_shift",
+        "seed",
+        "kinematics",
+        "forces",
+        "internal_step",
+    ),
     "beam": ("deck.mass", "box.mass"),
 }
 """Parameters of sand and beam that say which model was computed."""
@@ -45,7 +73,9 @@ class _Order:
     allow_unstable: bool
 
 
-def run_all(tasks: Sequence[Task], workers: int | None, note: Note, done: Done) -> dict[str, Outcome]:
+def run_all(
+    tasks: Sequence[Task], workers: int | None, note: Note, done: Done
+) -> dict[str, Outcome]:
     """Carry out all tasks, each different one once; outcomes by key. A run that fails is an outcome too.
 
     workers: number of processes, by default that of the cores. Ctrl-C ends the runs; those without a result are "interrupted".
@@ -61,7 +91,10 @@ def run_all(tasks: Sequence[Task], workers: int | None, note: Note, done: Done) 
             done(len(found), len(orders))
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
-    return {order.key: found.get(order.key, Outcome(order.key, INTERRUPTED, "not run")) for order in orders}
+    return {
+        order.key: found.get(order.key, Outcome(order.key, INTERRUPTED, "not run"))
+        for order in orders
+    }
 
 
 def run_here(task: Task, note: Note = lambda text: None) -> Outcome:
@@ -76,8 +109,15 @@ def run_here(task: Task, note: Note = lambda text: None) -> Outcome:
 def _order(task: Task, note: Note) -> _Order:
     """The system of a task with a short output and no states."""
     system = prepare(task.request, note).system
-    parts = {name: spec.model_copy(update={"record_states": False}) for name, spec in system.components.items()}
-    short = {"components": parts, "record": [c for c in COLUMNS if c.partition(".")[0] in parts], "state_interval": None}
+    parts = {
+        name: spec.model_copy(update={"record_states": False})
+        for name, spec in system.components.items()
+    }
+    short = {
+        "components": parts,
+        "record": [c for c in COLUMNS if c.partition(".")[0] in parts],
+        "state_interval": None,
+    }
     return _Order(task.key, system.model_copy(update=short), task.allow_unstable)
 
 
@@ -108,7 +148,9 @@ def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that start afresh; left early, runs that have not begun are dropped."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_leave_interrupts_to_the_run)
+    pool = ProcessPoolExecutor(
+        workers, mp_context=get_context("spawn"), initializer=_leave_interrupts_to_the_run
+    )
     try:
         yield pool
     finally:
@@ -130,7 +172,11 @@ def run_one(order: _Order) -> Outcome:
     with tempfile.TemporaryDirectory(prefix="rockshed-") as folder:
         place = Path(folder) / "run"
         try:
-            run, error, at = simulate(order.system, place, allow_unstable=order.allow_unstable), "", None
+            run, error, at = (
+                simulate(order.system, place, allow_unstable=order.allow_unstable),
+                "",
+                None,
+            )
         except RunFailed as failure:
             run, error, at = read_run(place), str(failure), failure.time
         except InputRefused as refusal:
@@ -142,13 +188,37 @@ def _outcome(key: str, run: "Run", error: str, failed_at: float | None, began: f
     from ..metrics.headlines import headlines
 
     complete = run.status == COMPLETE
-    figures = {f.name: float(f.value) for f in [*run.summary, *headlines(run)] if not isinstance(f.value, str)} if complete else {}
+    figures = (
+        {
+            f.name: float(f.value)
+            for f in [*run.summary, *headlines(run)]
+            if not isinstance(f.value, str)
+        }
+        if complete
+        else {}
+    )
     components = run.provenance["components"]
-    return Outcome(key, run.status, error, failed_at, figures, dict(run.series), _options(components),
-                   {name: str(facts["sha256"]) for name, facts in components.items()}, time.perf_counter() - began)
+    return Outcome(
+        key,
+        run.status,
+        error,
+        failed_at,
+        figures,
+        dict(run.series),
+        _options(components),
+        {name: str(facts["sha256"]) for name, facts in components.items()},
+        time.perf_counter() - began,
+    )
 
 
 def _options(components: Mapping[str, Any]) -> dict[str, Any]:
     """What of :data:`_MODEL` a run has; parameters of the sand without its name."""
-    return {name if owner == "sand" else f"{owner}.{name}": components[owner]["parameters"][name]["value"]
-            for owner, names in _MODEL.items() if owner in components for name in names if name in components[owner]["parameters"]}
+    return {
+        name if owner == "sand" else f"{owner}.{name}": components[owner]["parameters"][name][
+            "value"
+        ]
+        for owner, names in _MODEL.items()
+        if owner in components
+        for name in names
+        if name in components[owner]["parameters"]
+    }

@@ -18,7 +18,9 @@ def line_through_origin(x: Sequence[float], y: Sequence[float]) -> tuple[float, 
     """Slope of y = slope * x by least squares, and R2, the part of the variance of y that it explains."""
     known, values = np.asarray(x, float), np.asarray(y, float)
     slope = float(known @ values / (known @ known))
-    return slope, float(1.0 - np.sum((values - slope * known) ** 2) / np.sum((values - values.mean()) ** 2))
+    return slope, float(
+        1.0 - np.sum((values - slope * known) ** 2) / np.sum((values - values.mean()) ** 2)
+    )
 
 
 def exponent_error(x: Sequence[float], y: Sequence[float]) -> float:
@@ -36,13 +38,14 @@ def constant(x: Sequence[float], y: Sequence[float], at: float) -> float:
 def by_power_law(x: Sequence[float], y: Sequence[float], at: float) -> float:
     """The power law through the points, at another x."""
     factor, exponent = power_law(x, y)
-    return factor * at ** exponent
+    return factor * at**exponent
 
 
 def leave_one_out(x: Sequence[float], y: Sequence[float], predictor: Predictor) -> list[float]:
     """Each y, predicted from all the others."""
+
     def others(values: Sequence[float], i: int) -> list[float]:
-        return [*values[:i], *values[i + 1:]]
+        return [*values[:i], *values[i + 1 :]]
 
     return [predictor(others(x, i), others(y, i), x[i]) for i in range(len(x))]
 

@@ -34,7 +34,9 @@ class Task:
         coupling = [f"coupling={self.request.coupling}"] if self.request.coupling else []
         model = [f"model={self.request.model}"] if self.request.model else []
         unstable = ["unstable"] if self.allow_unstable else []
-        return " ".join([self.request.target, *model, *self.request.settings, *coupling, *options, *unstable])
+        return " ".join(
+            [self.request.target, *model, *self.request.settings, *coupling, *options, *unstable]
+        )
 
 
 @dataclass(frozen=True)
@@ -129,8 +131,17 @@ class Study:
     notes: Sequence[str] = ()
 
 
-def row_of_runs(quantity: str, unit: str, scale: float, figure: str | Callable[[Outcome], float], tasks: Sequence[Task],
-                found: Outcomes, paper: float | None = None, experiment: float | None = None, note: str = "") -> Row:
+def row_of_runs(
+    quantity: str,
+    unit: str,
+    scale: float,
+    figure: str | Callable[[Outcome], float],
+    tasks: Sequence[Task],
+    found: Outcomes,
+    paper: float | None = None,
+    experiment: float | None = None,
+    note: str = "",
+) -> Row:
     """A figure of one or several runs (seeds of one model) beside its references.
 
     figure: name of the figure, or what finds it (SI) in an outcome that is complete.
@@ -139,14 +150,41 @@ def row_of_runs(quantity: str, unit: str, scale: float, figure: str | Callable[[
     """
     outcomes = [found.of(task) for task in tasks]
     ended = [outcome for outcome in outcomes if outcome.status == COMPLETE]
-    each = [outcome.figures.get(figure) if isinstance(figure, str) else figure(outcome) for outcome in ended]
+    each = [
+        outcome.figures.get(figure) if isinstance(figure, str) else figure(outcome)
+        for outcome in ended
+    ]
     values = [value / scale for value in each if value is not None]
-    failures = list(dict.fromkeys(f"{o.status}: {o.error}".removesuffix(": ") for o in outcomes if o.status != COMPLETE))
-    failed = [f"{len(outcomes) - len(ended)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"] if failures else []
-    failed += [f"{len(ended) - len(values)} of {len(ended)} runs have no such figure"] if len(values) < len(ended) else []
+    failures = list(
+        dict.fromkeys(
+            f"{o.status}: {o.error}".removesuffix(": ") for o in outcomes if o.status != COMPLETE
+        )
+    )
+    failed = (
+        [
+            f"{len(outcomes) - len(ended)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"
+        ]
+        if failures
+        else []
+    )
+    failed += (
+        [f"{len(ended) - len(values)} of {len(ended)} runs have no such figure"]
+        if len(values) < len(ended)
+        else []
+    )
     mean = sum(values) / len(values) if values else None
     said = "; ".join([note] * bool(note) + failed)
-    return Row(quantity, unit, paper, experiment, mean, _spread(values), tasks[0].model, note=said, **origin(tasks, found))
+    return Row(
+        quantity,
+        unit,
+        paper,
+        experiment,
+        mean,
+        _spread(values),
+        tasks[0].model,
+        note=said,
+        **origin(tasks, found),
+    )
 
 
 def detail(row: Row) -> Row:
@@ -158,8 +196,12 @@ def origin(tasks: Sequence[Task], found: Outcomes) -> dict[str, Any]:
     """Where a row's figure comes from: runs, seeds, model options and FMUs."""
     first = next((found.of(task) for task in tasks if found.of(task).fmus), found.of(tasks[0]))
     options = {name: value for name, value in first.options.items() if name != "seed"}
-    return {"runs": [task.key for task in tasks], "seeds": [task.seed for task in tasks if task.seed is not None],
-            "options": options, "fmus": dict(first.fmus)}
+    return {
+        "runs": [task.key for task in tasks],
+        "seeds": [task.seed for task in tasks if task.seed is not None],
+        "options": options,
+        "fmus": dict(first.fmus),
+    }
 
 
 def _spread(values: Sequence[float]) -> float | None:

@@ -34,7 +34,9 @@ class _Picture:
         return absent
 
 
-def draw_all(run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell = lambda text: None) -> list[Path]:
+def draw_all(
+    run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell = lambda text: None
+) -> list[Path]:
     """Draw every picture that the results of a run allow into ``folder``; return the files.
 
     note: is told which pictures the results have no data for; warn: which could not be drawn, and why. Whatever happens to a
@@ -57,7 +59,9 @@ def draw_all(run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell 
         try:
             picture.draw(file)
         except ComponentError as error:
-            note(f"no picture {picture.name}: the states were recorded by another version of the FMU ({error})")
+            note(
+                f"no picture {picture.name}: the states were recorded by another version of the FMU ({error})"
+            )
             continue
         except Exception as error:  # a run's outcome is told even if a picture of it fails
             warn(f"no picture {picture.name}: drawing it failed ({type(error).__name__}: {error})")
@@ -71,26 +75,63 @@ def _pictures(run: Run) -> list[_Picture]:
     from . import curves, piles, sand
 
     known, who = known_of(run), roles(run)
-    force, depth = [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"], [f"{who.sand}.penetration"]
-    of_sand = [] if who.sand is None else [
-        _Picture("load", partial(curves.load, run, known), [force[1], *depth]),
-        _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
-    ] if driven(run) else [
-        _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),
-        _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
-        _Picture("forces", partial(curves.forces, run, known), force),
-        _Picture("penetration", partial(curves.penetration, run, known), depth),
-    ]
-    of_beam = [] if who.beam is None else [
-        _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"])]
+    force, depth = (
+        [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"],
+        [f"{who.sand}.penetration"],
+    )
+    of_sand = (
+        []
+        if who.sand is None
+        else [
+            _Picture("load", partial(curves.load, run, known), [force[1], *depth]),
+            _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
+        ]
+        if driven(run)
+        else [
+            _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),
+            _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
+            _Picture("forces", partial(curves.forces, run, known), force),
+            _Picture("penetration", partial(curves.penetration, run, known), depth),
+        ]
+    )
+    of_beam = (
+        []
+        if who.beam is None
+        else [
+            _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"])
+        ]
+    )
     striking = [who.rock] if who.rock else named(run, "Hammer")
-    of_rock = [] if not striking else [
-        _Picture("energy", partial(curves.energy, run), [f"{name}.energy.kinetic" for name in striking])]
+    of_rock = (
+        []
+        if not striking
+        else [
+            _Picture(
+                "energy",
+                partial(curves.energy, run),
+                [f"{name}.energy.kinetic" for name in striking],
+            )
+        ]
+    )
     rods, grounds = named(run, "PileRod"), named(run, "ImpulsiveGround")
-    of_piles = [] if not rods else [
-        _Picture("piles", partial(piles.blow, run), [
-            *(f"{rod}.{end}" for rod in rods for end in ("head.contact_force", "head.zv", "toe.contact_force")),
-            *(f"{ground}.settlement" for ground in grounds)])]
+    of_piles = (
+        []
+        if not rods
+        else [
+            _Picture(
+                "piles",
+                partial(piles.blow, run),
+                [
+                    *(
+                        f"{rod}.{end}"
+                        for rod in rods
+                        for end in ("head.contact_force", "head.zv", "toe.contact_force")
+                    ),
+                    *(f"{ground}.settlement" for ground in grounds),
+                ],
+            )
+        ]
+    )
     return of_sand + of_beam + of_piles + of_rock
 
 
@@ -99,5 +140,12 @@ def _make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         TemporaryFile(dir=folder).close()
     except OSError as error:
-        raise InputRefused([Problem(str(folder), f"cannot be written: {error.strerror or error}",
-                                    "name another folder with --output-dir")]) from error
+        raise InputRefused(
+            [
+                Problem(
+                    str(folder),
+                    f"cannot be written: {error.strerror or error}",
+                    "name another folder with --output-dir",
+                )
+            ]
+        ) from error

@@ -12,6 +12,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+
 from rockshed.components.common.units import cm, kN, ms
 from rockshed.components.sand_cushion.reader import Box, Discs, SandState, read, sizes_of
 from rockshed.fmus.python.slave import component_state
@@ -23,8 +24,10 @@ from .curves import Known, force_axes
 from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
-_READ_AS = ("lines: forces in the contacts, by width and colour; deep: the rock's lowest point below the surface that the sand had "
-            "at the start; transmitted: vertical force of the sand on its base")
+_READ_AS = (
+    "lines: forces in the contacts, by width and colour; deep: the rock's lowest point below the surface that the sand had "
+    "at the start; transmitted: vertical force of the sand on its base"
+)
 _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
 DEFLECTION_SCALES = (30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0)
@@ -62,7 +65,9 @@ def _decoded(content: bytes) -> SandState:
 def _evenly(run: Run) -> list[float]:
     """Times (s) evenly over that part of the run in which something happens."""
     force, time = run.series[f"{h.roles(run).sand}.transmitted_force"], run.series["time"]
-    return list(np.linspace(time[0], time[np.flatnonzero(force >= _INTERESTING * force.max())[-1]], FRAMES))
+    return list(
+        np.linspace(time[0], time[np.flatnonzero(force >= _INTERESTING * force.max())[-1]], FRAMES)
+    )
 
 
 def _moments(run: Run) -> list[float]:
@@ -70,7 +75,11 @@ def _moments(run: Run) -> list[float]:
     sand, time = h.roles(run).sand, run.series["time"]
     force = run.series[f"{sand}.transmitted_force"]
     half = float(time[np.flatnonzero(force >= 0.5 * force.max())[0]])
-    return [half, h.extreme(run, f"{sand}.transmitted_force")[1], h.extreme(run, f"{sand}.penetration")[1]]
+    return [
+        half,
+        h.extreme(run, f"{sand}.transmitted_force")[1],
+        h.extreme(run, f"{sand}.penetration")[1],
+    ]
 
 
 def snapshots(run: Run, file: Path) -> None:
@@ -79,11 +88,13 @@ def snapshots(run: Run, file: Path) -> None:
     columns = min(3, len(shown))
     lines = -(-len(shown) // columns)
     width = 3.5 * columns + 0.6
-    with captioned([_READ_AS, *caption(run)], file, width, (3.5 * _shape(shown) + 0.3) * lines + 0.6) as made:
+    with captioned(
+        [_READ_AS, *caption(run)], file, width, (3.5 * _shape(shown) + 0.3) * lines + 0.6
+    ) as made:
         panels = list(made.subplots(lines, columns, squeeze=False).ravel())
-        for axes in panels[len(shown):]:
+        for axes in panels[len(shown) :]:
             axes.set_axis_off()
-        draw(run, shown, made, panels[:len(shown)])
+        draw(run, shown, made, panels[: len(shown)])
 
 
 def overview(run: Run, known: Known, file: Path) -> None:
@@ -107,14 +118,26 @@ def _shape(shown: Sequence[Frame]) -> float:
 
 def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]) -> None:
     """One frame in each panel; the scale of the forces, and their colour bar, are common to all."""
-    largest = max((float(frame.state.contacts.normal_force.max(initial=0.0)) for frame in shown), default=0.0) or 1.0
+    largest = (
+        max(
+            (float(frame.state.contacts.normal_force.max(initial=0.0)) for frame in shown),
+            default=0.0,
+        )
+        or 1.0
+    )
     window = _window(shown)
     for frame, axes in zip(shown, panels):
         _panel(run, frame, axes, largest / kN, window)
     if h.roles(run).beam:
         _name_axis(panels[0], deflection_scale(run))
     _scale_bar(panels[0], shown[0].state.box.width / cm)
-    bar = made.colorbar(ScalarMappable(Normalize(0.0, largest / kN), _CHAINS), ax=list(panels), shrink=0.8, aspect=25, pad=0.01)
+    bar = made.colorbar(
+        ScalarMappable(Normalize(0.0, largest / kN), _CHAINS),
+        ax=list(panels),
+        shrink=0.8,
+        aspect=25,
+        pad=0.01,
+    )
     bar.set_label("contact force (kN)", fontsize=8)
     bar.outline.set_linewidth(0.5)
 
@@ -124,15 +147,27 @@ def deflection_scale(run: Run) -> float:
     column = f"{h.roles(run).beam}.midspan.deflection"
     if column not in run.series:
         return DEFLECTION_SCALES[-1]
-    diameter = 2.0 * float(run.provenance["components"][h.roles(run).sand]["parameters"]["beam.radius"]["value"])
+    diameter = 2.0 * float(
+        run.provenance["components"][h.roles(run).sand]["parameters"]["beam.radius"]["value"]
+    )
     most = float(abs(run.series[column]).max())
-    return next((scale for scale in DEFLECTION_SCALES if scale * most <= diameter), DEFLECTION_SCALES[-1])
+    return next(
+        (scale for scale in DEFLECTION_SCALES if scale * most <= diameter), DEFLECTION_SCALES[-1]
+    )
 
 
 def _name_axis(axes: Axes, scale: float) -> None:
-    axes.annotate(f"beam axis, deflections × {scale:g}", (0.0, 0.0), xycoords="axes fraction", xytext=(2, 1),
-                  textcoords="offset points", fontsize=6.5, color=BEAM, zorder=5,
-                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75})
+    axes.annotate(
+        f"beam axis, deflections × {scale:g}",
+        (0.0, 0.0),
+        xycoords="axes fraction",
+        xytext=(2, 1),
+        textcoords="offset points",
+        fontsize=6.5,
+        color=BEAM,
+        zorder=5,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75},
+    )
 
 
 def _scale_bar(axes: Axes, box: float) -> None:
@@ -140,10 +175,29 @@ def _scale_bar(axes: Axes, box: float) -> None:
     length = max((bar for bar in _BARS if bar <= 0.25 * box), default=0.25 * box)
     (_, right), (_, top) = axes.get_xlim(), axes.get_ylim()
     end = right - 0.12 * (right - axes.get_xlim()[0])
-    axes.annotate("", (end - length, 0.94 * top), (end, 0.94 * top), arrowprops={
-        "arrowstyle": "|-|,widthA=0.25,widthB=0.25", "color": INK, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}, zorder=5)
-    axes.annotate(f"{length:g} cm", (end - 0.5 * length, 0.94 * top), xytext=(0, -3), textcoords="offset points", ha="center",
-                  va="top", fontsize=7.5, zorder=5)
+    axes.annotate(
+        "",
+        (end - length, 0.94 * top),
+        (end, 0.94 * top),
+        arrowprops={
+            "arrowstyle": "|-|,widthA=0.25,widthB=0.25",
+            "color": INK,
+            "linewidth": 0.9,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+        zorder=5,
+    )
+    axes.annotate(
+        f"{length:g} cm",
+        (end - 0.5 * length, 0.94 * top),
+        xytext=(0, -3),
+        textcoords="offset points",
+        ha="center",
+        va="top",
+        fontsize=7.5,
+        zorder=5,
+    )
 
 
 def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
@@ -151,12 +205,23 @@ def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
     box = shown[0].state.box
     margin = max(0.06 * box.width, 0.0 if math.isinf(box.wall_top) else 1.2 * box.wall_thickness)
     beam = max(float(frame.state.beam.radius.max(initial=0.0)) for frame in shown)
-    top = max(float(disc.y.max() + disc.radius.max()) for frame in shown for disc in (frame.state.rock, frame.state.discs))
+    top = max(
+        float(disc.y.max() + disc.radius.max())
+        for frame in shown
+        for disc in (frame.state.rock, frame.state.discs)
+    )
     highest = min(top, box.base + 1.2 * box.width)
-    return box.left - margin, box.left + box.width + margin, box.base - max(2.2 * beam, margin), highest + 0.3 * margin
+    return (
+        box.left - margin,
+        box.left + box.width + margin,
+        box.base - max(2.2 * beam, margin),
+        highest + 0.3 * margin,
+    )
 
 
-def _panel(run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[float, float, float, float]) -> None:
+def _panel(
+    run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[float, float, float, float]
+) -> None:
     left, right, bottom, top = (value / cm for value in window)
     state = frame.state
     axes.set(aspect="equal", xlim=(left, right), ylim=(bottom, top), xticks=[], yticks=[])
@@ -177,22 +242,47 @@ def _walls(axes: Axes, box: Box, top: float) -> None:
     """The inner faces of the side walls; those of a finite height as thick as they are."""
     for face, outwards in ((box.left, -1.0), (box.left + box.width, 1.0)):
         if math.isinf(box.wall_top):
-            axes.plot([face / cm, face / cm], [box.base / cm, top], color=GREY, linewidth=1.0, zorder=2)
+            axes.plot(
+                [face / cm, face / cm], [box.base / cm, top], color=GREY, linewidth=1.0, zorder=2
+            )
         else:
-            axes.add_patch(Rectangle((face / cm, box.base / cm), outwards * box.wall_thickness / cm, (box.wall_top - box.base) / cm,
-                                     facecolor=_BEAM_FACE, edgecolor=GREY, linewidth=0.7, zorder=2))
+            axes.add_patch(
+                Rectangle(
+                    (face / cm, box.base / cm),
+                    outwards * box.wall_thickness / cm,
+                    (box.wall_top - box.base) / cm,
+                    facecolor=_BEAM_FACE,
+                    edgecolor=GREY,
+                    linewidth=0.7,
+                    zorder=2,
+                )
+            )
 
 
 def _on_floor(run: Run) -> bool:
     """Whether the sand lies on a rigid floor; the places of beam discs then mean nothing."""
-    return str(run.provenance["components"][h.roles(run).sand]["parameters"]["base"]["value"]) == "floor"
+    return (
+        str(run.provenance["components"][h.roles(run).sand]["parameters"]["base"]["value"])
+        == "floor"
+    )
 
 
 def _discs(axes: Axes, discs: Discs, face: str, edge: str, order: int) -> None:
     size = 2.0 * discs.radius / cm
-    axes.add_collection(EllipseCollection(size, size, np.zeros_like(size), units="xy", offset_transform=axes.transData,
-                                          offsets=np.column_stack((discs.x, discs.y)) / cm, facecolors=face, edgecolors=edge,
-                                          linewidths=0.5, zorder=order))
+    axes.add_collection(
+        EllipseCollection(
+            size,
+            size,
+            np.zeros_like(size),
+            units="xy",
+            offset_transform=axes.transData,
+            offsets=np.column_stack((discs.x, discs.y)) / cm,
+            facecolors=face,
+            edgecolors=edge,
+            linewidths=0.5,
+            zorder=order,
+        )
+    )
 
 
 def _chains(axes: Axes, state: SandState, largest: float) -> None:
@@ -200,9 +290,25 @@ def _chains(axes: Axes, state: SandState, largest: float) -> None:
     contacts = state.contacts
     share = contacts.normal_force / kN / largest
     order = [i for i in np.argsort(share) if share[i] > _SHOWN]
-    ends = np.stack((np.column_stack((contacts.x1, contacts.y1)), np.column_stack((contacts.x2, contacts.y2))), axis=1) / cm
-    axes.add_collection(LineCollection(list(ends[order]), colors=_CHAINS(share[order]),
-                                       linewidths=0.4 + 3.6 * share[order], capstyle="round", zorder=2))
+    ends = (
+        np.stack(
+            (
+                np.column_stack((contacts.x1, contacts.y1)),
+                np.column_stack((contacts.x2, contacts.y2)),
+            ),
+            axis=1,
+        )
+        / cm
+    )
+    axes.add_collection(
+        LineCollection(
+            list(ends[order]),
+            colors=_CHAINS(share[order]),
+            linewidths=0.4 + 3.6 * share[order],
+            capstyle="round",
+            zorder=2,
+        )
+    )
 
 
 def _axis_of_beam(run: Run, frame: Frame, axes: Axes) -> None:
@@ -215,12 +321,21 @@ def _axis_of_beam(run: Run, frame: Frame, axes: Axes) -> None:
     row = int(abs(run.series["time"] - frame.time).argmin())
     start = np.array([run.series[column][0] for column in columns])
     moved = np.array([run.series[column][row] for column in columns]) - start
-    axes.plot(frame.state.beam.x / cm, (start + deflection_scale(run) * moved) / cm, color=BEAM, linewidth=1.4, zorder=4)
+    axes.plot(
+        frame.state.beam.x / cm,
+        (start + deflection_scale(run) * moved) / cm,
+        color=BEAM,
+        linewidth=1.4,
+        zorder=4,
+    )
 
 
 def _words(run: Run, frame: Frame) -> str:
     """Depth of the rock and transmitted force at the time of the frame."""
     sand, row = h.roles(run).sand, int(abs(run.series["time"] - frame.time).argmin())
-    depth, force = run.series[f"{sand}.penetration"][row], run.series[f"{sand}.transmitted_force"][row]
+    depth, force = (
+        run.series[f"{sand}.penetration"][row],
+        run.series[f"{sand}.transmitted_force"][row],
+    )
     place = f"{abs(depth) / cm:.1f} cm {'deep' if depth > 0.0 else 'above'}"
     return f"rock {place}, {force / kN:.{2 if abs(force) < 10.0 * kN else 0}f} kN transmitted"

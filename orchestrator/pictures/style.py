@@ -24,11 +24,31 @@ _DPI = 140
 _LETTERS = 20
 """Letters of the caption in an inch."""
 _LOOK = {
-    "font.family": "sans-serif", "font.size": 9.0, "axes.titlesize": 9.0, "axes.titlelocation": "left", "axes.labelsize": 9.0,
-    "axes.edgecolor": GREY, "axes.labelcolor": INK, "text.color": INK, "xtick.color": GREY, "ytick.color": GREY,
-    "xtick.labelcolor": INK, "ytick.labelcolor": INK, "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": FAINT, "grid.linewidth": 0.5,
-    "axes.axisbelow": True, "lines.linewidth": 1.4, "legend.frameon": False, "legend.fontsize": 8.5, "figure.facecolor": "white",
+    "font.family": "sans-serif",
+    "font.size": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.0,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "axes.linewidth": 0.7,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.5,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "figure.facecolor": "white",
 }
 
 
@@ -53,15 +73,26 @@ def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Figure
     with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
         wrapped = [line for text in lines for line in wrap(text, int(_LETTERS * width))]
         made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
-        made.supxlabel("\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3)
+        made.supxlabel(
+            "\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3
+        )
         yield made
 
 
 def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> None:
     """A horizontal line at what others found, named at its right end."""
     axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes)
-    axes.annotate(text, (1.0, value), xycoords=("axes fraction", "data"), xytext=(-2, 2), textcoords="offset points",
-                  ha="right", va="bottom", fontsize=8, color=GREY)
+    axes.annotate(
+        text,
+        (1.0, value),
+        xycoords=("axes fraction", "data"),
+        xytext=(-2, 2),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        fontsize=8,
+        color=GREY,
+    )
 
 
 def over_time(axes: Axes, time: NDArray[np.float64]) -> None:
@@ -78,6 +109,7 @@ def legend(axes: Axes, **options: Any) -> None:
 
 def second_scale(axes: Axes, factor: float, label: str) -> None:
     """The same values in another unit at the right: ``factor`` * value."""
+
     def there(y: NDArray[np.float64]) -> NDArray[np.float64]:
         return y * factor
 

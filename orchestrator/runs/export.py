@@ -17,7 +17,10 @@ def system_text(system: System) -> str:
     data = system.model_dump(mode="json", exclude_defaults=True)
     data["connections"] = [_connection(c) for c in system.connections]
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
-    return tomli_w.dumps({**{key: value for key, value in data.items() if key not in tables}, **tables}, multiline_strings=False)
+    return tomli_w.dumps(
+        {**{key: value for key, value in data.items() if key not in tables}, **tables},
+        multiline_strings=False,
+    )
 
 
 def _connection(connection: Connection) -> str:
@@ -31,7 +34,15 @@ def export_system(system: System, folder: Path) -> Path:
         InputRefused: the folder holds something, or cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputRefused([Problem(str(folder), "is not empty" if folder.is_dir() else "is a file", "name a new or empty folder")])
+        raise InputRefused(
+            [
+                Problem(
+                    str(folder),
+                    "is not empty" if folder.is_dir() else "is a file",
+                    "name a new or empty folder",
+                )
+            ]
+        )
     specs: dict[str, Any] = {}
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -42,8 +53,17 @@ def export_system(system: System, folder: Path) -> Path:
                 copy = folder / f"{name}-{file.name}"
             shutil.copyfile(file, copy)
             specs[name] = spec.model_copy(update={"fmu": copy.name})
-        (folder / SYSTEM).write_text(system_text(system.model_copy(update={"components": specs})), encoding="utf-8")
+        (folder / SYSTEM).write_text(
+            system_text(system.model_copy(update={"components": specs})), encoding="utf-8"
+        )
     except OSError as error:
-        raise InputRefused([Problem(str(folder), f"cannot be written: {error.strerror or error}",
-                                    "name another folder")]) from error
+        raise InputRefused(
+            [
+                Problem(
+                    str(folder),
+                    f"cannot be written: {error.strerror or error}",
+                    "name another folder",
+                )
+            ]
+        ) from error
     return folder / SYSTEM

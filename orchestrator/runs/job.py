@@ -60,7 +60,11 @@ class Job:
         """Components of the catalogue whose kernels this process will compile if they have never been; those of a system file are
         not known."""
         is_native = self.facts.get("runtime") == "native"
-        return frozenset() if is_native or "case" not in self.facts else frozenset(case(self.facts["case"]).models.values())
+        return (
+            frozenset()
+            if is_native or "case" not in self.facts
+            else frozenset(case(self.facts["case"]).models.values())
+        )
 
 
 def is_file(target: str) -> bool:
@@ -75,18 +79,35 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
         InputRefused: everything that is wrong with the request.
     """
     if request.target.endswith(".fmu"):
-        raise InputRefused([Problem(request.target, "is an FMU, and a run takes a case or a system file", "look into it with "
-                                    "`rockshed info`, and name it in a system file; `rockshed info lab-impact --toml` shows one")])
+        raise InputRefused(
+            [
+                Problem(
+                    request.target,
+                    "is an FMU, and a run takes a case or a system file",
+                    "look into it with "
+                    "`rockshed info`, and name it in a system file; `rockshed info lab-impact --toml` shows one",
+                )
+            ]
+        )
     problems: list[Problem] = []
     values = assignments("--set", request.settings, problems)
     numbers = assignments("--size", request.sizes, problems)
     if is_file(request.target):
-        problems += [Problem(option, "is for cases only", reason) for option, reason, given in (
-            ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
-            ("--model", "set the parameters of its sand", request.model),
-            ("--coupling", "set --master, --exchange-step and the components' parameters", request.coupling),
-            ("--in-process", "a system file names FMU files", request.in_process),
-            ("--runtime", "a system file names FMU files", request.runtime != AUTO)) if given]
+        problems += [
+            Problem(option, "is for cases only", reason)
+            for option, reason, given in (
+                ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
+                ("--model", "set the parameters of its sand", request.model),
+                (
+                    "--coupling",
+                    "set --master, --exchange-step and the components' parameters",
+                    request.coupling,
+                ),
+                ("--in-process", "a system file names FMU files", request.in_process),
+                ("--runtime", "a system file names FMU files", request.runtime != AUTO),
+            )
+            if given
+        ]
         if problems:
             raise InputRefused(problems)
         name = Path(request.target).stem
@@ -94,14 +115,22 @@ def prepare(request: Request, note: Note = lambda text: None) -> Job:
         sources, facts = dict[str, Source](), dict[str, Any](system_file=request.target)
     else:
         name = case(request.target).name
-        system, sources, facts = _from_case(case(request.target), request, values, numbers, problems, note)
+        system, sources, facts = _from_case(
+            case(request.target), request, values, numbers, problems, note
+        )
     system = _changed(system, request, values, problems)
     problems += _load_cell_problems(request, system)
     if problems:
         raise InputRefused(problems + plan_problems(system, sources))
     if "case" in facts:
-        system = with_values(system, {name: value for name, value in case(facts["case"]).derived(system, facts["sizes"]).items()
-                                      if name not in values})
+        system = with_values(
+            system,
+            {
+                name: value
+                for name, value in case(facts["case"]).derived(system, facts["sizes"]).items()
+                if name not in values
+            },
+        )
     seen = {"load_cell": request.load_cell} if request.load_cell else {}
     return Job(name, system, sources, {**facts, **seen, "changed": {**values, **request.options}})
 
@@ -114,10 +143,19 @@ def _load_cell_problems(request: Request, system: System) -> list[Problem]:
     fastest = 1.0 / (LOAD_CELL_ROWS * interval)
     if 0.0 < request.load_cell <= fastest * (1.0 + 1e-9):
         return []
-    return [Problem("--load-cell", f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 and up to "
-                    f"{fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
-                    "give a lower one" + (f", or --output-interval {1.0 / (LOAD_CELL_ROWS * request.load_cell):.2g} or less"
-                                          if request.load_cell > 0.0 else ""))]
+    return [
+        Problem(
+            "--load-cell",
+            f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 and up to "
+            f"{fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
+            "give a lower one"
+            + (
+                f", or --output-interval {1.0 / (LOAD_CELL_ROWS * request.load_cell):.2g} or less"
+                if request.load_cell > 0.0
+                else ""
+            ),
+        )
+    ]
 
 
 def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem]:
@@ -132,11 +170,23 @@ def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem
     return []
 
 
-def _from_case(chosen: Case, request: Request, values: Mapping[str, Value], numbers: Mapping[str, Value],
-               problems: list[Problem], note: Note) -> tuple[System, dict[str, Source], dict[str, Any]]:
+def _from_case(
+    chosen: Case,
+    request: Request,
+    values: Mapping[str, Value],
+    numbers: Mapping[str, Value],
+    problems: list[Problem],
+    note: Note,
+) -> tuple[System, dict[str, Source], dict[str, Any]]:
     coupling = request.coupling or next(iter(chosen.couplings))
     if coupling not in chosen.couplings:
-        problems.append(Problem("--coupling", f"{coupling!r} is unknown", f"choose one of {', '.join(chosen.couplings)}"))
+        problems.append(
+            Problem(
+                "--coupling",
+                f"{coupling!r} is unknown",
+                f"choose one of {', '.join(chosen.couplings)}",
+            )
+        )
     problems += _runtime_problems(request)
     model = model_changes(chosen, request.model, values)
     sizes = case_sizes(chosen, {**model.sizes, **numbers}, problems)
@@ -147,22 +197,38 @@ def _from_case(chosen: Case, request: Request, values: Mapping[str, Value], numb
         facts["model"] = request.model
     if request.in_process:
         here = {name: f"{made} (in process)" for name, made in chosen.models.items()}
-        return _with_model(chosen.make(here, sizes, coupling), model), _in_process(chosen, sizes), facts
+        return (
+            _with_model(chosen.make(here, sizes, coupling), model),
+            _in_process(chosen, sizes),
+            facts,
+        )
     fmus = case_fmus(chosen, sizes, note, request.runtime)
     facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
     return _with_model(chosen.make(fmus.files, sizes, coupling), model), {}, facts
 
 
 def _with_model(system: System, model: Changes) -> System:
-    return system_from({**with_values(system, model.values).model_dump(), **model.options}, system.name)
+    return system_from(
+        {**with_values(system, model.values).model_dump(), **model.options}, system.name
+    )
 
 
 def _runtime_problems(request: Request) -> list[Problem]:
     known = (AUTO, "native", "python")
     if request.runtime not in known:
-        return [Problem("--runtime", f"{request.runtime!r} is unknown", f"choose one of {', '.join(known)}")]
+        return [
+            Problem(
+                "--runtime", f"{request.runtime!r} is unknown", f"choose one of {', '.join(known)}"
+            )
+        ]
     if request.in_process and request.runtime != AUTO:
-        return [Problem("--runtime", "is for FMUs, and --in-process runs without them", "leave one of them out")]
+        return [
+            Problem(
+                "--runtime",
+                "is for FMUs, and --in-process runs without them",
+                "leave one of them out",
+            )
+        ]
     return []
 
 
@@ -173,7 +239,9 @@ def _in_process(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> dict[st
     return {name: InProcess(component(model), sizes[name]) for name, model in chosen.models.items()}
 
 
-def _changed(system: System, request: Request, values: Mapping[str, Value], problems: list[Problem]) -> System:
+def _changed(
+    system: System, request: Request, values: Mapping[str, Value], problems: list[Problem]
+) -> System:
     """The system with other values and other keys, as far as they have the right form."""
     try:
         system = with_values(system, values)

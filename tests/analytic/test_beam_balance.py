@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from rockshed.components.catalogue import component
 
 BEAM = component("RBSMBeam")
@@ -16,9 +17,14 @@ EXCHANGE = 1e-5
 
 loads = st.lists(st.floats(-1e4, 1e4), min_size=3 * N, max_size=3 * N)
 speeds = st.lists(st.floats(-1, 1), min_size=2, max_size=2)
-parameters = st.fixed_dictionaries({"supports": st.sampled_from(["simple", "fixed"]), "gravity": st.sampled_from([0.0, 9.81]),
-                                    "damping.mass": st.sampled_from([0.0, 200.0]),
-                                    "damping.stiffness": st.sampled_from([0.0, 1e-6])})
+parameters = st.fixed_dictionaries(
+    {
+        "supports": st.sampled_from(["simple", "fixed"]),
+        "gravity": st.sampled_from([0.0, 9.81]),
+        "damping.mass": st.sampled_from([0.0, 200.0]),
+        "damping.stiffness": st.sampled_from([0.0, 1e-6]),
+    }
+)
 
 
 def beam(elements=N, **chosen):
@@ -39,7 +45,9 @@ def run(instance, load_at, until, support_at=None, exchange=EXCHANGE):
     for count in range(round(until / exchange)):
         put(instance, load_at(count * exchange))
         if support_at:
-            instance["support.position.y"], instance["support.velocity.y"] = support_at(count * exchange)
+            instance["support.position.y"], instance["support.velocity.y"] = support_at(
+                count * exchange
+            )
         instance.step(count * exchange, exchange)
     return instance
 
@@ -59,8 +67,15 @@ def test_momentum(chosen, sequence, speed):
         force = instance["force.y"] - MASS * instance["gravity"]
         left, right = instance["support.mean_force.y"]
         impulse = EXCHANGE * (force.sum() - left - right)
-        passed_on = np.abs(force).sum() + np.abs(instance["torque"]).sum() * N / SPAN + abs(left) + abs(right)
-        scale = EXCHANGE * passed_on + MASS * (np.abs(before) + np.abs(instance["velocity.y"])).sum()
+        passed_on = (
+            np.abs(force).sum()
+            + np.abs(instance["torque"]).sum() * N / SPAN
+            + abs(left)
+            + abs(right)
+        )
+        scale = (
+            EXCHANGE * passed_on + MASS * (np.abs(before) + np.abs(instance["velocity.y"])).sum()
+        )
         assert gained.sum() == pytest.approx(impulse, abs=1e-12 * scale)
         if chosen["supports"] == "simple":
             moment_impulse = EXCHANGE * (force @ PLACES + instance["torque"].sum() - right * SPAN)
@@ -80,8 +95,14 @@ def test_energy_residual_is_small_and_halves_with_the_step(chosen, sequence, spe
             instance["support.velocity.y"] = speed
             instance["support.position.y"] = instance["support.velocity.y"] * EXCHANGE * count * 0.9
             instance.step(0.0, EXCHANGE)
-            scale = max(scale, abs(instance["energy.work.contact"]), abs(instance["energy.work.support"]),
-                        instance["energy.kinetic"], instance["energy.elastic"], 1e-9)
+            scale = max(
+                scale,
+                abs(instance["energy.work.contact"]),
+                abs(instance["energy.work.support"]),
+                instance["energy.kinetic"],
+                instance["energy.elastic"],
+                1e-9,
+            )
         residuals.append(instance["energy.residual"])
     assert abs(residuals[0]) < 0.02 * scale
     assert abs(residuals[0] - 2 * residuals[1]) < 0.05 * abs(residuals[0]) + 1e-4 * scale
@@ -95,9 +116,21 @@ def half_sine(time):
     return load
 
 
-@pytest.mark.parametrize("chosen", [
-    {}, {"supports": "fixed", "damping.mass": 100.0, "damping.stiffness": 1e-6, "gravity": 9.81},
-    {"gravity": 9.81, "deck.mass": 9.0, "box.mass": 5.0, "box.left": 0.25, "box.width": 0.48, "damping.mass": 100.0}])
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        {},
+        {"supports": "fixed", "damping.mass": 100.0, "damping.stiffness": 1e-6, "gravity": 9.81},
+        {
+            "gravity": 9.81,
+            "deck.mass": 9.0,
+            "box.mass": 5.0,
+            "box.left": 0.25,
+            "box.width": 0.48,
+            "damping.mass": 100.0,
+        },
+    ],
+)
 def test_residual_of_an_impact(chosen):
     residuals = []
     for dt in (2e-6, 1e-6, 5e-7):
@@ -109,7 +142,9 @@ def test_residual_of_an_impact(chosen):
 
 
 def test_damping_takes_all_that_the_impact_gave():
-    instance = run(beam(**{"damping.mass": 400.0, "damping.stiffness": 1e-6}), half_sine, 0.15, exchange=1e-4)
+    instance = run(
+        beam(**{"damping.mass": 400.0, "damping.stiffness": 1e-6}), half_sine, 0.15, exchange=1e-4
+    )
     assert instance["energy.kinetic"] + instance["energy.elastic"] < 1e-9
     assert instance["energy.work.contact"] > 0.5
     assert instance["energy.damping"] == pytest.approx(instance["energy.work.contact"], rel=1e-3)
@@ -117,6 +152,7 @@ def test_damping_takes_all_that_the_impact_gave():
 
 def test_supports_that_move_like_a_wave_of_the_ground():
     """Both supports shaken apart: their work is what kinetic and elastic energy gain, to first order in the step."""
+
     def shaken(time):
         angle = 2 * math.pi * 100 * time
         height, speed = 1e-3 * math.sin(angle), 0.2 * math.pi * math.cos(angle)
@@ -124,7 +160,9 @@ def test_supports_that_move_like_a_wave_of_the_ground():
 
     residuals = []
     for dt in (1e-6, 5e-7):
-        instance = run(beam(supports="fixed", internal_step=dt), lambda time: np.zeros(3 * N), 5.5e-3, shaken)
+        instance = run(
+            beam(supports="fixed", internal_step=dt), lambda time: np.zeros(3 * N), 5.5e-3, shaken
+        )
         residuals.append(instance["energy.residual"])
     assert instance["energy.work.support"] > 0.1
     assert abs(residuals[0]) < 2e-2 * instance["energy.work.support"]
@@ -136,9 +174,16 @@ def test_supports_and_beam_carried_along_together_feel_nothing():
         instance = beam()
         speed = ends[0] + (ends[1] - ends[0]) * PLACES / SPAN
         instance.state("v_rate")[1:-1] = speed
-        run(instance, lambda time: np.zeros(3 * N), 1e-3, lambda time, ends=ends: (np.array(ends) * time, ends))
+        run(
+            instance,
+            lambda time: np.zeros(3 * N),
+            1e-3,
+            lambda time, ends=ends: (np.array(ends) * time, ends),
+        )
         assert instance["position.y"] + 0.025 == pytest.approx(speed * 1e-3, rel=1e-9)
-        assert instance["angular_velocity"] == pytest.approx(np.full(N, (ends[1] - ends[0]) / SPAN), abs=1e-8)
+        assert instance["angular_velocity"] == pytest.approx(
+            np.full(N, (ends[1] - ends[0]) / SPAN), abs=1e-8
+        )
         assert instance["energy.elastic"] < 1e-16
         assert np.abs(instance["support.force.y"]).max() < 1e-3
         assert abs(instance["energy.work.support"]) < 1e-6
@@ -172,8 +217,12 @@ def test_symmetric_load_gives_symmetric_response_to_the_bit(elements, supports):
 def test_the_weight_adds_its_own_deflection_and_nothing_else():
     with_weight, without = (run(beam(gravity=gravity), half_sine, 3e-3) for gravity in (9.81, 0.0))
     alone = beam(gravity=9.81)
-    assert with_weight["position.y"] - alone["position.y"] == pytest.approx(without["position.y"] + 0.025, abs=1e-13)
-    assert with_weight["midspan.moment"] - alone["midspan.moment"] == pytest.approx(without["midspan.moment"], rel=1e-8)
+    assert with_weight["position.y"] - alone["position.y"] == pytest.approx(
+        without["position.y"] + 0.025, abs=1e-13
+    )
+    assert with_weight["midspan.moment"] - alone["midspan.moment"] == pytest.approx(
+        without["midspan.moment"], rel=1e-8
+    )
 
 
 def test_the_couple_of_a_torque_does_the_torques_work():

@@ -5,6 +5,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError
 
@@ -53,8 +54,13 @@ def test_first_frequencies(n):
     errors = []
     for elements in (24, 48):
         instance, spacing = beam(elements), SPAN / elements
-        omega = frequency(instance, "v", mode(instance, n), 1e-6, 1000 // n ** 2)
-        chain = 4 / spacing ** 2 * math.sqrt(EI / MASS_PER_LENGTH) * math.sin(n * math.pi / (2 * elements)) ** 2
+        omega = frequency(instance, "v", mode(instance, n), 1e-6, 1000 // n**2)
+        chain = (
+            4
+            / spacing**2
+            * math.sqrt(EI / MASS_PER_LENGTH)
+            * math.sin(n * math.pi / (2 * elements)) ** 2
+        )
         assert omega == pytest.approx(chain, rel=1e-9)
         errors.append(1 - omega / ((n * math.pi / SPAN) ** 2 * math.sqrt(EI / MASS_PER_LENGTH)))
     assert errors[0] == pytest.approx((n * math.pi / 24) ** 2 / 12, rel=0.02)
@@ -66,7 +72,10 @@ def test_axial_frequencies(n):
     instance = beam()
     shape = np.sin((2 * n - 1) * np.pi / 2 * (np.arange(24) + 0.5) / 24)
     omega = frequency(instance, "u", shape, 1e-7, 2000 // n)
-    assert omega == pytest.approx(2 * 24 / SPAN * math.sqrt(EA / MASS_PER_LENGTH) * math.sin((2 * n - 1) * math.pi / 96), rel=1e-9)
+    assert omega == pytest.approx(
+        2 * 24 / SPAN * math.sqrt(EA / MASS_PER_LENGTH) * math.sin((2 * n - 1) * math.pi / 96),
+        rel=1e-9,
+    )
 
 
 def stiffness_over_mass(instance, array):
@@ -88,7 +97,11 @@ def test_frequencies_on_fixed_supports():
     errors = []
     for elements in (24, 72):
         instance = beam(elements, supports="fixed", internal_step=1e-8)
-        errors.append(np.sqrt(np.sort(np.linalg.eigvals(stiffness_over_mass(instance, "v")).real)[:3]) / expected - 1)
+        errors.append(
+            np.sqrt(np.sort(np.linalg.eigvals(stiffness_over_mass(instance, "v")).real)[:3])
+            / expected
+            - 1
+        )
     assert np.abs(errors[0]).max() < 0.04
     assert errors[0] / errors[1] == pytest.approx(9, rel=0.08)
 
@@ -98,7 +111,9 @@ def test_frequencies_on_fixed_supports():
 @pytest.mark.parametrize("second_moment", [187e-8, 187e-6], ids=["axial", "bending"])
 def test_stable_step_is_that_of_the_highest_frequency(elements, supports, second_moment):
     """Few discs of the laboratory's section are limited axially; a stiffer section always in bending."""
-    instance = beam(elements, supports=supports, internal_step=1e-10, section__second_moment=second_moment)
+    instance = beam(
+        elements, supports=supports, internal_step=1e-10, section__second_moment=second_moment
+    )
     omega2 = 0.0
     for array in ("u", "v"):
         matrix = stiffness_over_mass(instance, array)
@@ -109,14 +124,25 @@ def test_stable_step_is_that_of_the_highest_frequency(elements, supports, second
 
 def test_critical_steps_of_the_laboratory_beam():
     assert beam()["stable_step"] == pytest.approx(6.143e-6, rel=1e-4)
-    assert beam()["stable_step"] == pytest.approx(0.05 ** 2 / 2 * math.sqrt(MASS_PER_LENGTH / EI), rel=1e-12)
+    assert beam()["stable_step"] == pytest.approx(
+        0.05**2 / 2 * math.sqrt(MASS_PER_LENGTH / EI), rel=1e-12
+    )
     axial = 0.05 * math.sqrt(7850 / (2.1e6 * 9.80665e4)) / math.cos(math.pi / 96)
     assert beam(section__second_moment=1e-9)["stable_step"] == pytest.approx(axial, rel=1e-12)
 
 
-@pytest.mark.parametrize("parameters", [
-    {}, {"supports": "fixed"}, {"section__second_moment": 1e-7}, {"section__second_moment": 1e-7, "supports": "fixed"},
-    {"damping__stiffness": 3e-6}, {"damping__mass": 2e5}, {"damping__mass": 5e4, "damping__stiffness": 1e-6, "supports": "fixed"}])
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {},
+        {"supports": "fixed"},
+        {"section__second_moment": 1e-7},
+        {"section__second_moment": 1e-7, "supports": "fixed"},
+        {"damping__stiffness": 3e-6},
+        {"damping__mass": 2e5},
+        {"damping__mass": 5e4, "damping__stiffness": 1e-6, "supports": "fixed"},
+    ],
+)
 def test_bounded_just_below_the_stable_step_and_not_just_above(parameters):
     rng = np.random.default_rng(1)
     kick = 1e-6 * rng.standard_normal((2, 24))
@@ -126,7 +152,9 @@ def test_bounded_just_below_the_stable_step_and_not_just_above(parameters):
         instance.state("u")[1:-1], instance.state("v")[1:-1] = kick
     below.step(0.0, 20000 * below["internal_step"])
     assert np.abs(below["position.y"] + 0.025).max() < 2e-5
-    with pytest.raises(ComponentError, match=r"RBSMBeam: at t = 0 s the beam diverged.*internal_step is .* stable"):
+    with pytest.raises(
+        ComponentError, match=r"RBSMBeam: at t = 0 s the beam diverged.*internal_step is .* stable"
+    ):
         above.step(0.0, 20000 * above["internal_step"])
 
 
@@ -134,8 +162,8 @@ def test_bounded_just_below_the_stable_step_and_not_just_above(parameters):
 def test_decay_of_the_first_mode(damping):
     """x[k+1] = p x[k] - q x[k-1], q the square of the decay between samples; a step takes 1 - a dt from it."""
     instance = beam(**damping)
-    omega = 4 / 0.05 ** 2 * math.sqrt(EI / MASS_PER_LENGTH) * math.sin(math.pi / 48) ** 2
-    rate = instance["damping.mass"] + instance["damping.stiffness"] * omega ** 2
+    omega = 4 / 0.05**2 * math.sqrt(EI / MASS_PER_LENGTH) * math.sin(math.pi / 48) ** 2
+    rate = instance["damping.mass"] + instance["damping.stiffness"] * omega**2
     x0, x1, x2, x3 = history(instance, "v", mode(instance, 1), 1e-6, 1000, 3)
     _, q = np.linalg.solve([[x1, -x0], [x2, -x1]], [x2, x3])
     assert math.log(q) / 1000 == pytest.approx(math.log(1 - rate * 1e-6), rel=1e-6)
@@ -148,7 +176,8 @@ def test_mass_that_is_even_over_the_span_slows_all_modes_alike():
     for heavy in (deck, box):
         assert heavy["stable_step"] == pytest.approx(2 * plain["stable_step"], rel=1e-9)
         assert frequency(heavy, "v", mode(heavy, 1), 1e-6, 1000) == pytest.approx(
-            frequency(beam(), "v", mode(plain, 1), 1e-6, 1000) / 2, rel=1e-9)
+            frequency(beam(), "v", mode(plain, 1), 1e-6, 1000) / 2, rel=1e-9
+        )
 
 
 @pytest.mark.parametrize("supports", ["simple", "fixed"])
@@ -158,7 +187,7 @@ def test_stable_step_with_a_box_is_on_the_safe_side(supports):
         instance = beam(supports=supports, deck__mass=10.0, box__mass=20.0)
         instance["internal_step"] = factor * instance["stable_step"]
         instance.state("v")[1:-1] = 1e-9 * np.random.default_rng(1).uniform(-1, 1, 24)
-        with (pytest.raises(ComponentError, match="diverged") if grows else nullcontext()):
+        with pytest.raises(ComponentError, match="diverged") if grows else nullcontext():
             instance.step(0.0, 3000 * instance["internal_step"])
         if not grows:
             assert np.abs(instance["position.y"] + 0.025).max() < 1e-7

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError
 
@@ -39,12 +40,16 @@ def put_midspan_load(instance, load=LOAD):
         instance[f"force.y[{number}]"] -= 0.5 * load
 
 
-@pytest.mark.parametrize(("elements", "term"), [(5, 2 / 25), (25, 2 / 625), (6, -1 / 36), (24, -1 / 576)])
+@pytest.mark.parametrize(
+    ("elements", "term"), [(5, 2 / 25), (25, 2 / 625), (6, -1 / 36), (24, -1 / 576)]
+)
 def test_midspan_load_on_simple_supports(elements, term):
     instance = beam(elements)
     put_midspan_load(instance)
     come_to_rest(instance)
-    assert instance["midspan.deflection"] == pytest.approx(LOAD * SPAN ** 3 / (48 * EI) * (1 + term), rel=1e-8)
+    assert instance["midspan.deflection"] == pytest.approx(
+        LOAD * SPAN**3 / (48 * EI) * (1 + term), rel=1e-8
+    )
     arm = SPAN if elements % 2 else SPAN * (1 - 1 / elements)
     assert instance["midspan.moment"] == pytest.approx(LOAD * arm / 4, rel=1e-8)
     assert instance["midspan.strain"] == pytest.approx(LOAD * arm / 4 * 0.05 / EI, rel=1e-8)
@@ -52,14 +57,25 @@ def test_midspan_load_on_simple_supports(elements, term):
     assert instance["support.force.y"] == pytest.approx([-LOAD / 2, -LOAD / 2], rel=1e-8)
 
 
-@pytest.mark.parametrize(("elements", "deflection_term", "moment_term"), [
-    (5, 2 / 25 + 9 / 5 / 625, 1 / 25), (25, 2 / 625 + 9 / 5 / 25 ** 4, 1 / 625), (6, 4 / 5 / 36, 0.0), (24, 4 / 5 / 576, 0.0)])
+@pytest.mark.parametrize(
+    ("elements", "deflection_term", "moment_term"),
+    [
+        (5, 2 / 25 + 9 / 5 / 625, 1 / 25),
+        (25, 2 / 625 + 9 / 5 / 25**4, 1 / 625),
+        (6, 4 / 5 / 36, 0.0),
+        (24, 4 / 5 / 576, 0.0),
+    ],
+)
 def test_uniform_load_on_simple_supports(elements, deflection_term, moment_term):
     instance = beam(elements)
     instance["force.y"] = -LOAD / elements
     come_to_rest(instance)
-    assert instance["midspan.deflection"] == pytest.approx(5 * LOAD * SPAN ** 3 / (384 * EI) * (1 + deflection_term), rel=1e-8)
-    assert instance["midspan.moment"] == pytest.approx(LOAD * SPAN / 8 * (1 + moment_term), rel=1e-8)
+    assert instance["midspan.deflection"] == pytest.approx(
+        5 * LOAD * SPAN**3 / (384 * EI) * (1 + deflection_term), rel=1e-8
+    )
+    assert instance["midspan.moment"] == pytest.approx(
+        LOAD * SPAN / 8 * (1 + moment_term), rel=1e-8
+    )
 
 
 @pytest.mark.parametrize("n", [5, 25])
@@ -69,7 +85,9 @@ def test_midspan_load_on_fixed_supports(n):
     put_midspan_load(instance)
     come_to_rest(instance)
     assert instance["midspan.moment"] == pytest.approx(LOAD * SPAN / 8, rel=1e-8)
-    assert instance["midspan.deflection"] == pytest.approx(LOAD * SPAN ** 3 / (192 * EI) * (1 + 8 / n ** 2 - 6 / n ** 3), rel=1e-8)
+    assert instance["midspan.deflection"] == pytest.approx(
+        LOAD * SPAN**3 / (192 * EI) * (1 + 8 / n**2 - 6 / n**3), rel=1e-8
+    )
     assert instance["support.force.y"] == pytest.approx([-LOAD / 2, -LOAD / 2], rel=1e-8)
 
 
@@ -79,8 +97,10 @@ def test_uniform_load_on_fixed_supports_converges_with_the_square_of_the_spacing
         instance = beam(n, supports="fixed")
         instance["force.y"] = -LOAD / n
         come_to_rest(instance)
-        assert instance["midspan.moment"] == pytest.approx(LOAD * SPAN / 24 * (1 + 2 / n ** 2), rel=1e-7)
-        errors.append(instance["midspan.deflection"] / (LOAD * SPAN ** 3 / (384 * EI)) - 1)
+        assert instance["midspan.moment"] == pytest.approx(
+            LOAD * SPAN / 24 * (1 + 2 / n**2), rel=1e-7
+        )
+        errors.append(instance["midspan.deflection"] / (LOAD * SPAN**3 / (384 * EI)) - 1)
     assert errors[0] / errors[1] == pytest.approx(9, rel=0.05)
 
 
@@ -90,8 +110,12 @@ def test_lever_rule_of_a_load_and_a_torque(number):
     loaded, turned = beam(24), beam(24)
     loaded[f"force.y[{number}]"] = -LOAD
     turned[f"torque[{number}]"] = LOAD
-    assert come_to_rest(loaded)["support.force.y"] == pytest.approx([-LOAD * (1 - place), -LOAD * place], rel=1e-7)
-    assert come_to_rest(turned)["support.force.y"] == pytest.approx([-LOAD / SPAN, LOAD / SPAN], rel=1e-7)
+    assert come_to_rest(loaded)["support.force.y"] == pytest.approx(
+        [-LOAD * (1 - place), -LOAD * place], rel=1e-7
+    )
+    assert come_to_rest(turned)["support.force.y"] == pytest.approx(
+        [-LOAD / SPAN, LOAD / SPAN], rel=1e-7
+    )
 
 
 @settings(max_examples=8, deadline=None)
@@ -116,8 +140,12 @@ def test_axial_load():
         instance.step(0.03, 0.03)
     flexibility = SPAN / (2.1e6 * 9.80665e4 * 11.85e-4)
     reach = (n - 0.5) / n
-    assert free[f"position.x[{n}]"] - reach * SPAN == pytest.approx(pull * flexibility * reach, rel=1e-8)
-    assert fixed[f"position.x[{n}]"] - reach * SPAN == pytest.approx(pull * flexibility * reach * (1 - reach), rel=1e-8)
+    assert free[f"position.x[{n}]"] - reach * SPAN == pytest.approx(
+        pull * flexibility * reach, rel=1e-8
+    )
+    assert fixed[f"position.x[{n}]"] - reach * SPAN == pytest.approx(
+        pull * flexibility * reach * (1 - reach), rel=1e-8
+    )
 
 
 @pytest.mark.parametrize("n", [5, 25])
@@ -125,9 +153,9 @@ def test_energy_of_a_midspan_load_and_its_estimate_from_the_strain(n):
     instance = beam(n)
     put_midspan_load(instance)
     come_to_rest(instance)
-    static = 0.5 * LOAD ** 2 * SPAN ** 3 / (48 * EI)
+    static = 0.5 * LOAD**2 * SPAN**3 / (48 * EI)
     assert instance["energy.strain_estimate"] == pytest.approx(static, rel=1e-8)
-    assert instance["energy.bending"] == pytest.approx(static * (1 + 2 / n ** 2), rel=1e-8)
+    assert instance["energy.bending"] == pytest.approx(static * (1 + 2 / n**2), rel=1e-8)
     assert instance["energy.axial"] == 0.0
 
 
@@ -148,7 +176,14 @@ def test_nothing_moves_under_the_weight(supports, elements):
     assert instance["energy.damping"] == 0.0
 
 
-SHED = {"gravity": 9.81, "deck__mass": 30.0, "box__left": 0.13, "box__width": 0.37, "box__mass": 12.0, "cushion__weight": 900.0}
+SHED = {
+    "gravity": 9.81,
+    "deck__mass": 30.0,
+    "box__left": 0.13,
+    "box__width": 0.37,
+    "box__mass": 12.0,
+    "cushion__weight": 900.0,
+}
 
 
 @pytest.mark.parametrize("supports", ["simple", "fixed"])
@@ -175,22 +210,36 @@ def test_without_the_inputs_the_beam_springs_up_from_under_the_cushion():
     """At the start it stores the work of the weight, of which nothing gets lost; the strain of the start counts as none."""
     instance = beam(24, box__left=0.0, box__width=SPAN, cushion__weight=LOAD)
     instance.initialise()
-    assert instance["midspan.deflection"] == pytest.approx(5 * LOAD * SPAN ** 3 / (384 * EI) * (1 + 4 / 5 / 576), rel=1e-9)
+    assert instance["midspan.deflection"] == pytest.approx(
+        5 * LOAD * SPAN**3 / (384 * EI) * (1 + 4 / 5 / 576), rel=1e-9
+    )
     assert instance["midspan.start_strain"] == pytest.approx(LOAD * SPAN / 8 * 0.05 / EI, rel=1e-9)
     assert instance["energy.strain_estimate"] == 0.0
     stored, strain, lowest = instance["energy.start"], instance["midspan.start_strain"], 0.0
-    assert stored == pytest.approx(LOAD ** 2 * SPAN ** 3 / (240 * EI), rel=1e-2)
+    assert stored == pytest.approx(LOAD**2 * SPAN**3 / (240 * EI), rel=1e-2)
     for count in range(500):
         instance.step(count * 1e-5, 1e-5)
-        assert instance["energy.kinetic"] + instance["energy.elastic"] == pytest.approx(stored, rel=1e-2)
+        assert instance["energy.kinetic"] + instance["energy.elastic"] == pytest.approx(
+            stored, rel=1e-2
+        )
         lowest = min(lowest, instance["midspan.strain"])
-        deflection = SPAN ** 2 * (instance["midspan.strain"] - strain) / (6 * 0.1)
-        assert instance["energy.strain_estimate"] == pytest.approx(24 * EI / SPAN ** 3 * deflection ** 2, rel=1e-9, abs=1e-12)
+        deflection = SPAN**2 * (instance["midspan.strain"] - strain) / (6 * 0.1)
+        assert instance["energy.strain_estimate"] == pytest.approx(
+            24 * EI / SPAN**3 * deflection**2, rel=1e-9, abs=1e-12
+        )
     assert lowest == pytest.approx(-strain, rel=0.05)
 
 
 def test_a_box_on_one_half_by_the_lever_rule():
-    instance = beam(24, gravity=10.0, density=1e-3, box__left=0.0, box__width=SPAN / 2, box__mass=40.0, cushion__weight=400.0)
+    instance = beam(
+        24,
+        gravity=10.0,
+        density=1e-3,
+        box__left=0.0,
+        box__width=SPAN / 2,
+        box__mass=40.0,
+        cushion__weight=400.0,
+    )
     instance.initialise()
     assert instance["support.force.y"] == pytest.approx([-600.0, -200.0], rel=1e-6)
     assert instance["midspan.moment"] == pytest.approx(200.0 * SPAN / 2, rel=1e-3)
@@ -208,7 +257,7 @@ def test_deflection_under_the_weight():
     instance = beam(25, gravity=9.81)
     instance.initialise()
     weight = 7850 * 11.85e-4 * SPAN * 9.81
-    expected = 5 * weight * SPAN ** 3 / (384 * EI) * (1 + 2 / 25 ** 2 + 9 / 5 / 25 ** 4)
+    expected = 5 * weight * SPAN**3 / (384 * EI) * (1 + 2 / 25**2 + 9 / 5 / 25**4)
     assert instance["midspan.deflection"] == pytest.approx(expected, rel=1e-10)
     assert instance["energy.gravity"] == pytest.approx(-2 * instance["energy.bending"], rel=1e-9)
 
@@ -220,7 +269,9 @@ def test_fixed_beam_with_one_support_raised():
         instance = beam(n, supports="fixed")
         instance["support.position.y[2]"] = 1e-3
         instance.initialise()
-        assert instance["support.force.y[1]"] == pytest.approx(-instance["support.force.y[2]"], rel=1e-7)
-        errors.append(instance["support.force.y[1]"] / (12 * EI * 1e-3 / SPAN ** 3) - 1)
+        assert instance["support.force.y[1]"] == pytest.approx(
+            -instance["support.force.y[2]"], rel=1e-7
+        )
+        errors.append(instance["support.force.y[1]"] / (12 * EI * 1e-3 / SPAN**3) - 1)
     assert abs(errors[1]) < 1e-2
     assert errors[0] / errors[1] == pytest.approx(9, rel=0.1)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, cm2, kgf, mm
 from rockshed.components.impulsive_ground import settlement as mogami
-from scipy.integrate import quad, solve_ivp
 
 GROUND = component("ImpulsiveGround")
 PLATES, WEIGHTS, DROPS = (100, 200, 300, 400), (4.65, 9.75, 14.70, 20.40), range(10, 70, 10)
@@ -20,7 +21,12 @@ forces = st.floats(0.0, 1e4)
 
 def plate(impulse, r0, r1, duration, **values):
     made = GROUND.instance()
-    made["impulse0"], made["resistance.start"], made["resistance.end"], made["resistance.time"] = impulse, r0, r1, duration
+    made["impulse0"], made["resistance.start"], made["resistance.end"], made["resistance.time"] = (
+        impulse,
+        r0,
+        r1,
+        duration,
+    )
     for name, value in values.items():
         made[name] = value
     made.initialise()
@@ -35,7 +41,12 @@ def run(ground, steps, step):
 
 def momentum_of_frustum(radius):
     """Per unit of the plate's velocity: sand at depth z moves with 1 - z/l over the circle of radius r + z tan(th)."""
-    return quad(lambda z: DENSITY * math.pi * (radius + z * math.tan(SPREAD)) ** 2 * (1.0 - z / DEPTH), 0.0, DEPTH, epsrel=1e-13)[0]
+    return quad(
+        lambda z: DENSITY * math.pi * (radius + z * math.tan(SPREAD)) ** 2 * (1.0 - z / DEPTH),
+        0.0,
+        DEPTH,
+        epsrel=1e-13,
+    )[0]
 
 
 @pytest.mark.parametrize("area", PLATES)
@@ -44,18 +55,28 @@ def test_the_derived_mass_is_the_momentum_of_the_frustum(area):
     derived = mogami.soil_mass(radius, DEPTH, SPREAD, DENSITY, mogami.DERIVED)
     assert derived == pytest.approx(momentum_of_frustum(radius), rel=1e-12)
     missing = 9.0 * radius**2 * math.pi * DENSITY * DEPTH / 24.0
-    assert mogami.soil_mass(radius, DEPTH, SPREAD, DENSITY, mogami.PRINTED) == pytest.approx(derived - missing, rel=1e-12)
+    assert mogami.soil_mass(radius, DEPTH, SPREAD, DENSITY, mogami.PRINTED) == pytest.approx(
+        derived - missing, rel=1e-12
+    )
 
 
 def test_over_the_96_tests_the_printed_mass_is_a_few_percent_too_small_the_more_the_larger_the_plate():
     ratios = {}
     for area in PLATES:
         radius = math.sqrt(area * cm2 / math.pi)
-        masses = [3.14 + mogami.soil_mass(radius, DEPTH, SPREAD, DENSITY, form) for form in (mogami.DERIVED, mogami.PRINTED)]
+        masses = [
+            3.14 + mogami.soil_mass(radius, DEPTH, SPREAD, DENSITY, form)
+            for form in (mogami.DERIVED, mogami.PRINTED)
+        ]
         impulses = [mogami.drop_impulse(weight, drop * cm) for weight in WEIGHTS for drop in DROPS]
-        derived, printed = (np.array([mogami.printed_settlement(i, mass, 5.0, 5e3) for i in impulses]) for mass in masses)
+        derived, printed = (
+            np.array([mogami.printed_settlement(i, mass, 5.0, 5e3) for i in impulses])
+            for mass in masses
+        )
         ratios[area] = (printed / derived)[0]
-        assert np.allclose(printed / derived, ratios[area], rtol=1e-12)  # weight and drop do not matter
+        assert np.allclose(
+            printed / derived, ratios[area], rtol=1e-12
+        )  # weight and drop do not matter
     assert list(ratios.values()) == sorted(ratios.values())
     assert 1.03 < ratios[100] < 1.06
     assert 1.10 < ratios[400] < 1.16
@@ -67,9 +88,12 @@ def integrated(impulse, mass, r0, r1):
 
     def rates(t, y):
         return [y[1], -(r0 + (r1 - r0) * t / duration) / mass]
+
     at_rest = lambda t, y: y[1]  # noqa: E731
     at_rest.terminal, at_rest.direction = True, -1
-    found = solve_ivp(rates, (0.0, 2.0 * duration), [0.0, impulse / mass], events=at_rest, rtol=1e-12, atol=1e-15)
+    found = solve_ivp(
+        rates, (0.0, 2.0 * duration), [0.0, impulse / mass], events=at_rest, rtol=1e-12, atol=1e-15
+    )
     return found.t_events[0][0], found.y_events[0][0][0]
 
 
@@ -80,21 +104,28 @@ def test_closed_forms_against_integration(r0, r1):
     assert mogami.exact_settlement(35.0, 60.0, r0, r1) == pytest.approx(settlement, rel=1e-8)
     v0, duration = mogami.initial_velocity(35.0, 60.0), mogami.stopping_time(35.0, r0, r1)
     of_linear_velocity = quad(lambda t: v0 * (1.0 - t / duration), 0.0, duration)[0]
-    assert mogami.printed_settlement(35.0, 60.0, r0, r1) == pytest.approx(of_linear_velocity, rel=1e-8)
+    assert mogami.printed_settlement(35.0, 60.0, r0, r1) == pytest.approx(
+        of_linear_velocity, rel=1e-8
+    )
     if r0 == r1:
         assert mogami.printed_settlement(35.0, 60.0, r0, r1) == pytest.approx(settlement, rel=1e-8)
 
 
 def test_the_printed_settlement_is_three_quarters_of_the_exact_one_without_resistance_at_first():
     blow = (35.0, 60.0, 0.0, 9e3)
-    assert mogami.exact_settlement(*blow) / mogami.printed_settlement(*blow) == pytest.approx(4.0 / 3.0)
+    assert mogami.exact_settlement(*blow) / mogami.printed_settlement(*blow) == pytest.approx(
+        4.0 / 3.0
+    )
 
 
 def test_coefficient_is_the_slope_of_impulse_over_settlement_and_gives_the_mean_resistance():
     def way(impulse):
         return mogami.printed_settlement(impulse, 60.0, 100.0, 5e3)
+
     step = 1e-4
-    assert mogami.coefficient(35.0, 60.0, 100.0, 5e3) == pytest.approx(2 * step / (way(35.0 + step) - way(35.0 - step)), rel=1e-8)
+    assert mogami.coefficient(35.0, 60.0, 100.0, 5e3) == pytest.approx(
+        2 * step / (way(35.0 + step) - way(35.0 - step)), rel=1e-8
+    )
     duration = mogami.stopping_time(35.0, 100.0, 5e3)
     by_parts = quad(lambda i: 1.0, 0.0, 35.0)[0] / duration  # K d(settlement) = dI
     assert mogami.mean_resistance(35.0, duration) == pytest.approx(by_parts)
@@ -104,8 +135,12 @@ def test_coefficient_is_the_slope_of_impulse_over_settlement_and_gives_the_mean_
 def test_fits_have_the_values_of_a_pocket_calculator():
     """A = 2: exp(-2) = 0.1353353."""
     assert mogami.fitted_coefficient(200 * cm2) == pytest.approx(0.414093 * kgf / mm, rel=1e-6)
-    assert mogami.fitted_impulse(400.0 * kgf, 200 * cm2) == pytest.approx((0.0083324 * 400.0 - 0.0045982) * kgf, rel=1e-5)
-    assert mogami.fitted_mean_resistance(mogami.fitted_impulse(3e3, 2e-2), 2e-2) == pytest.approx(3e3, rel=1e-12)
+    assert mogami.fitted_impulse(400.0 * kgf, 200 * cm2) == pytest.approx(
+        (0.0083324 * 400.0 - 0.0045982) * kgf, rel=1e-5
+    )
+    assert mogami.fitted_mean_resistance(mogami.fitted_impulse(3e3, 2e-2), 2e-2) == pytest.approx(
+        3e3, rel=1e-12
+    )
     r0, r1 = mogami.fitted_ends(35.7, 2e-2)
     assert r0 == pytest.approx(0.5518 * kgf, rel=1e-3)
     assert 0.5 * (r0 + r1) == pytest.approx(mogami.fitted_mean_resistance(35.7, 2e-2), rel=1e-12)
@@ -113,13 +148,16 @@ def test_fits_have_the_values_of_a_pocket_calculator():
 
 # --- the plate as a component ---
 
+
 @settings(max_examples=30, deadline=None)
 @given(impulse=st.floats(0.1, 200.0), r0=forces, r1=forces, steps=st.integers(1, 60))
 def test_the_plate_settles_exactly_as_the_closed_form_whatever_the_step(impulse, r0, r1, steps):
     if r0 + r1 < 1.0:
         return
     duration = mogami.stopping_time(impulse, r0, r1)
-    made = run(plate(impulse, r0, r1, duration, internal_step=1.0), steps + 1, duration * 1.1 / steps)
+    made = run(
+        plate(impulse, r0, r1, duration, internal_step=1.0), steps + 1, duration * 1.1 / steps
+    )
     exact = mogami.exact_settlement(impulse, made["virtual_mass"], r0, r1)
     assert made["settlement"] == pytest.approx(exact, rel=1e-9)
     assert made["permanent_set"] == made["settlement"] == -made["position.y"]
@@ -129,7 +167,13 @@ def test_the_plate_settles_exactly_as_the_closed_form_whatever_the_step(impulse,
 
 def load_of(t):
     """Two blows with a pull between them."""
-    return 9e3 * max(0.0, math.sin(math.pi * t / 4e-3)) if t < 4e-3 or 12e-3 < t < 16e-3 else -500.0 if t < 12e-3 else 0.0
+    return (
+        9e3 * max(0.0, math.sin(math.pi * t / 4e-3))
+        if t < 4e-3 or 12e-3 < t < 16e-3
+        else -500.0
+        if t < 12e-3
+        else 0.0
+    )
 
 
 def test_any_load_history_against_an_independent_integration():
@@ -181,7 +225,9 @@ def test_phi_functions():
     from rockshed.components.impulsive_ground.plate import phi
 
     def integrated(n, z):
-        return quad(lambda u: math.exp(-z * (1.0 - u)) * u ** (n - 1) / math.factorial(n - 1), 0.0, 1.0)[0]
+        return quad(
+            lambda u: math.exp(-z * (1.0 - u)) * u ** (n - 1) / math.factorial(n - 1), 0.0, 1.0
+        )[0]
 
     for z in np.linspace(1e-6, 3.0, 60):
         exact = [integrated(n, z) for n in range(1, 5)]

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError
-from scipy.integrate import solve_ivp
 
 GROUND = component("ImpulsiveGround")
 Z = 23311.0
@@ -20,8 +21,14 @@ LAWS = ("smith", "mogami")
 def toe(port, law, **values):
     made = GROUND.instance()
     made["port"], made["law"] = port, law
-    for name, value in {"toe.impedance": Z, "ultimate_resistance": RU, "quake": QUAKE, "resistance.start": RU, "resistance.end": RU,
-                        **values}.items():
+    for name, value in {
+        "toe.impedance": Z,
+        "ultimate_resistance": RU,
+        "quake": QUAKE,
+        "resistance.start": RU,
+        "resistance.end": RU,
+        **values,
+    }.items():
         made[name] = value
     made.initialise()
     return made
@@ -57,14 +64,18 @@ def test_smiths_damping_multiplies_the_static_resistance():
     made = toe("kinematics", "smith", damping=0.5)
     assert lead(made, 2.0 * QUAKE, speed=3.0) == pytest.approx(RU * 2.5)
     assert made["toe.mean_force"] == pytest.approx(RU * 2.5)
-    assert made["energy.damping"] == pytest.approx(1.5 * (made["energy.plastic"] + made["energy.elastic"]))
+    assert made["energy.damping"] == pytest.approx(
+        1.5 * (made["energy.plastic"] + made["energy.elastic"])
+    )
 
 
 def exact_smith(load, damping, end):
     """ds/dt = (c - R)/(Z + J R), R of a fresh spring: by numerical integration, for a load that only rises."""
+
     def rate(t, y):
         spring = min(RU, RU / QUAKE * y[0])
         return [(load - spring) / (Z + damping * spring)]
+
     return solve_ivp(rate, (0.0, end), [0.0], rtol=1e-11, atol=1e-15, max_step=end / 500).y[0][-1]
 
 
@@ -76,24 +87,40 @@ def test_smiths_soil_under_a_wave_against_integration(load, damping, tolerance):
     for number in range(20):
         made.step(number * 1e-4, 1e-4)
     assert made["settlement"] == pytest.approx(exact_smith(load, damping, 2e-3), rel=tolerance)
-    assert made["toe.force"] == pytest.approx(load - Z * made.w[made.references["velocity.y"]] * -1.0, rel=1e-9)
+    assert made["toe.force"] == pytest.approx(
+        load - Z * made.w[made.references["velocity.y"]] * -1.0, rel=1e-9
+    )
 
 
 def exact_plate(load, mass, r0, r1, rise, end):
     at_rest = lambda t, y: y[1]  # noqa: E731
     at_rest.terminal, at_rest.direction = True, -1
-    found = solve_ivp(lambda t, y: [y[1], (load - Z * y[1] - r0 - (r1 - r0) * min(1.0, t / rise)) / mass], (0.0, end), [0.0, 0.0],
-                      events=at_rest, rtol=1e-11, atol=1e-14, max_step=end / 500)
+    found = solve_ivp(
+        lambda t, y: [y[1], (load - Z * y[1] - r0 - (r1 - r0) * min(1.0, t / rise)) / mass],
+        (0.0, end),
+        [0.0, 0.0],
+        events=at_rest,
+        rtol=1e-11,
+        atol=1e-14,
+        max_step=end / 500,
+    )
     return found.y[0][-1]
 
 
 @pytest.mark.parametrize(("r0", "r1"), [(8e3, 8e3), (1e3, 50e3)])
 def test_mogamis_plate_under_a_wave_against_integration(r0, r1):
-    made = toe("wave", "mogami", **{"resistance.start": r0, "resistance.end": r1, "resistance.time": 3e-3}, internal_step=1e-4)
+    made = toe(
+        "wave",
+        "mogami",
+        **{"resistance.start": r0, "resistance.end": r1, "resistance.time": 3e-3},
+        internal_step=1e-4,
+    )
     made["toe.wave"] = 30e3
     for number in range(50):
         made.step(number * 1e-4, 1e-4)
-    assert made["settlement"] == pytest.approx(exact_plate(30e3, made["virtual_mass"], r0, r1, 3e-3, 5e-3), rel=1e-7)
+    assert made["settlement"] == pytest.approx(
+        exact_plate(30e3, made["virtual_mass"], r0, r1, 3e-3, 5e-3), rel=1e-7
+    )
     assert abs(made["energy.residual"]) < 1e-9 * made["energy.work.contact"]
 
 
@@ -102,8 +129,12 @@ waves = st.lists(st.floats(-80e3, 80e3), min_size=1, max_size=25)
 
 @pytest.mark.parametrize("law", LAWS)
 @settings(max_examples=40, deadline=None)
-@given(loads=waves, damping=st.sampled_from([0.0, 0.5, 2.0]), stiffer=st.sampled_from([1.0, 1e3, 1e6]),
-       internal=st.sampled_from([1e-5, 1e-4]))
+@given(
+    loads=waves,
+    damping=st.sampled_from([0.0, 0.5, 2.0]),
+    stiffer=st.sampled_from([1.0, 1e3, 1e6]),
+    internal=st.sampled_from([1e-5, 1e-4]),
+)
 def test_waves_of_any_kind_keep_the_energy_and_pull_nothing(law, loads, damping, stiffer, internal):
     """The rod gives at least what the ground gets, the books balance, and the ground never pulls."""
     made = toe("wave", law, damping=damping, quake=QUAKE / stiffer, internal_step=internal)
@@ -165,7 +196,10 @@ def test_a_plate_struck_through_a_spring_keeps_its_energy_to_first_order():
         made = toe("kinematics", "mogami", internal_step=internal, **{"contact.stiffness": 1e7})
         for number in range(200):
             t = number * 1e-4
-            made["toe.position"], made["toe.velocity"] = 4e-3 * math.sin(300 * t), 1.2 * math.cos(300 * t)
+            made["toe.position"], made["toe.velocity"] = (
+                4e-3 * math.sin(300 * t),
+                1.2 * math.cos(300 * t),
+            )
             made.step(t, 1e-4)
         residuals.append(abs(made["energy.residual"]) / made["energy.work.contact"])
     assert residuals[0] < 0.03
@@ -180,7 +214,9 @@ def test_a_plate_on_smiths_soil_rings_with_its_natural_frequency_and_keeps_its_e
     for time in times:
         made.step(time - 1e-4, 1e-4)
         places.append(made["settlement"])
-    assert np.allclose(places, 5.0 / made["virtual_mass"] / omega * np.sin(omega * times), atol=2e-7)
+    assert np.allclose(
+        places, 5.0 / made["virtual_mass"] / omega * np.sin(omega * times), atol=2e-7
+    )
     assert abs(made["energy.residual"]) < 1e-9
     assert made["permanent_set"] == pytest.approx(0.0, abs=1e-15)
 
@@ -199,17 +235,21 @@ def test_nothing_moves_under_the_preload_alone(port, law):
 
 # --- refusals ---
 
-@pytest.mark.parametrize(("values", "words"), [
-    ({"plate.radius": 0.2}, "does not fit into the box"),
-    ({"plate.mass": 0.0, "soil.density": 0.0}, "no mass"),
-    ({"resistance.start": 0.0, "resistance.end": 0.0}, "nothing stops the plate"),
-    ({"resistance.start": -1.0}, "resistance.start = -1 N: allowed is 0 N or more"),
-    ({"quake": 0.0}, "quake = 0 m"),
-    ({"ultimate_resistance": 0.0}, "ultimate_resistance = 0 N"),
-    ({"plate.radius": math.nan}, "must be a finite number"),
-    ({"preload": 10.0}, "more than the ground bears"),
-    ({"toe.impedance": -1.0}, "toe.impedance = -1"),
-])
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"plate.radius": 0.2}, "does not fit into the box"),
+        ({"plate.mass": 0.0, "soil.density": 0.0}, "no mass"),
+        ({"resistance.start": 0.0, "resistance.end": 0.0}, "nothing stops the plate"),
+        ({"resistance.start": -1.0}, "resistance.start = -1 N: allowed is 0 N or more"),
+        ({"quake": 0.0}, "quake = 0 m"),
+        ({"ultimate_resistance": 0.0}, "ultimate_resistance = 0 N"),
+        ({"plate.radius": math.nan}, "must be a finite number"),
+        ({"preload": 10.0}, "more than the ground bears"),
+        ({"toe.impedance": -1.0}, "toe.impedance = -1"),
+    ],
+)
 def test_refused(values, words):
     made = GROUND.instance()
     for name, value in values.items():
@@ -220,7 +260,12 @@ def test_refused(values, words):
 
 def test_all_reasons_at_once():
     made = GROUND.instance()
-    made["plate.radius"], made["preload"], made["plate.mass"], made["soil.depth"] = 1.0, 1e6, 0.0, 0.0
+    made["plate.radius"], made["preload"], made["plate.mass"], made["soil.depth"] = (
+        1.0,
+        1e6,
+        0.0,
+        0.0,
+    )
     assert len(made.problems()) == 3
 
 

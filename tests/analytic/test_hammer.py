@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from rockshed.components.common.component import ComponentError
 from rockshed.components.pile_rod.st_venant import StVenant
 
@@ -14,13 +15,28 @@ from ..rods import HAMMER, ROD, march, named, reflecting, rod
 IMPEDANCE = 23311.36
 
 
-def blow(step_segments, duration, exchange="sequential", segments=50, rod_parameters=None, **hammer_parameters):
+def blow(
+    step_segments,
+    duration,
+    exchange="sequential",
+    segments=50,
+    rod_parameters=None,
+    **hammer_parameters,
+):
     """Hammer and rod (10 m, alpha 0.5), coupled by hand as a sequential or a Jacobi master does.
 
     step_segments: the step in travel times of a segment.
     """
-    struck = named(ROD.instance(segments=segments), {"head__port": "waves", "toe__condition": "reflection", "toe__reflection": 0.5,
-                                                     "exchange": exchange, **(rod_parameters or {})})
+    struck = named(
+        ROD.instance(segments=segments),
+        {
+            "head__port": "waves",
+            "toe__condition": "reflection",
+            "toe__reflection": 0.5,
+            "exchange": exchange,
+            **(rod_parameters or {}),
+        },
+    )
     hammer = named(HAMMER.instance(), {"weight": 0.0, **hammer_parameters})
     struck.initialise()
     hammer.initialise()
@@ -46,7 +62,10 @@ def test_through_the_wave_port_it_is_st_venants_mass(exchange, steps, tolerance)
     exact = StVenant(63.5, hammer["impact_velocity"], IMPEDANCE, 10.0 / 5120.0, 0.5)
     step = steps * struck["time_step"]
     count = int(exact.separation() / step + 1e-9)
-    mean = [63.5 * (exact.velocity(n * step) - exact.velocity((n + 1) * step * (1 - 1e-12))) / step for n in range(count)]
+    mean = [
+        63.5 * (exact.velocity(n * step) - exact.velocity((n + 1) * step * (1 - 1e-12))) / step
+        for n in range(count)
+    ]
     np.testing.assert_allclose(force[:count], mean, atol=tolerance * exact.first_force, rtol=0)
     assert hammer["separation"] == pytest.approx(exact.separation(), rel=1e-6)
     assert hammer["velocity"] == pytest.approx(exact.rebound(), abs=tolerance * exact.speed)
@@ -69,8 +88,12 @@ def test_a_step_that_is_no_multiple_of_the_rods_own_keeps_the_impulse():
     lost = 63.5 * (hammer["impact_velocity"] - hammer["velocity"])
     assert 0.0 < struck["lag"] < struck["time_step"]
     waits = force[-1] * struck["lag"]
-    assert struck["velocity"].sum() * struck["time_step"] * IMPEDANCE + waits == pytest.approx(lost, rel=1e-9)
-    assert hammer["velocity"] == pytest.approx(float(exact.velocity(len(force) * step)), abs=1e-6 * exact.speed)
+    assert struck["velocity"].sum() * struck["time_step"] * IMPEDANCE + waits == pytest.approx(
+        lost, rel=1e-9
+    )
+    assert hammer["velocity"] == pytest.approx(
+        float(exact.velocity(len(force) * step)), abs=1e-6 * exact.speed
+    )
 
 
 def test_the_plain_port_comes_to_the_wave_port_as_the_step_shrinks():
@@ -80,16 +103,21 @@ def test_the_plain_port_comes_to_the_wave_port_as_the_step_shrinks():
     errors = []
     for segments in (25, 50, 100, 200):
         plain = {"head__port": "kinematics", "head__partner__stiffness": 1e8}
-        hammer, _, _ = blow(1, 8e-3, segments=segments, rod_parameters=plain, port="kinematics", **cushion)
+        hammer, _, _ = blow(
+            1, 8e-3, segments=segments, rod_parameters=plain, port="kinematics", **cushion
+        )
         errors.append(abs(hammer["velocity"] - reference["velocity"]))
     assert errors[3] < 1e-3 * reference["impact_velocity"]
-    assert errors[0] > 1.7 * errors[1] > 1.7 ** 2 * errors[2] > 1.7 ** 3 * errors[3]
+    assert errors[0] > 1.7 * errors[1] > 1.7**2 * errors[2] > 1.7**3 * errors[3]
 
 
 def test_the_plain_port_refuses_a_step_that_the_wave_port_bears():
     stiff = {"cushion__stiffness": 1e11}
     plain = {"head__port": "kinematics", "head__partner__stiffness": 1e11}
-    with pytest.raises(ComponentError, match=r"step 0\.000390625 s exceeds the limit of the ports, step_limit = 2\.33114e-07 s"):
+    with pytest.raises(
+        ComponentError,
+        match=r"step 0\.000390625 s exceeds the limit of the ports, step_limit = 2\.33114e-07 s",
+    ):
         blow(10, 4e-3, rod_parameters=plain, port="kinematics", **stiff)
     hammer, struck, _ = blow(10, 8e-3, **stiff)
     fine, _, _ = blow(1, 8e-3, segments=500, **stiff)
@@ -100,8 +128,16 @@ def test_the_plain_port_refuses_a_step_that_the_wave_port_bears():
 @pytest.mark.parametrize("restitution", [1.0, 0.8, 0.3])
 def test_the_cushion_gives_back_the_square_of_its_restitution(restitution):
     """Against a wall: half a period of loading, then restitution times as long, and the ram leaves with e times its speed."""
-    hammer = named(HAMMER.instance(), {"port": "kinematics", "cushion__stiffness": 1e8, "cushion__restitution": restitution,
-                                       "weight": 0.0, "internal_step": 1e-6})
+    hammer = named(
+        HAMMER.instance(),
+        {
+            "port": "kinematics",
+            "cushion__stiffness": 1e8,
+            "cushion__restitution": restitution,
+            "weight": 0.0,
+            "internal_step": 1e-6,
+        },
+    )
     hammer.initialise()
     forces = []
     for n in range(500):
@@ -112,7 +148,9 @@ def test_the_cushion_gives_back_the_square_of_its_restitution(restitution):
     assert max(forces) == pytest.approx(speed * math.sqrt(63.5 * 1e8), rel=1e-4)
     quarter = 0.5 * math.pi * math.sqrt(63.5 / 1e8)
     assert hammer["separation"] == pytest.approx(quarter * (1.0 + restitution), rel=2e-3)
-    assert hammer["energy.cushion_loss"] == pytest.approx((1.0 - restitution ** 2) * hammer["energy.start"], rel=1e-3, abs=1e-6)
+    assert hammer["energy.cushion_loss"] == pytest.approx(
+        (1.0 - restitution**2) * hammer["energy.start"], rel=1e-3, abs=1e-6
+    )
     assert abs(hammer["energy.residual"]) < 1e-10 * hammer["energy.start"]
 
 
@@ -120,7 +158,14 @@ def test_the_cushion_gives_back_the_square_of_its_restitution(restitution):
 @given(st.floats(1e5, 1e12), st.floats(0.05, 1.0), st.floats(1e-7, 1e-3), st.floats(-5e4, 5e4))
 def test_a_cushion_of_any_stiffness_takes_any_step(stiffness, restitution, step, wave):
     """No tension, no gain of energy, an exact balance."""
-    hammer = named(HAMMER.instance(), {"cushion__stiffness": stiffness, "cushion__restitution": restitution, "internal_step": step})
+    hammer = named(
+        HAMMER.instance(),
+        {
+            "cushion__stiffness": stiffness,
+            "cushion__restitution": restitution,
+            "internal_step": step,
+        },
+    )
     hammer["head.wave"] = wave
     hammer.initialise()
     losses = [0.0]

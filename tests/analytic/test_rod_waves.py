@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from rockshed.components.common.component import ComponentError
 
 from ..rods import closed_form, march, reflecting, rod
@@ -15,13 +16,21 @@ pulses = st.lists(st.floats(-1e5, 1e5, allow_subnormal=False), min_size=1, max_s
 @given(pulses)
 def test_an_arbitrary_pulse_travels_without_change_and_a_matched_toe_takes_it_all(pulse):
     made = rod(40, toe__condition="matched")
-    force, velocity = march(made, 40 + len(pulse), "force", "velocity", force=lambda n: pulse[n] if n < len(pulse) else 0.0)
+    force, velocity = march(
+        made,
+        40 + len(pulse),
+        "force",
+        "velocity",
+        force=lambda n: pulse[n] if n < len(pulse) else 0.0,
+    )
     size = max(map(abs, pulse)) or 1.0
     for segment in (0, 17, 39):
         sent = np.zeros(40 + len(pulse))
-        sent[segment:segment + len(pulse)] = pulse[:len(sent) - segment]
+        sent[segment : segment + len(pulse)] = pulse[: len(sent) - segment]
         np.testing.assert_allclose(force[:, segment], sent, atol=1e-12 * size, rtol=0)
-        np.testing.assert_allclose(velocity[:, segment] * made["head.impedance"], sent, atol=1e-12 * size, rtol=0)
+        np.testing.assert_allclose(
+            velocity[:, segment] * made["head.impedance"], sent, atol=1e-12 * size, rtol=0
+        )
     assert np.abs(force[-1]).max() <= 1e-10 * size
     assert made["energy.radiated"] == pytest.approx(made["energy.work.head"], rel=1e-12)
 
@@ -30,7 +39,7 @@ def test_an_arbitrary_pulse_travels_without_change_and_a_matched_toe_takes_it_al
 def test_a_pulse_comes_back_from_a_free_and_a_fixed_toe(condition, returned):
     """In force: with the other sign from the free one."""
     made = rod(20, toe__condition=condition)
-    force, = march(made, 30, "force", force=lambda n: 1e4 * (n == 0))
+    (force,) = march(made, 30, "force", force=lambda n: 1e4 * (n == 0))
     assert force[19, 19] == pytest.approx(1e4, rel=1e-12)
     assert force[29, 10] == pytest.approx(returned * 1e4, rel=1e-12)
 
@@ -38,19 +47,39 @@ def test_a_pulse_comes_back_from_a_free_and_a_fixed_toe(condition, returned):
 @pytest.mark.parametrize("ratio", [0.2, 3.0])
 def test_an_interface_divides_a_pulse_by_its_impedances(ratio):
     """Force: transmitted 2 Z2/(Z1 + Z2), reflected (Z2 - Z1)/(Z1 + Z2). Half of the rod, with this ratio of areas."""
-    made = rod(20, sections=2, section__area=[1e-3, ratio * 1e-3], section__length=[5.0, 5.0], toe__condition="matched")
-    force, = march(made, 15, "force", force=lambda n: 1e4 * (n == 0))
+    made = rod(
+        20,
+        sections=2,
+        section__area=[1e-3, ratio * 1e-3],
+        section__length=[5.0, 5.0],
+        toe__condition="matched",
+    )
+    (force,) = march(made, 15, "force", force=lambda n: 1e4 * (n == 0))
     assert force[14, 14] == pytest.approx(1e4 * 2.0 * ratio / (1.0 + ratio), rel=1e-12)
     assert force[14, 5] == pytest.approx(1e4 * (ratio - 1.0) / (1.0 + ratio), rel=1e-12)
 
 
 def test_sections_of_other_materials_keep_travel_time_and_mass():
-    lengths, moduli, densities, areas = [3.0, 2.0, 5.0], [2e11, 3e10, 1e10], [7850.0, 2400.0, 700.0], [1e-3, 4e-2, 2e-2]
-    made = rod(37, sections=3, section__length=lengths, section__modulus=moduli, section__density=densities, section__area=areas)
+    lengths, moduli, densities, areas = (
+        [3.0, 2.0, 5.0],
+        [2e11, 3e10, 1e10],
+        [7850.0, 2400.0, 700.0],
+        [1e-3, 4e-2, 2e-2],
+    )
+    made = rod(
+        37,
+        sections=3,
+        section__length=lengths,
+        section__modulus=moduli,
+        section__density=densities,
+        section__area=areas,
+    )
     times = [length * (rho / e) ** 0.5 for length, e, rho in zip(lengths, moduli, densities)]
     assert made["travel_time"] == pytest.approx(sum(times), rel=1e-14)
     mass = float(np.sum(made.state("impedance"))) * made["time_step"]
-    assert mass == pytest.approx(sum(rho * a * length for rho, a, length in zip(densities, areas, lengths)), rel=1e-12)
+    assert mass == pytest.approx(
+        sum(rho * a * length for rho, a, length in zip(densities, areas, lengths)), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("alpha", [-1.0, -0.5, 0.5, 1.0])
@@ -60,7 +89,7 @@ def test_the_struck_rod_follows_the_closed_form_with_second_order(alpha):
         made = rod(segments, **reflecting(alpha))
         exact = closed_form(made)
         steps = int(exact.separation() / made["time_step"] + 1e-9)
-        force, = march(made, steps, "head.contact_force")
+        (force,) = march(made, steps, "head.contact_force")
         middle = (np.arange(steps) + 0.5) * made["time_step"]
         errors.append(np.abs(force - exact.force(middle)).max() / exact.first_force)
     assert errors[2] < 1e-4
@@ -79,7 +108,9 @@ def test_separation_and_rebound_of_the_ram(alpha):
 def test_the_ram_comes_back_to_the_head_and_never_goes_into_it():
     """The toe's rebound throws the ram back upwards, after a first separation in which it still went down."""
     made = rod(100, ram__mass=63.5, toe__resistance=60e3)
-    touching, speed, position, head = march(made, 1000, "ram.touching", "ram.speed", "ram.position", "head.position")
+    touching, speed, position, head = march(
+        made, 1000, "ram.touching", "ram.speed", "ram.position", "head.position"
+    )
     parts = np.flatnonzero(np.diff(touching) < 0)
     assert len(parts) == 2
     assert speed[parts[0] + 1] > 0.5
@@ -90,11 +121,27 @@ def test_the_ram_comes_back_to_the_head_and_never_goes_into_it():
 
 
 @settings(max_examples=20, deadline=None)
-@given(st.floats(0.0, 2e5), st.floats(1e-4, 1e-2), st.floats(0.0, 1.0), st.floats(0.0, 5e3), st.floats(0.0, 10.0))
+@given(
+    st.floats(0.0, 2e5),
+    st.floats(1e-4, 1e-2),
+    st.floats(0.0, 1.0),
+    st.floats(0.0, 5e3),
+    st.floats(0.0, 10.0),
+)
 def test_energy_is_kept_and_nothing_creates_it(resistance, quake, damping, shaft, gravity):
-    made = rod(20, ram__mass=63.5, toe__condition="soil", toe__resistance=resistance, toe__quake=quake, toe__damping=damping,
-               shaft__resistance=shaft, gravity=gravity)
-    losses = march(made, 200, "energy.plastic", "energy.damping", "energy.contact", "energy.residual")
+    made = rod(
+        20,
+        ram__mass=63.5,
+        toe__condition="soil",
+        toe__resistance=resistance,
+        toe__quake=quake,
+        toe__damping=damping,
+        shaft__resistance=shaft,
+        gravity=gravity,
+    )
+    losses = march(
+        made, 200, "energy.plastic", "energy.damping", "energy.contact", "energy.residual"
+    )
     scale = made["energy.start"] + abs(made["energy.work.gravity"])
     assert np.abs(losses.pop()).max() < 1e-11 * scale
     for loss in losses[:2]:
@@ -103,13 +150,25 @@ def test_energy_is_kept_and_nothing_creates_it(resistance, quake, damping, shaft
 
 
 def test_a_load_within_the_quake_settles_where_the_soil_carries_it():
-    made = rod(10, toe__resistance=30e3, toe__quake=2.5e-3, toe__damping=2.0, shaft__resistance=1e3, shaft__damping=2.0)
+    made = rod(
+        10,
+        toe__resistance=30e3,
+        toe__quake=2.5e-3,
+        toe__damping=2.0,
+        shaft__resistance=1e3,
+        shaft__damping=2.0,
+    )
     march(made, 20000, "force", force=lambda n: 12e3)
-    rod_spring, soil_spring = made["head.impedance"] / made["time_step"], np.array([0.0] + [1e3 / 2.5e-3] * 9 + [31e3 / 2.5e-3])
+    rod_spring, soil_spring = (
+        made["head.impedance"] / made["time_step"],
+        np.array([0.0] + [1e3 / 2.5e-3] * 9 + [31e3 / 2.5e-3]),
+    )
     matrix = np.diag(soil_spring + rod_spring * np.array([1.0] + [2.0] * 9 + [1.0]))
     matrix -= rod_spring * (np.eye(11, k=1) + np.eye(11, k=-1))
     place = np.linalg.solve(matrix, np.array([12e3] + [0.0] * 10))
-    assert [made["head.position"], made["toe.position"]] == pytest.approx([place[0], place[-1]], rel=1e-3)
+    assert [made["head.position"], made["toe.position"]] == pytest.approx(
+        [place[0], place[-1]], rel=1e-3
+    )
     assert made["toe.set"] == pytest.approx(0.0, abs=1e-12)
     assert made["toe.contact_force"] + made["shaft.force"].sum() == pytest.approx(12e3, rel=1e-3)
 
@@ -128,16 +187,20 @@ def test_a_blow_leaves_a_set_and_unloads_elastically():
 
 def test_the_weight_alone_accelerates_a_free_rod():
     made = rod(30, toe__condition="free", gravity=9.81)
-    velocity, = march(made, 90, "velocity")
+    (velocity,) = march(made, 90, "velocity")
     np.testing.assert_allclose(velocity[-1], 9.81 * 90 * made["time_step"], rtol=1e-9)
     assert made["energy.residual"] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_envelopes_are_the_largest_stresses_of_the_segments():
     made = rod(40, **reflecting(0.7))
-    force, = march(made, 300, "force")
-    np.testing.assert_allclose(made["stress.compression"], force.max(axis=0).clip(0) / 5.8e-4, rtol=1e-12)
-    np.testing.assert_allclose(made["stress.tension"], (-force).max(axis=0).clip(0) / 5.8e-4, rtol=1e-12)
+    (force,) = march(made, 300, "force")
+    np.testing.assert_allclose(
+        made["stress.compression"], force.max(axis=0).clip(0) / 5.8e-4, rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        made["stress.tension"], (-force).max(axis=0).clip(0) / 5.8e-4, rtol=1e-12
+    )
 
 
 def test_the_gauge_sees_the_incident_wave_with_force_equal_to_zv():
@@ -152,13 +215,22 @@ def test_the_gauge_sees_the_incident_wave_with_force_equal_to_zv():
 
 def on_a_spring(steps, port, stiffness=3e7, exchange="sequential"):
     """Displacement of the toe over four travel times, on a spring outside. steps: of the rod from exchange to exchange."""
-    made = rod(256, ram__mass=63.5, toe__condition="port", toe__port=port, toe__partner__stiffness=stiffness, exchange=exchange)
+    made = rod(
+        256,
+        ram__mass=63.5,
+        toe__condition="port",
+        toe__port=port,
+        toe__partner__stiffness=stiffness,
+        exchange=exchange,
+    )
     step, known, places = steps * made["time_step"], 0.0, []
     for n in range(1024 // steps):
         if port == "waves":
             # F = c - Z v and F = k (u + v H/2), both means over the step
             wave, impedance = made["toe.wave"], made["toe.impedance"]
-            force = (known + 0.5 * step * wave / impedance) / (1.0 / stiffness + 0.5 * step / impedance)
+            force = (known + 0.5 * step * wave / impedance) / (
+                1.0 / stiffness + 0.5 * step / impedance
+            )
             known += step * (wave - force) / impedance
             if exchange == "sequential":
                 made["toe.force"] = force
@@ -174,7 +246,7 @@ def on_a_spring(steps, port, stiffness=3e7, exchange="sequential"):
 def test_a_spring_below_a_wave_port_is_the_soil_inside_at_every_step():
     made, outside = on_a_spring(1, "waves")
     inside = rod(256, ram__mass=63.5, toe__quake=1.0, toe__resistance=3e7, toe__damping=0.0)
-    place, = march(inside, len(outside), "toe.position")
+    (place,) = march(inside, len(outside), "toe.position")
     pressed = place > 0.0
     until = np.flatnonzero(~pressed & (np.arange(len(place)) > 260))
     until = until[0] if until.size else len(place)
@@ -202,7 +274,9 @@ def test_a_plain_port_below_the_toe_is_of_first_order_and_has_its_limit():
     errors = []
     for steps in (4, 8, 16):
         _, places = on_a_spring(steps, "kinematics")
-        errors.append(np.abs(places - exact[np.arange(1, len(places) + 1) * steps - 1]).max() / exact.max())
+        errors.append(
+            np.abs(places - exact[np.arange(1, len(places) + 1) * steps - 1]).max() / exact.max()
+        )
     assert 1.5 < errors[1] / errors[0] < 2.5
     assert 1.5 < errors[2] / errors[1] < 2.5
     assert on_a_spring(32, "kinematics")[0]["energy.work.toe"] > 10.0
@@ -216,7 +290,9 @@ def test_waves_bear_a_toe_a_thousand_times_stiffer_than_the_plain_port_can():
     limit = rod(256)["toe.impedance"] / (16 * 10.0 / 5120.0 / 256)
     made, places = on_a_spring(16, "waves", stiffness=1000.0 * limit)
     fixed = rod(256, ram__mass=63.5, toe__condition="fixed")
-    force, = march(fixed, 256 * 3, "force")
+    (force,) = march(fixed, 256 * 3, "force")
     assert made["energy.work.toe"] <= 1e-9
     assert np.abs(places).max() < 4.0 * force.max() / (1000.0 * limit)
-    assert made["energy.kinetic"] + made["energy.elastic"] + made["energy.ram"] <= made["energy.start"] * (1.0 + 1e-12)
+    assert made["energy.kinetic"] + made["energy.elastic"] + made["energy.ram"] <= made[
+        "energy.start"
+    ] * (1.0 + 1e-12)

@@ -31,12 +31,16 @@ def test_transmitted_force_is_what_the_beam_feels(base):
 
 @pytest.mark.parametrize("base", ["beam_surface", "beam_discs"])
 def test_rough_walls_carry_their_part_which_reaches_the_beam_when_they_stand_on_it(base):
-    fixed, standing = (settled(base, "random", rotation="free", walls=walls) for walls in ("fixed", "on_beam"))
+    fixed, standing = (
+        settled(base, "random", rotation="free", walls=walls) for walls in ("fixed", "on_beam")
+    )
     carried = 1.0 - fixed["transmitted_force"] / weight(fixed)
     assert 0.01 < abs(carried) < 0.2  # friction holds the pack up, or down where it sprang back
     assert standing["transmitted_force"] == pytest.approx(weight(standing), rel=1e-4)
     assert -standing["beam.force.y"].sum() == pytest.approx(weight(standing), rel=1e-4)
-    brought = fixed["beam.force.y"] - standing["beam.force.y"]  # the left wall stands beside disc 1, the right one between 2 and 3
+    brought = (
+        fixed["beam.force.y"] - standing["beam.force.y"]
+    )  # the left wall stands beside disc 1, the right one between 2 and 3
     assert brought.sum() == pytest.approx(carried * weight(fixed), rel=1e-3)
     assert brought[[0, 2]] == pytest.approx([brought.sum() - 2.0 * brought[2], brought[2]])
 
@@ -52,6 +56,16 @@ def test_a_square_lattice_on_the_floor_needs_no_settling():
 def test_the_start_is_at_rest_and_settling_leaves_no_trace_in_the_balance():
     sand = settled("beam_discs", "random", rotation="free")
     assert sand["energy.kinetic"] == 0.0
-    assert sand["energy.start"] == pytest.approx(sand["energy.elastic"] + sand["energy.gravity"], rel=1e-12)
-    for name in ("normal_dashpot", "tangential_dashpot", "sliding", "rolling", "work.rock", "work.beam", "residual"):
+    assert sand["energy.start"] == pytest.approx(
+        sand["energy.elastic"] + sand["energy.gravity"], rel=1e-12
+    )
+    for name in (
+        "normal_dashpot",
+        "tangential_dashpot",
+        "sliding",
+        "rolling",
+        "work.rock",
+        "work.beam",
+        "residual",
+    ):
         assert sand[f"energy.{name}"] == 0.0

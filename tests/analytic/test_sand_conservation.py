@@ -8,7 +8,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.sand_discs import RADIUS, SMALL_BOX, RockOnSand, cushion, discs_at, masses, rows, run, sand_stiffness, stirred
+from tests.sand_discs import (
+    RADIUS,
+    SMALL_BOX,
+    RockOnSand,
+    cushion,
+    discs_at,
+    masses,
+    rows,
+    run,
+    sand_stiffness,
+    stirred,
+)
 
 
 def cloud(count, seed, parameters):
@@ -33,11 +44,16 @@ def angular_momentum(instance):
     return (orbit + spin).sum(), (abs(orbit) + abs(spin)).sum()
 
 
-clouds = st.fixed_dictionaries({
-    "rotation": st.sampled_from(["free", "locked"]), "damping": st.sampled_from([0.0, 0.2, 0.7]),
-    "friction_angle": st.floats(0.0, 1.2), "rolling_resistance": st.sampled_from([0.0, 0.3]),
-    "tangential_ratio": st.floats(0.1, 1.0), "stiffness_factor": st.floats(0.2, 1.0),
-})
+clouds = st.fixed_dictionaries(
+    {
+        "rotation": st.sampled_from(["free", "locked"]),
+        "damping": st.sampled_from([0.0, 0.2, 0.7]),
+        "friction_angle": st.floats(0.0, 1.2),
+        "rolling_resistance": st.sampled_from([0.0, 0.3]),
+        "tangential_ratio": st.floats(0.1, 1.0),
+        "stiffness_factor": st.floats(0.2, 1.0),
+    }
+)
 
 
 @settings(max_examples=40, deadline=None)
@@ -50,11 +66,24 @@ def test_momentum_of_free_discs(count, seed, parameters):
 
 
 @settings(max_examples=20, deadline=None)
-@given(count=st.integers(2, 40), seed=st.integers(0, 10**6), damping=st.sampled_from([0.0, 0.2]),
-       rolling=st.sampled_from([0.0, 0.3]))
+@given(
+    count=st.integers(2, 40),
+    seed=st.integers(0, 10**6),
+    damping=st.sampled_from([0.0, 0.2]),
+    rolling=st.sampled_from([0.0, 0.3]),
+)
 def test_angular_momentum_of_smooth_discs(count, seed, damping, rolling):
     """Central forces and opposite rolling moments keep it to rounding, semi-implicit Euler included."""
-    discs = cloud(count, seed, {"rotation": "free", "friction_angle": 0.0, "damping": damping, "rolling_resistance": rolling})
+    discs = cloud(
+        count,
+        seed,
+        {
+            "rotation": "free",
+            "friction_angle": 0.0,
+            "damping": damping,
+            "rolling_resistance": rolling,
+        },
+    )
     before, size = angular_momentum(discs)
     run(discs, 2e-3)
     assert angular_momentum(discs)[0] == pytest.approx(before, abs=1e-11 * size)
@@ -67,19 +96,28 @@ def test_angular_momentum_of_rough_discs_errs_by_friction_times_overlap():
     the angular momentum gained is the integral of their product, mu k v^2 pi / (2 w^3).
     """
     mu, speed = 0.01, 0.5
-    discs = discs_at([(0.0, 0.0), (2 * RADIUS, 0.0)], [(speed / 2, 0.0), (-speed / 2, 0.2)],
-                     parameters={"damping": 0.0, "friction_angle": math.atan(mu), "internal_step": 1e-7})
+    discs = discs_at(
+        [(0.0, 0.0), (2 * RADIUS, 0.0)],
+        [(speed / 2, 0.0), (-speed / 2, 0.2)],
+        parameters={"damping": 0.0, "friction_angle": math.atan(mu), "internal_step": 1e-7},
+    )
     before, size = angular_momentum(discs)
     run(discs, 2e-3)
     k = sand_stiffness(discs)
-    gain = mu * k * speed ** 2 * math.pi / (2.0 * math.sqrt(2.0 * k / masses(discs)[0]) ** 3)
+    gain = mu * k * speed**2 * math.pi / (2.0 * math.sqrt(2.0 * k / masses(discs)[0]) ** 3)
     assert angular_momentum(discs)[0] - before == pytest.approx(gain, rel=0.02)
     assert gain < 0.001 * size
 
 
 def jostle(step, duration=4e-3, **changes):
     """A heap of discs stirred to 0.1 m/s under gravity; largest energy error met on the way, in kinetic energies at the start."""
-    parameters = {**SMALL_BOX, "packing": "hexagonal", "rotation": "free", "internal_step": step, **changes}
+    parameters = {
+        **SMALL_BOX,
+        "packing": "hexagonal",
+        "rotation": "free",
+        "internal_step": step,
+        **changes,
+    }
     discs = stirred(cushion({**parameters}), 0.1)
     energy, worst = discs["energy.kinetic"], 0.0
     for _ in range(100):
@@ -89,12 +127,17 @@ def jostle(step, duration=4e-3, **changes):
 
 
 def test_elastic_smooth_discs_keep_their_energy_to_second_order():
-    errors = [jostle(step, damping=0.0, friction_angle=0.0, **{"wall.friction_angle": 0.0}) for step in (4e-5, 1e-5, 2.5e-6)]
+    errors = [
+        jostle(step, damping=0.0, friction_angle=0.0, **{"wall.friction_angle": 0.0})
+        for step in (4e-5, 1e-5, 2.5e-6)
+    ]
     assert errors[-1] < 1e-4
     assert all(coarse > 8.0 * fine for coarse, fine in pairwise(errors))
 
 
-@pytest.mark.parametrize("changes", [{}, {"rotation": "locked"}, {"rolling_resistance": 0.3}, {"damping": 0.0}], ids=str)
+@pytest.mark.parametrize(
+    "changes", [{}, {"rotation": "locked"}, {"rolling_resistance": 0.3}, {"damping": 0.0}], ids=str
+)
 def test_energy_balance_with_all_losses_closes_to_first_order(changes):
     errors = [jostle(step, **changes) for step in (2e-5, 1e-5, 5e-6)]
     assert errors[-1] < 0.015
@@ -123,11 +166,20 @@ def test_energy_balance_of_an_impact_halves_with_the_step(rotation):
     """The rock strikes a small cushion: the sand's balance, and the work that either side counts at their interface."""
     residuals, gaps = [], []
     for step in (2e-5, 1e-5, 5e-6):
-        sand = cushion({**SMALL_BOX, "base": "beam_discs", "packing": "hexagonal", "rotation": rotation, "rock.radius": 0.02,
-                        "rock.mass": 0.5, "internal_step": step})
+        sand = cushion(
+            {
+                **SMALL_BOX,
+                "base": "beam_discs",
+                "packing": "hexagonal",
+                "rotation": rotation,
+                "rock.radius": 0.02,
+                "rock.mass": 0.5,
+                "internal_step": step,
+            }
+        )
         pair = RockOnSand(sand, (0.051, sand["surface_height"] + 0.0201), (0.0, -4.0), step)
         pair.advance(6e-3)
-        impact = 0.5 * 0.5 * 4.0 ** 2
+        impact = 0.5 * 0.5 * 4.0**2
         assert sand["energy.work.rock"] > 0.5 * impact
         residuals.append(abs(sand["energy.residual"]) / impact)
         gaps.append(abs(sand["energy.work.rock"] + pair.rock["energy.work.contact"]) / impact)

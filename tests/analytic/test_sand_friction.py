@@ -22,12 +22,18 @@ CARRIERS = {
     "floor": ((0.0, 0.0), None, {"base.y": 0.0}),
     "rock": ((0.0, 0.02), 0.02, {"rock.position.y": 0.0, "rock.radius": 0.02}),
     "beam": ((0.025, 0.0), 0.025, {"base": "beam_discs", "box.left": 0.0, "box.width": 0.2}),
-    "beam surface": ((0.06, 0.0), 0.025, {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2}),
+    "beam surface": (
+        (0.06, 0.0),
+        0.025,
+        {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2},
+    ),
 }
 """What a disc can lie on: the point, the carrier's radius, the parameters."""
 
 
-@pytest.mark.parametrize(("carrier", "ratio"), [("floor", 1.0), ("beam surface", 1.0), ("beam", 1.0), ("rock", 2 / 5)])
+@pytest.mark.parametrize(
+    ("carrier", "ratio"), [("floor", 1.0), ("beam surface", 1.0), ("beam", 1.0), ("rock", 2 / 5)]
+)
 def test_a_disc_comes_to_rest_with_the_overlap_that_carries_it(carrier, ratio):
     """Eq. (1) with dD = 2 r and R_ij0 = r + R: k_n = E_bar dL 2 r / (r + R); a plane counts as the disc's mirror image."""
     (x, y), _, parameters = CARRIERS[carrier]
@@ -35,14 +41,20 @@ def test_a_disc_comes_to_rest_with_the_overlap_that_carries_it(carrier, ratio):
     run(disc, 0.1)
     overlap = y + RADIUS - rows(disc)[0, 1]
     assert overlap == pytest.approx(masses(disc)[0] * G / (ratio * sand_stiffness(disc)), rel=1e-9)
-    assert disc["transmitted_force"] - disc["rock.force.y"] == pytest.approx(masses(disc)[0] * G, rel=1e-12)
+    assert disc["transmitted_force"] - disc["rock.force.y"] == pytest.approx(
+        masses(disc)[0] * G, rel=1e-12
+    )
 
 
 def test_a_locked_disc_slides_with_the_deceleration_mu_g():
-    disc = discs_at([(0.0, resting_height())], [(1.0, 0.0)], parameters={**ON_FLOOR, "rotation": "locked"})
+    disc = discs_at(
+        [(0.0, resting_height())], [(1.0, 0.0)], parameters={**ON_FLOOR, "rotation": "locked"}
+    )
     run(disc, 0.1)
     assert rows(disc)[0, 2] == pytest.approx(1.0 - MU * G * 0.1, rel=1e-9)
-    run(disc, 0.2)  # it stops at 0.177 s; the tangential spring then swings and its dashpot calms it
+    run(
+        disc, 0.2
+    )  # it stops at 0.177 s; the tangential spring then swings and its dashpot calms it
     assert rows(disc)[0, 2] == pytest.approx(0.0, abs=1e-9)
     assert rows(disc)[0, 0] == pytest.approx(1.0 / (2.0 * MU * G), rel=1e-3)
 
@@ -96,8 +108,11 @@ def test_a_turning_rock_or_beam_carries_the_disc_along_and_is_braked(carrier):
 def column(spin, rolling_resistance):
     """Two smooth discs, one upon the other, that turn against each other with +-spin (rad/s)."""
     lower = resting_height(2)
-    return discs_at([(0.0, lower), (0.0, lower + RADIUS + resting_height())], spins=[spin, -spin],
-                    parameters={**ON_FLOOR, "friction_angle": 0.0, "rolling_resistance": rolling_resistance})
+    return discs_at(
+        [(0.0, lower), (0.0, lower + RADIUS + resting_height())],
+        spins=[spin, -spin],
+        parameters={**ON_FLOOR, "friction_angle": 0.0, "rolling_resistance": rolling_resistance},
+    )
 
 
 def test_rolling_resistance_slows_at_its_limit():
@@ -107,8 +122,14 @@ def test_rolling_resistance_slows_at_its_limit():
     run(discs, 2e-3)
     before = rows(discs)[:, 4].copy()
     run(discs, 4e-3)
-    assert before - rows(discs)[:, 4] == pytest.approx(np.array((5.0, -1.0)) * 0.3 * G * 4e-3, rel=1e-6)
-    assert discs["energy.rolling"] > 0.9 * (discs["energy.start"] - discs["energy.kinetic"] - discs["energy.gravity"]) > 0.0
+    assert before - rows(discs)[:, 4] == pytest.approx(
+        np.array((5.0, -1.0)) * 0.3 * G * 4e-3, rel=1e-6
+    )
+    assert (
+        discs["energy.rolling"]
+        > 0.9 * (discs["energy.start"] - discs["energy.kinetic"] - discs["energy.gravity"])
+        > 0.0
+    )
 
 
 def test_rolling_resistance_holds_discs_that_turn_slowly():

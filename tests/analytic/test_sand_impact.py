@@ -25,8 +25,16 @@ APPROACHES = {
     "floor": ((0.0, RADIUS), (0.0, -1.0), {"base.y": 0.0}),
     "left wall": ((RADIUS, 0.0), (-1.0, 0.0), {"box.left": 0.0}),
     "right wall": ((1.0 - RADIUS, 0.0), (1.0, 0.0), {"box.left": 0.0, "box.width": 1.0}),
-    "beam disc": ((0.025, RADIUS), (0.0, -1.0), {"base": "beam_discs", "box.left": 0.0, "box.width": 0.2}),
-    "beam surface": ((0.05, RADIUS), (0.0, -1.0), {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2}),
+    "beam disc": (
+        (0.025, RADIUS),
+        (0.0, -1.0),
+        {"base": "beam_discs", "box.left": 0.0, "box.width": 0.2},
+    ),
+    "beam surface": (
+        (0.05, RADIUS),
+        (0.0, -1.0),
+        {"base": "beam_surface", "box.left": 0.0, "box.width": 0.2},
+    ),
 }
 
 
@@ -41,10 +49,15 @@ def test_restitution_of_two_equal_discs(damping):
     """The reduced mass is m/2 and c_n = 2 h sqrt(m k_n), so the damping ratio of the pair is h sqrt(2)."""
     errors = []
     for step in HALVINGS:
-        pair = discs_at([(0.0, 0.0), (2 * RADIUS, 0.0)], [(1.0, 0.0), (-1.0, 0.0)],
-                        parameters={"damping": damping, "internal_step": step})
+        pair = discs_at(
+            [(0.0, 0.0), (2 * RADIUS, 0.0)],
+            [(1.0, 0.0), (-1.0, 0.0)],
+            parameters={"damping": damping, "internal_step": step},
+        )
         run(pair, 4e-3)
-        errors.append((rows(pair)[1, 2] - rows(pair)[0, 2]) / 2.0 - restitution(damping * math.sqrt(2.0)))
+        errors.append(
+            (rows(pair)[1, 2] - rows(pair)[0, 2]) / 2.0 - restitution(damping * math.sqrt(2.0))
+        )
     assert_first_order(errors)
 
 
@@ -68,7 +81,11 @@ def test_restitution_of_a_disc_on_a_boundary(boundary, damping):
     position, velocity, parameters = APPROACHES[boundary]
     errors = []
     for step in HALVINGS:
-        disc = discs_at([position], [velocity], parameters={**parameters, "damping": damping, "internal_step": step})
+        disc = discs_at(
+            [position],
+            [velocity],
+            parameters={**parameters, "damping": damping, "internal_step": step},
+        )
         run(disc, 4e-3)
         errors.append(-rows(disc)[0, 2:4] @ velocity - restitution(damping))
     assert_first_order(errors)
@@ -77,25 +94,38 @@ def test_restitution_of_a_disc_on_a_boundary(boundary, damping):
 @pytest.mark.parametrize("damping", [0.0, 0.2, 0.9])
 def test_duration_of_contact(damping):
     step = 1e-6
-    pair = discs_at([(0.0, 0.0), (2 * RADIUS, 0.0)], [(1.0, 0.0), (-1.0, 0.0)], parameters={"damping": damping})
+    pair = discs_at(
+        [(0.0, 0.0), (2 * RADIUS, 0.0)], [(1.0, 0.0), (-1.0, 0.0)], parameters={"damping": damping}
+    )
     frequency = math.sqrt(2.0 * sand_stiffness(pair) / masses(pair)[0])
     last_change, speed = 0, rows(pair)[0, 2]
     for count in range(1, 1500):
         pair.step(0.0, step)
         if rows(pair)[0, 2] != speed:
             last_change, speed = count, rows(pair)[0, 2]
-    assert last_change * step == pytest.approx(contact_duration(damping * math.sqrt(2.0), frequency), abs=4 * step)
+    assert last_change * step == pytest.approx(
+        contact_duration(damping * math.sqrt(2.0), frequency), abs=4 * step
+    )
 
 
-@pytest.mark.parametrize("boundary", [name for name in APPROACHES if name != "beam disc"])  # whose flank turns the normal
+@pytest.mark.parametrize(
+    "boundary", [name for name in APPROACHES if name != "beam disc"]
+)  # whose flank turns the normal
 def test_oblique_impact_that_slides_throughout(boundary):
     """Tangential impulse = mu * normal impulse; at the radius r it changes the spin by impulse * r / I = 2 impulse / (m r)."""
     position, normal_velocity, parameters = APPROACHES[boundary]
     mu, speed = 0.1, 3.0
     towards = np.array(normal_velocity)
     along = np.array((-towards[1], towards[0]))
-    disc = discs_at([position], [towards + speed * along],
-                    parameters={**parameters, "friction_angle": math.atan(mu), "wall.friction_angle": math.atan(mu)})
+    disc = discs_at(
+        [position],
+        [towards + speed * along],
+        parameters={
+            **parameters,
+            "friction_angle": math.atan(mu),
+            "wall.friction_angle": math.atan(mu),
+        },
+    )
     run(disc, 2e-3)
     change = rows(disc)[0, 2:4] - (towards + speed * along)
     normal, tangential = -change @ towards, change @ along
@@ -105,8 +135,10 @@ def test_oblique_impact_that_slides_throughout(boundary):
 
 
 def test_locked_rotation_takes_the_same_friction_but_no_spin():
-    spun, locked = (discs_at([(0.0, RADIUS)], [(3.0, -1.0)], parameters={"base.y": 0.0, "rotation": rotation})
-                    for rotation in ("free", "locked"))
+    spun, locked = (
+        discs_at([(0.0, RADIUS)], [(3.0, -1.0)], parameters={"base.y": 0.0, "rotation": rotation})
+        for rotation in ("free", "locked")
+    )
     run(spun, 1e-3)
     run(locked, 1e-3)
     assert rows(spun)[0, 4] < -10.0 * RADIUS
@@ -131,7 +163,13 @@ ROCK_APPROACHES = {
 def test_rock_rebounds_from_whatever_carries_or_bounds_the_sand(boundary):
     """The rock's own mass is in the dashpot, so its damping ratio is h."""
     position, velocity, parameters = ROCK_APPROACHES[boundary]
-    box = {**EMPTY_SPACE, "box.left": 0.0, "box.width": 0.2 if boundary != "floor" else 1.0, "base.y": 0.0, **parameters}
+    box = {
+        **EMPTY_SPACE,
+        "box.left": 0.0,
+        "box.width": 0.2 if boundary != "floor" else 1.0,
+        "base.y": 0.0,
+        **parameters,
+    }
     sand = cushion(box, discs=1)
     rows(sand)[0, 0:2] = 0.15, 0.3
     pair = RockOnSand(sand, position, velocity, 1e-5)
@@ -143,7 +181,11 @@ def test_rock_rebounds_from_whatever_carries_or_bounds_the_sand(boundary):
         if on_beam:
             assert sand["beam.force.x"].sum() == pytest.approx(-sand["rock.force.x"], abs=1e-9)
             assert sand["beam.force.y"].sum() == pytest.approx(-sand["rock.force.y"], rel=1e-12)
-            assert sand["transmitted_force"] == pytest.approx(-sand["beam.force.y"].sum(), rel=1e-12)
+            assert sand["transmitted_force"] == pytest.approx(
+                -sand["beam.force.y"].sum(), rel=1e-12
+            )
     rebound = -np.array((pair.rock["velocity.x"], pair.rock["velocity.y"])) @ velocity
     assert rebound == pytest.approx(restitution(0.2), abs=2e-3)
-    assert impulse == pytest.approx(0.0 if "wall" in boundary else sand["rock.mass"] * (1.0 + rebound), rel=1e-9)
+    assert impulse == pytest.approx(
+        0.0 if "wall" in boundary else sand["rock.mass"] * (1.0 + rebound), rel=1e-9
+    )

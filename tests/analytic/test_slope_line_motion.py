@@ -23,20 +23,32 @@ def test_a_smooth_rock_rolls_with_the_share_of_gravity_of_its_shape(shape, share
     rock.step(0.0, 2.0)
     assert mode(rock) == "rolling"
     assert along(rock, 0.3) == pytest.approx(share * G * math.sin(0.3) * 2.0, rel=1e-12)
-    assert math.hypot(rock["position.x"], rock["position.y"] - 0.5 / math.cos(0.3)) == pytest.approx(
-        share * G * math.sin(0.3) * 2.0, rel=1e-12)
+    assert math.hypot(
+        rock["position.x"], rock["position.y"] - 0.5 / math.cos(0.3)
+    ) == pytest.approx(share * G * math.sin(0.3) * 2.0, rel=1e-12)
     assert rock["angular_velocity"] == pytest.approx(-along(rock, 0.3) / 0.5, rel=1e-12)
 
 
 @settings(deadline=None)
-@given(angles, st.floats(0.0, 0.3), st.floats(0.0, 200.0), st.floats(0.05, 1.0), st.floats(0.0, 30.0))
+@given(
+    angles, st.floats(0.0, 0.3), st.floats(0.0, 200.0), st.floats(0.05, 1.0), st.floats(0.0, 30.0)
+)
 def test_rolling_fulfils_the_equations_of_motion(angle, roughness, resistance, ratio, speed):
     """(1) with no slip, solved for the forces: normal equation, spin equation, and what is left along the cell."""
     mass, radius = 1000.0, 0.5
-    inertia = ratio * mass * radius ** 2
-    rock = plane(angle, speed, -speed, friction=0.99 * math.sqrt(2.0 / max(roughness, 1e-4) - 1.0), mass=mass,
-                 roughness=roughness, resistance=resistance, shape="given", moment_of_inertia=inertia)
-    phi, drag = 0.5 * math.acos(1.0 - roughness), math.pi * radius ** 2 * resistance
+    inertia = ratio * mass * radius**2
+    rock = plane(
+        angle,
+        speed,
+        -speed,
+        friction=0.99 * math.sqrt(2.0 / max(roughness, 1e-4) - 1.0),
+        mass=mass,
+        roughness=roughness,
+        resistance=resistance,
+        shape="given",
+        moment_of_inertia=inertia,
+    )
+    phi, drag = 0.5 * math.acos(1.0 - roughness), math.pi * radius**2 * resistance
     rock.step(0.0, 1e-3)
     if mode(rock) != "rolling":
         return
@@ -44,14 +56,24 @@ def test_rolling_fulfils_the_equations_of_motion(angle, roughness, resistance, r
     spun = (rock["angular_velocity"] + speed / radius) / 1e-3
     shear = -inertia * spun / radius
     pressure = (mass * G * math.cos(angle) + shear * math.sin(phi)) / math.cos(phi)
-    left = mass * G * math.sin(angle) - pressure * math.sin(phi) - shear * math.cos(phi) - drag - mass * gained
+    left = (
+        mass * G * math.sin(angle)
+        - pressure * math.sin(phi)
+        - shear * math.cos(phi)
+        - drag
+        - mass * gained
+    )
     assert left == pytest.approx(0.0, abs=1e-8 * mass * G)
     assert spun == pytest.approx(-gained / radius, abs=1e-8 * G / radius)
 
 
 @settings(deadline=None)
-@given(angles, st.floats(0.0, 0.3), st.floats(0.05, 0.9), st.floats(1.0, 20.0), st.floats(-1.0, 3.0))
-def test_sliding_fulfils_the_equations_of_motion_whichever_way_it_slips(angle, roughness, friction, speed, spin):
+@given(
+    angles, st.floats(0.0, 0.3), st.floats(0.05, 0.9), st.floats(1.0, 20.0), st.floats(-1.0, 3.0)
+)
+def test_sliding_fulfils_the_equations_of_motion_whichever_way_it_slips(
+    angle, roughness, friction, speed, spin
+):
     """Topspin beyond rolling (spin < -speed) pushes the rock forward: the sign that the print has lost."""
     spin = -speed * spin
     if abs(speed + spin) < 0.3 * speed:
@@ -62,19 +84,33 @@ def test_sliding_fulfils_the_equations_of_motion_whichever_way_it_slips(angle, r
     phi, across = 0.5 * math.acos(1.0 - roughness), math.copysign(friction, speed + spin)
     pressure = pressed(angle, roughness, across)
     assert (along(rock, angle) - speed) / 1e-4 == pytest.approx(
-        G * (math.sin(angle) - pressure * (math.sin(phi) + across * math.cos(phi))), abs=1e-6)
-    assert (rock["angular_velocity"] - spin / 0.5) / 1e-4 == pytest.approx(-across * pressure * G / (0.4 * 0.5), abs=1e-6)
+        G * (math.sin(angle) - pressure * (math.sin(phi) + across * math.cos(phi))), abs=1e-6
+    )
+    assert (rock["angular_velocity"] - spin / 0.5) / 1e-4 == pytest.approx(
+        -across * pressure * G / (0.4 * 0.5), abs=1e-6
+    )
 
 
 def test_stopping_distance_on_the_flat():
     """Energy (1 + beta) m v2 / 2 against the roughness' share of the weight and the resistance."""
     speed, roughness, resistance, mass, radius = 8.0, 0.02, 300.0, 1400.0, 0.5
-    rock = plane(0.0, speed, -speed, friction=0.6, roughness=roughness, resistance=resistance, mass=mass, radius=radius)
-    phi, drag = 0.5 * math.acos(1.0 - roughness), math.pi * radius ** 2 * resistance
-    slowing = (G * math.tan(phi) + drag / mass) / (1.0 + 0.4 * (math.tan(phi) * math.sin(phi) + math.cos(phi)))
+    rock = plane(
+        0.0,
+        speed,
+        -speed,
+        friction=0.6,
+        roughness=roughness,
+        resistance=resistance,
+        mass=mass,
+        radius=radius,
+    )
+    phi, drag = 0.5 * math.acos(1.0 - roughness), math.pi * radius**2 * resistance
+    slowing = (G * math.tan(phi) + drag / mass) / (
+        1.0 + 0.4 * (math.tan(phi) * math.sin(phi) + math.cos(phi))
+    )
     rock.step(0.0, 60.0)
     assert mode(rock) == "rest"
-    assert rock["position.x"] == pytest.approx(speed ** 2 / (2.0 * slowing), rel=1e-10)
+    assert rock["position.x"] == pytest.approx(speed**2 / (2.0 * slowing), rel=1e-10)
     assert rock["next_event.time"] == 1e30
     assert (rock["velocity.x"], rock["angular_velocity"]) == (0.0, 0.0)
 
@@ -130,17 +166,41 @@ def test_a_rock_thrown_up_the_slope_comes_back_slower_and_passes_its_start():
 
 
 @settings(deadline=None)
-@given(angles, st.floats(-20.0, 20.0), st.floats(-20.0, 20.0), st.floats(0.0, 0.2), st.floats(0.05, 0.9), st.floats(0.0, 500.0))
-def test_the_mirrored_slope_gives_the_mirrored_motion(angle, speed, spin, roughness, friction, resistance):
-    rocks = [plane(side * angle, side * speed, side * spin, friction=friction, roughness=roughness, resistance=resistance)
-             for side in (1, -1)]
+@given(
+    angles,
+    st.floats(-20.0, 20.0),
+    st.floats(-20.0, 20.0),
+    st.floats(0.0, 0.2),
+    st.floats(0.05, 0.9),
+    st.floats(0.0, 500.0),
+)
+def test_the_mirrored_slope_gives_the_mirrored_motion(
+    angle, speed, spin, roughness, friction, resistance
+):
+    rocks = [
+        plane(
+            side * angle,
+            side * speed,
+            side * spin,
+            friction=friction,
+            roughness=roughness,
+            resistance=resistance,
+        )
+        for side in (1, -1)
+    ]
     for rock in rocks:
         rock.step(0.0, 3.0)
     right, left = rocks
     assert mode(right) == mode(left)
     scale = 1.0 + abs(right["position.x"])
-    for name, sign in (("position.x", -1), ("position.y", 1), ("velocity.x", -1), ("velocity.y", 1), ("angular_velocity", -1),
-                       ("energy.kinetic", 1)):
+    for name, sign in (
+        ("position.x", -1),
+        ("position.y", 1),
+        ("velocity.x", -1),
+        ("velocity.y", 1),
+        ("angular_velocity", -1),
+        ("energy.kinetic", 1),
+    ):
         assert right[name] == pytest.approx(sign * left[name], rel=1e-9, abs=1e-9 * scale)
 
 
@@ -153,16 +213,27 @@ def test_a_spinning_rock_on_rough_ground_spins_on_the_spot_and_rests():
     rock.step(0.0, 1.0)
     assert mode(rock) == "rest"
     assert rock["position.x"] == 0.0
-    assert rock["energy.friction"] == pytest.approx(0.5 * 0.4 * 1000.0 * 2.0 ** 2, rel=1e-12)
+    assert rock["energy.friction"] == pytest.approx(0.5 * 0.4 * 1000.0 * 2.0**2, rel=1e-12)
 
 
 @settings(deadline=None)
-@given(angles, st.floats(-15.0, 15.0), st.floats(-15.0, 15.0), st.floats(0.0, 0.2), st.floats(0.05, 0.9), st.floats(0.0, 500.0),
-       st.floats(0.01, 20.0))
-def test_what_line_motion_loses_is_booked(angle, speed, spin, roughness, friction, resistance, time):
+@given(
+    angles,
+    st.floats(-15.0, 15.0),
+    st.floats(-15.0, 15.0),
+    st.floats(0.0, 0.2),
+    st.floats(0.05, 0.9),
+    st.floats(0.0, 500.0),
+    st.floats(0.01, 20.0),
+)
+def test_what_line_motion_loses_is_booked(
+    angle, speed, spin, roughness, friction, resistance, time
+):
     rock = plane(angle, speed, spin, friction=friction, roughness=roughness, resistance=resistance)
     rock.step(0.0, time)
-    assert rock["energy.residual"] == pytest.approx(0.0, abs=1e-10 * (abs(rock["energy.start"]) + rock["energy.kinetic"] + 1.0))
+    assert rock["energy.residual"] == pytest.approx(
+        0.0, abs=1e-10 * (abs(rock["energy.start"]) + rock["energy.kinetic"] + 1.0)
+    )
     for name in ("friction", "roughness", "resistance"):
         assert rock[f"energy.{name}"] >= -1e-9 * (rock["energy.kinetic"] + 1.0)
     assert rock["energy.impact"] == 0.0

@@ -3,19 +3,31 @@
 import math
 
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError
-
 from tests.slope_rocks import G, mode, slope
 
 FALLING = component("FallingRock")
-BOX = {"receiver__present": 1.0, "receiver__left": 5.0, "receiver__right": 12.0, "receiver__bottom": -2.0, "receiver__top": 4.0}
+BOX = {
+    "receiver__present": 1.0,
+    "receiver__left": 5.0,
+    "receiver__right": 12.0,
+    "receiver__bottom": -2.0,
+    "receiver__top": 4.0,
+}
 LEVEL = [(-50, 0), (50, 0)]
 STATE = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity")
 
 
 def thrown(**values):
-    start = {"position0__x": 0.0, "position0__y": 3.0, "velocity0__x": 10.0, "velocity0__y": 0.0, "mass": 1000.0}
+    start = {
+        "position0__x": 0.0,
+        "position0__y": 3.0,
+        "velocity0__x": 10.0,
+        "velocity0__y": 0.0,
+        "mass": 1000.0,
+    }
     return slope(LEVEL, **{**start, **BOX, **values})
 
 
@@ -23,7 +35,11 @@ def test_a_rock_is_handed_over_when_its_centre_enters():
     rock = thrown()
     assert rock["handover.time"] == 1e30
     rock.step(0.0, 0.4)
-    assert (mode(rock), rock["received"], rock["next_event.time"]) == ("flight", 0.0, pytest.approx(0.5, rel=1e-12))
+    assert (mode(rock), rock["received"], rock["next_event.time"]) == (
+        "flight",
+        0.0,
+        pytest.approx(0.5, rel=1e-12),
+    )
     rock.step(0.4, 0.2)
     assert (mode(rock), rock["received"], rock["handovers"]) == ("received", 1.0, 1.0)
     assert rock["handover.time"] == pytest.approx(0.5, rel=1e-12)
@@ -41,16 +57,40 @@ def test_without_force_the_flight_in_the_receiver_is_exact_whatever_the_step():
 
 
 def test_under_forces_it_moves_like_the_falling_rock_bit_for_bit():
-    rock = slope(LEVEL, position0__x=6.0, position0__y=1.0, velocity0__x=1.0, velocity0__y=-3.0, angular_velocity0=2.0, mass=7.0,
-                 radius=0.2, receiver__present=1.0, receiver__left=0.0, receiver__right=20.0, receiver__bottom=-5.0,
-                 receiver__top=20.0)
+    rock = slope(
+        LEVEL,
+        position0__x=6.0,
+        position0__y=1.0,
+        velocity0__x=1.0,
+        velocity0__y=-3.0,
+        angular_velocity0=2.0,
+        mass=7.0,
+        radius=0.2,
+        receiver__present=1.0,
+        receiver__left=0.0,
+        receiver__right=20.0,
+        receiver__bottom=-5.0,
+        receiver__top=20.0,
+    )
     other = FALLING.instance()
-    for name in ("position0.x", "position0.y", "velocity0.x", "velocity0.y", "angular_velocity0", "mass", "radius"):
+    for name in (
+        "position0.x",
+        "position0.y",
+        "velocity0.x",
+        "velocity0.y",
+        "angular_velocity0",
+        "mass",
+        "radius",
+    ):
         other[name] = rock[name]
     other.initialise()
     for i in range(400):
         for body in (rock, other):
-            body["force.x"], body["force.y"], body["torque"] = 3.0 + i, 40.0 * math.sin(0.1 * i) + 90.0, 0.1 * i - 5.0
+            body["force.x"], body["force.y"], body["torque"] = (
+                3.0 + i,
+                40.0 * math.sin(0.1 * i) + 90.0,
+                0.1 * i - 5.0,
+            )
             body.step(i * 1e-4, 1e-4)
     assert [rock[name] for name in STATE] == [other[name] for name in STATE]
     for name in ("energy.kinetic", "energy.gravity", "energy.work.contact", "energy.residual"):
@@ -82,8 +122,20 @@ def test_a_rock_hits_bounces_and_rolls_on():
 
 def test_it_may_come_back_into_the_receiver():
     """A box in the air over a hard floor, passed on the way down, up and down again."""
-    rock = slope(LEVEL, position0__x=0.0, position0__y=6.0, velocity0__x=0.0, hardening=0.9, strength=1e9, stiffness=1e8,
-                 receiver__present=1.0, receiver__left=-1.0, receiver__right=1.0, receiver__bottom=2.0, receiver__top=3.0)
+    rock = slope(
+        LEVEL,
+        position0__x=0.0,
+        position0__y=6.0,
+        velocity0__x=0.0,
+        hardening=0.9,
+        strength=1e9,
+        stiffness=1e8,
+        receiver__present=1.0,
+        receiver__left=-1.0,
+        receiver__right=1.0,
+        receiver__bottom=2.0,
+        receiver__top=3.0,
+    )
     rock.step(0.0, 1.8)
     assert rock["impacts"] == 1
     assert rock["handovers"] == 2
@@ -94,7 +146,9 @@ def test_it_may_come_back_into_the_receiver():
 def test_a_force_on_a_rock_that_is_not_handed_over_is_refused():
     rock = thrown()
     rock["force.y"] = 10.0
-    with pytest.raises(ComponentError, match=r"force \(0, 10\) N.*is not handed over: enlarge the receiver"):
+    with pytest.raises(
+        ComponentError, match=r"force \(0, 10\) N.*is not handed over: enlarge the receiver"
+    ):
         rock.step(0.0, 0.1)
 
 
@@ -114,16 +168,41 @@ def test_a_force_that_is_no_number_stops_it(force):
 
 # --- a start shortly before the hand-over ---
 
-ALL = ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "mode", "height", "impacts", "received",
-       "energy.kinetic", "energy.impact", "energy.roughness")
-ROUGH = {"roughness": 0.1, "roughness_deviation": 0.03, "tilt_deviation": 0.1, "hardening": 0.7, "friction": 0.5,
-         "tilt__meaning": "absolute"}
+ALL = (
+    "position.x",
+    "position.y",
+    "angle",
+    "velocity.x",
+    "velocity.y",
+    "angular_velocity",
+    "mode",
+    "height",
+    "impacts",
+    "received",
+    "energy.kinetic",
+    "energy.impact",
+    "energy.roughness",
+)
+ROUGH = {
+    "roughness": 0.1,
+    "roughness_deviation": 0.03,
+    "tilt_deviation": 0.1,
+    "hardening": 0.7,
+    "friction": 0.5,
+    "tilt__meaning": "absolute",
+}
 
 
 def bouncing(**values):
     """It bounces along the slope before it comes into the box, over a cliff."""
     start = {"position0__x": -20.0, "position0__y": 14.0, "velocity0__x": 6.0, "trial": 3}
-    box = {"receiver__present": 1.0, "receiver__left": 5.0, "receiver__right": 12.0, "receiver__bottom": -8.0, "receiver__top": 8.0}
+    box = {
+        "receiver__present": 1.0,
+        "receiver__left": 5.0,
+        "receiver__right": 12.0,
+        "receiver__bottom": -8.0,
+        "receiver__top": 8.0,
+    }
     return slope([(-50, 20), (5, -2), (6, -12), (50, -12)], **{**start, **box, **ROUGH, **values})
 
 
@@ -160,5 +239,14 @@ def bouncing_entry():
 
 
 def test_a_rock_that_never_enters_has_no_lead_time():
-    with pytest.raises(ComponentError, match="trial 3 of seed 1 never enters the receiver, and lead_time counts from there"):
-        bouncing(lead_time=0.1, receiver__left=60.0, receiver__right=61.0, receiver__top=100.0, receiver__bottom=90.0)
+    with pytest.raises(
+        ComponentError,
+        match="trial 3 of seed 1 never enters the receiver, and lead_time counts from there",
+    ):
+        bouncing(
+            lead_time=0.1,
+            receiver__left=60.0,
+            receiver__right=61.0,
+            receiver__top=100.0,
+            receiver__bottom=90.0,
+        )

@@ -13,8 +13,8 @@ from tests.slope_rocks import G, mode, slope
 MASS, RADIUS, FRICTION, ROUGHNESS, RESISTANCE = 14.0, 0.01, 0.4, 0.08, 2e4
 STRENGTH, STIFFNESS, HARDENING = 1e10, 4e12, 0.5
 ANGLE, END, TIMES = math.radians(30.0), 12.0, np.arange(1.0, 12.1, 1.0)
-INERTIA = 0.4 * MASS * RADIUS ** 2
-AREA = 0.25 * math.pi * RADIUS ** 2
+INERTIA = 0.4 * MASS * RADIUS**2
+AREA = 0.25 * math.pi * RADIUS**2
 NODES = [(-200.0, 200.0 * math.tan(ANGLE)), (0.0, 0.0), (500.0, 0.0)]
 START = {"position0__x": -60.0, "position0__y": 60.0 * math.tan(ANGLE) + 4.0, "velocity0__x": 3.0}
 
@@ -22,7 +22,7 @@ START = {"position0__x": -60.0, "position0__y": 60.0 * math.tan(ANGLE) + 4.0, "v
 def solve_line(angle, u, omega, tilt):
     """(1) as linear equations for u', omega', P, S: without slip first, else with the friction of the present slip."""
     s, c, slip = math.sin(tilt), math.cos(tilt), u + RADIUS * omega
-    drag = math.pi * RADIUS ** 2 * RESISTANCE
+    drag = math.pi * RADIUS**2 * RESISTANCE
     matrix = np.array([[MASS, 0, s, c], [0, 0, c, -s], [0, INERTIA, 0, RADIUS], [1, RADIUS, 0, 0]])
     right = np.array([MASS * G * math.sin(angle) - drag, MASS * G * math.cos(angle), 0.0, 0.0])
     if abs(slip) < 1e-6:
@@ -37,22 +37,34 @@ def solve_line(angle, u, omega, tilt):
 
 def penetrate(v, pull):
     """Penetration and restitution: work of the ground N(delta) integrated, gravity counted on both ways."""
+
     def missing(delta):
         a = STIFFNESS * delta / STRENGTH
         work = STRENGTH * AREA * (delta - STRENGTH / STIFFNESS * (1.0 - math.exp(-a)))
         return work - 0.5 * MASS * v * v - MASS * pull * delta
+
     delta = brentq(missing, 2.0 * MASS * pull / (STIFFNESS * AREA), 100.0, xtol=1e-15)
     force = STRENGTH * AREA * (1.0 - math.exp(-STIFFNESS * delta / STRENGTH))
-    back = HARDENING * force ** 2 / (2.0 * STIFFNESS * AREA) - MASS * pull * delta
+    back = HARDENING * force**2 / (2.0 * STIFFNESS * AREA) - MASS * pull * delta
     return delta, math.sqrt(max(0.0, 2.0 * back / MASS)) / abs(v)
 
 
 def solve_impact(angle, u, v, omega):
     """(19) as linear equations for u2, v2, omega2 and both impulses."""
     delta, e = penetrate(v, G * math.cos(angle))
-    tilt = min(0.5 * math.acos(max(-1.0, 1.0 - delta / RADIUS)), math.atan(abs(u) / ((1.0 + e) * abs(v))))
+    tilt = min(
+        0.5 * math.acos(max(-1.0, 1.0 - delta / RADIUS)), math.atan(abs(u) / ((1.0 + e) * abs(v)))
+    )
     s, c = math.sin(tilt), math.cos(tilt)
-    matrix = np.array([[MASS, 0, 0, s, c], [0, MASS, 0, -c, s], [0, 0, INERTIA, 0, RADIUS], [0, 1, 0, 0, 0], [1, 0, RADIUS, 0, 0]])
+    matrix = np.array(
+        [
+            [MASS, 0, 0, s, c],
+            [0, MASS, 0, -c, s],
+            [0, 0, INERTIA, 0, RADIUS],
+            [0, 1, 0, 0, 0],
+            [1, 0, RADIUS, 0, 0],
+        ]
+    )
     right = np.array([MASS * u, MASS * v, INERTIA * omega, -e * v, 0.0])
     found = np.linalg.solve(matrix, right)
     if abs(found[4]) > FRICTION * found[3]:
@@ -77,7 +89,9 @@ class Stepper:
 
     def strike(self, angle):
         s, c = math.sin(angle), math.cos(angle)
-        u, v, self.omega = solve_impact(angle, self.vx * c - self.vy * s, self.vx * s + self.vy * c, self.omega)
+        u, v, self.omega = solve_impact(
+            angle, self.vx * c - self.vy * s, self.vx * s + self.vy * c, self.omega
+        )
         self.flying = v * v > 2.0 * G * c * ROUGHNESS * RADIUS
         v = v if self.flying else 0.0
         self.vx, self.vy = u * c + v * s, v * c - u * s
@@ -121,8 +135,18 @@ def stepped(dt):
 
 @pytest.fixture(scope="module")
 def exact():
-    rock = slope(NODES, mass=MASS, radius=RADIUS, friction=FRICTION, roughness=ROUGHNESS, resistance=RESISTANCE, strength=STRENGTH,
-                 stiffness=STIFFNESS, hardening=HARDENING, **START)
+    rock = slope(
+        NODES,
+        mass=MASS,
+        radius=RADIUS,
+        friction=FRICTION,
+        roughness=ROUGHNESS,
+        resistance=RESISTANCE,
+        strength=STRENGTH,
+        stiffness=STIFFNESS,
+        hardening=HARDENING,
+        **START,
+    )
     rows, modes = [], set()
     for i in range(round(100 * END)):
         rock.step(i / 100, 0.01)

@@ -5,8 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from rockshed.components.pile_rod.st_venant import StVenant
 from scipy.integrate import solve_ivp
+
+from rockshed.components.pile_rod.st_venant import StVenant
 
 
 def by_steps(problem, reflections):
@@ -18,14 +19,26 @@ def by_steps(problem, reflections):
         n = int(time // period) - 1
         if n < 0:
             return 0.0
-        return problem.reflection * (float(pieces[n].sol(time - period)[0]) - returned(time - period))
+        return problem.reflection * (
+            float(pieces[n].sol(time - period)[0]) - returned(time - period)
+        )
 
     for n in range(reflections + 1):
+
         def slope(time, state, n=n):
             inside = min(max(time, n * period * (1 + 1e-15)), (n + 1) * period * (1 - 1e-12))
             return [-problem.impedance / problem.mass * (state[0] - 2.0 * returned(inside))]
 
-        pieces.append(solve_ivp(slope, (n * period, (n + 1) * period), [start], rtol=1e-10, atol=1e-12, dense_output=True))
+        pieces.append(
+            solve_ivp(
+                slope,
+                (n * period, (n + 1) * period),
+                [start],
+                rtol=1e-10,
+                atol=1e-12,
+                dense_output=True,
+            )
+        )
         start = pieces[-1].y[0, -1]
     return lambda time: float(pieces[min(int(time // period), reflections)].sol(time)[0])
 
@@ -57,6 +70,8 @@ def test_force_is_what_stops_the_mass_and_ends_at_the_separation(alpha, mass):
 
 def test_until_the_first_reflection_it_is_an_exponential():
     problem = StVenant(63.5, 3.8, 23311.0, 2e-3, 0.0)
-    assert problem.force(1e-3) == pytest.approx(3.8 * 23311.0 * math.exp(-23311.0 / 63.5 * 1e-3), rel=1e-14)
+    assert problem.force(1e-3) == pytest.approx(
+        3.8 * 23311.0 * math.exp(-23311.0 / 63.5 * 1e-3), rel=1e-14
+    )
     assert problem.separation() is None
     assert problem.rebound() is None

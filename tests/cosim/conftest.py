@@ -13,8 +13,22 @@ HERE = Path(__file__).parent
 def foreign(tmp_path_factory):
     """A stranger's FMU: plain pythonfmu, built in a process of its own."""
     folder = tmp_path_factory.mktemp("foreign")
-    subprocess.run([sys.executable, "-m", "pythonfmu", "build", "-f", str(HERE / "stranger.py"), "-d", str(folder),
-                    "--handle-state", "--serialize-state"], check=True, cwd=HERE)
+    subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "pythonfmu",
+            "build",
+            "-f",
+            str(HERE / "stranger.py"),
+            "-d",
+            str(folder),
+            "--handle-state",
+            "--serialize-state",
+        ],
+        check=True,
+        cwd=HERE,
+    )
     return folder / "Stranger.fmu"
 
 

@@ -6,8 +6,16 @@ from dataclasses import dataclass, field
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-_UNITS = {"N": "kg='1' m='1' s='-2'", "m": "m='1'", "kN": "kg='1' m='1' s='-2' factor='1000'", "J": "kg='1' m='2' s='-2'",
-          "s": "s='1'", "kg": "kg='1'", "m/s": "m='1' s='-1'", "N/m": "kg='1' s='-2'"}
+_UNITS = {
+    "N": "kg='1' m='1' s='-2'",
+    "m": "m='1'",
+    "kN": "kg='1' m='1' s='-2' factor='1000'",
+    "J": "kg='1' m='2' s='-2'",
+    "s": "s='1'",
+    "kg": "kg='1'",
+    "m/s": "m='1' s='-1'",
+    "N/m": "kg='1' s='-2'",
+}
 
 Values = dict[str, float]
 
@@ -22,11 +30,19 @@ class Port:
     extra: str = ""
 
     def xml(self, reference: int) -> str:
-        start = "" if self.causality == "output" else f"start='{self.start if self.kind == 'Real' else int(self.start)}'"
-        variability = {"parameter": "fixed"}.get(self.causality, "continuous" if self.kind == "Real" else "discrete")
+        start = (
+            ""
+            if self.causality == "output"
+            else f"start='{self.start if self.kind == 'Real' else int(self.start)}'"
+        )
+        variability = {"parameter": "fixed"}.get(
+            self.causality, "continuous" if self.kind == "Real" else "discrete"
+        )
         unit = f"unit={quoteattr(self.unit)}" if self.unit else ""
-        return (f"<ScalarVariable name={quoteattr(self.name)} valueReference='{reference}' causality='{self.causality}' "
-                f"variability='{variability}'><{self.kind} {start} {unit} {self.extra}/></ScalarVariable>")
+        return (
+            f"<ScalarVariable name={quoteattr(self.name)} valueReference='{reference}' causality='{self.causality}' "
+            f"variability='{variability}'><{self.kind} {start} {unit} {self.extra}/></ScalarVariable>"
+        )
 
 
 def inp(name: str, unit: str = "", start: float = 0.0, **rest: Any) -> Port:
@@ -59,9 +75,15 @@ class Mock:
 
     def model_description(self) -> bytes:
         used = sorted({port.unit for port in self.ports} & set(_UNITS))
-        units = "".join(f"<Unit name={quoteattr(unit)}><BaseUnit {_UNITS[unit]}/></Unit>" for unit in used)
+        units = "".join(
+            f"<Unit name={quoteattr(unit)}><BaseUnit {_UNITS[unit]}/></Unit>" for unit in used
+        )
         variables = "".join(port.xml(i) for i, port in enumerate(self.ports))
-        outputs = "".join(f"<Unknown index='{i + 1}'/>" for i, p in enumerate(self.ports) if p.causality == "output")
+        outputs = "".join(
+            f"<Unknown index='{i + 1}'/>"
+            for i, p in enumerate(self.ports)
+            if p.causality == "output"
+        )
         flag = str(self.serializes).lower()
         return f"""<?xml version='1.0'?><fmiModelDescription fmiVersion='2.0' modelName='Mock' guid='mock-guid'>
             <CoSimulation modelIdentifier='Mock' canGetAndSetFMUstate='{flag}' canSerializeFMUstate='{flag}'
@@ -136,6 +158,7 @@ class MockSlave:
 
 def mass(weight: float = 1.0, position: float = 0.0, velocity: float = 0.0) -> Mock:
     """A mass under a force that is held: moves exactly."""
+
     def step(v: Values, _t: float, h: float) -> None:
         a = v["force"] / v["mass"]
         v["position"] += h * (v["velocity"] + 0.5 * a * h)
@@ -144,12 +167,23 @@ def mass(weight: float = 1.0, position: float = 0.0, velocity: float = 0.0) -> M
     def start(v: Values) -> None:
         v["position"], v["velocity"] = v["position0"], v["velocity0"]
 
-    return Mock([par("mass", weight, "kg", extra="min='1e-3'"), par("position0", position, "m"), par("velocity0", velocity, "m/s"),
-                 inp("force", "N"), out("position", "m"), out("velocity", "m/s")], step, start)
+    return Mock(
+        [
+            par("mass", weight, "kg", extra="min='1e-3'"),
+            par("position0", position, "m"),
+            par("velocity0", velocity, "m/s"),
+            inp("force", "N"),
+            out("position", "m"),
+            out("velocity", "m/s"),
+        ],
+        step,
+        start,
+    )
 
 
 def spring(stiffness: float = 1.0, ends: int = 1) -> Mock:
     """A spring between a wall and a point, or between two points; forces on the points; positions are held over a step."""
+
     def step(v: Values, _t: float = 0.0, _h: float = 0.0) -> None:
         stretch = v["end1.position"] - (v["end2.position"] if ends == 2 else 0.0)
         v["end1.force"] = -v["stiffness"] * stretch
@@ -162,11 +196,19 @@ def spring(stiffness: float = 1.0, ends: int = 1) -> Mock:
     return Mock(ports, step, step)
 
 
-def wired(mocks: Mapping[str, Mock], connections: list[str], **settings: Any) -> tuple[Any, Mapping[str, Mock]]:
+def wired(
+    mocks: Mapping[str, Mock], connections: list[str], **settings: Any
+) -> tuple[Any, Mapping[str, Mock]]:
     """A system of mocks and its sources."""
     from rockshed.core.system.system import system_from
 
     specs = settings.pop("components", {})
-    data = {"name": "test", "components": {name: {"fmu": "mock", **specs.get(name, {})} for name in mocks},
-            "connections": connections, "stop_time": 1.0, "exchange_step": 0.1, **settings}
+    data = {
+        "name": "test",
+        "components": {name: {"fmu": "mock", **specs.get(name, {})} for name in mocks},
+        "connections": connections,
+        "stop_time": 1.0,
+        "exchange_step": 0.1,
+        **settings,
+    }
     return system_from(data), mocks

@@ -1,6 +1,7 @@
 """The benchmark of a macro step: all tools really exchange the values, and one that is missing or fails says so."""
 
 import pytest
+
 from rockshed.bench import exchange, table
 from rockshed.bench.exchange import BARE, OURS, PEERS, Pair
 from rockshed.fmus.build import Runtime

@@ -1,9 +1,19 @@
 import pytest
+
 from rockshed.core.system.clock import to_seconds, to_ticks
 
 
-@pytest.mark.parametrize(("seconds", "ticks"), [
-    (1e-6, 10 ** 6), (2.5e-7, 250_000), (0.1, 10 ** 11), (1e-12, 1), (-0.5, -5 * 10 ** 11), (9.765625e-6, 9_765_625)])
+@pytest.mark.parametrize(
+    ("seconds", "ticks"),
+    [
+        (1e-6, 10**6),
+        (2.5e-7, 250_000),
+        (0.1, 10**11),
+        (1e-12, 1),
+        (-0.5, -5 * 10**11),
+        (9.765625e-6, 9_765_625),
+    ],
+)
 def test_ticks_are_the_decimal_number_that_was_written(seconds, ticks):
     assert to_ticks(seconds) == ticks
 

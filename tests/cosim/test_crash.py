@@ -7,9 +7,12 @@ import sys
 import zipfile
 
 import pytest
+
 from rockshed.core.results.reading import read_run
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux" or not shutil.which("cc"), reason="needs Linux and a C compiler")
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux" or not shutil.which("cc"), reason="needs Linux and a C compiler"
+)
 
 SOURCE = r"""
 #include <stddef.h>
@@ -25,11 +28,14 @@ int fmi2GetReal(void *c, const unsigned r[], size_t n, double v[]) {
 int fmi2SetReal(void *c, const unsigned r[], size_t n, const double v[]) { crash_at = v[0]; return 0; }
 int fmi2DoStep(void *c, double t, double h, int k) { if (t + h > crash_at) *(volatile int *)8 = 1; x = t + h; return 0; }
 """
-REST = re.findall(r"\w+", """
+REST = re.findall(
+    r"\w+",
+    """
     GetTypesPlatform GetVersion SetDebugLogging EnterInitializationMode ExitInitializationMode Terminate Reset GetInteger GetBoolean
     GetString SetInteger SetBoolean SetString GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate
     DeSerializeFMUstate GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives CancelStep GetStatus GetRealStatus
-    GetIntegerStatus GetBooleanStatus GetStringStatus""")
+    GetIntegerStatus GetBooleanStatus GetStringStatus""",
+)
 XML = """<?xml version='1.0'?><fmiModelDescription fmiVersion='2.0' modelName='Crash' guid='crash'>
   <CoSimulation modelIdentifier='Crash'/><ModelVariables>
   <ScalarVariable name='crash_at' valueReference='0' causality='parameter' variability='fixed'><Real start='1e9'/></ScalarVariable>
@@ -40,7 +46,11 @@ XML = """<?xml version='1.0'?><fmiModelDescription fmiVersion='2.0' modelName='C
 def fmu(folder, at_start=0):
     source = SOURCE + "".join(f"int fmi2{name}(void) {{ return 0; }}\n" for name in REST)
     (folder / "crash.c").write_text(source)
-    subprocess.run(["cc", f"-DCRASH_AT_START={at_start}", "-shared", "-fPIC", "-o", "Crash.so", "crash.c"], cwd=folder, check=True)
+    subprocess.run(
+        ["cc", f"-DCRASH_AT_START={at_start}", "-shared", "-fPIC", "-o", "Crash.so", "crash.c"],
+        cwd=folder,
+        check=True,
+    )
     with zipfile.ZipFile(folder / "Crash.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", XML)
         archive.write(folder / "Crash.so", "binaries/linux64/Crash.so")
@@ -58,8 +68,22 @@ def run(folder, **parameters):
         step = 0.0005
         parameters = {{ {", ".join(f"{name} = {value}" for name, value in parameters.items())} }}
     """)
-    return subprocess.run([sys.executable, "-m", "rockshed.commands.app", "run", "system.toml", "--output-dir", "out"], cwd=folder,
-                          capture_output=True, text=True, timeout=60, check=False)
+    return subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "rockshed.commands.app",
+            "run",
+            "system.toml",
+            "--output-dir",
+            "out",
+        ],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
 
 
 def test_a_crash_in_a_step_is_reported_with_component_and_time(tmp_path):
@@ -68,7 +92,13 @@ def test_a_crash_in_a_step_is_reported_with_component_and_time(tmp_path):
     said = "wild at t = 0.5 s: its code crashed (SIGSEGV) in the step by 0.0005 s"
     assert f"failed: {said}" in done.stderr
     assert done.returncode == 1
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["Crash.fmu", "Crash.so", "crash.c", "out", "system.toml"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "Crash.fmu",
+        "Crash.so",
+        "crash.c",
+        "out",
+        "system.toml",
+    ]
     kept = read_run(tmp_path / "out")
     assert (kept.status, kept.provenance["error"]) == ("failed", said)
     assert not list(kept.folder.glob("journal*"))

@@ -7,10 +7,10 @@ import time
 
 import numpy as np
 import pytest
+
 from rockshed.core.results.reading import read_run
 from rockshed.core.results.run_folder import running_folder
 from rockshed.core.run import simulate
-
 from tests.cosim.mocks import mass, wired
 
 SCRIPT = """
@@ -29,8 +29,12 @@ print(run.status)
 
 def start(fmu, folder, plain):
     """A run of a hundred seconds, once it has written its first rows."""
-    process = subprocess.Popen([sys.executable, "-c", SCRIPT, str(fmu), str(folder), plain], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", SCRIPT, str(fmu), str(folder), plain],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     stream = running_folder(folder) / "timeseries.arrows"
     deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline and process.poll() is None:
@@ -44,7 +48,9 @@ def start(fmu, folder, plain):
 def is_sound(run):
     """Rows without a gap, and the right values in them."""
     time = run.series["time"]
-    return np.allclose(time, run.series["a.local_time"], atol=1e-12) and np.allclose(np.diff(time), 0.01)
+    return np.allclose(time, run.series["a.local_time"], atol=1e-12) and np.allclose(
+        np.diff(time), 0.01
+    )
 
 
 @pytest.mark.parametrize("plain", ["plain", "compiled"])

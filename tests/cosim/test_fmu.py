@@ -9,29 +9,46 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.fmu.fmu_slave import FmuFile, read_description
 from rockshed.core.fmu.slave import BOOLEAN, DISCARD, ERROR, INTEGER, OK
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
 from rockshed.core.system.system import system_from
-
 from tests.cosim.mocks import Mock, inp, mass, out
 
-RING = ["a.force -> b.speed", "b.force -> a.speed", "a.next_level -> b.level", "b.next_level -> a.level",
-        "a.disabled -> b.enabled", "b.disabled -> a.enabled"]
+RING = [
+    "a.force -> b.speed",
+    "b.force -> a.speed",
+    "a.next_level -> b.level",
+    "b.next_level -> a.level",
+    "a.disabled -> b.enabled",
+    "b.disabled -> a.enabled",
+]
 
 
 def strangers(fmu, connections=(), **settings):
     parameters = settings.pop("parameters", {})
-    data = {"name": "strangers", "components": {name: {"fmu": str(fmu), "parameters": parameters.get(name, {})} for name in "ab"},
-            "connections": list(connections), "exchange_step": 0.1, "stop_time": 1.0, **settings}
+    data = {
+        "name": "strangers",
+        "components": {
+            name: {"fmu": str(fmu), "parameters": parameters.get(name, {})} for name in "ab"
+        },
+        "connections": list(connections),
+        "exchange_step": 0.1,
+        "stop_time": 1.0,
+        **settings,
+    }
     return system_from(data)
 
 
 def both_ways(system, folder, **rest):
     """The same run with the plain and with the compiled driver."""
-    return [simulate(system, folder / way, plain=way == "plain", **rest) for way in ("plain", "compiled")]
+    return [
+        simulate(system, folder / way, plain=way == "plain", **rest)
+        for way in ("plain", "compiled")
+    ]
 
 
 @pytest.mark.parametrize("master", ["sequential", "jacobi"])
@@ -52,12 +69,32 @@ def test_real_integer_and_boolean_values_travel_between_strangers(foreign, tmp_p
 def test_both_ways_give_the_same_bits(foreign, rock_fmu, tmp_path):
     """Rock and a damper of its velocity, three rates, a power bond without work output, watched outputs."""
     parameters = {"position0.x": 0.1, "velocity0.x": 3.7, "mass": 1.3, "internal_step": 3e-4}
-    data = {"name": "pair", "exchange_step": 1e-3, "stop_time": 0.12, "output_interval": 2e-3, "state_interval": 2e-2,
-            "components": {"rock": {"fmu": str(rock_fmu), "step": 5e-4, "parameters": parameters, "record_states": True},
-                           "damper": {"fmu": str(foreign), "step": 2e-3, "parameters": {"damping": 17.3}}},
-            "connections": ["rock.position.x -> damper.speed", "damper.force -> rock.force.x"],
-            "bonds": {"x": {"giver": "damper", "force": ["force"], "taker": "rock", "position": ["position.x"]}},
-            "watch": ["rock.velocity.x", "damper.force"]}
+    data = {
+        "name": "pair",
+        "exchange_step": 1e-3,
+        "stop_time": 0.12,
+        "output_interval": 2e-3,
+        "state_interval": 2e-2,
+        "components": {
+            "rock": {
+                "fmu": str(rock_fmu),
+                "step": 5e-4,
+                "parameters": parameters,
+                "record_states": True,
+            },
+            "damper": {"fmu": str(foreign), "step": 2e-3, "parameters": {"damping": 17.3}},
+        },
+        "connections": ["rock.position.x -> damper.speed", "damper.force -> rock.force.x"],
+        "bonds": {
+            "x": {
+                "giver": "damper",
+                "force": ["force"],
+                "taker": "rock",
+                "position": ["position.x"],
+            }
+        },
+        "watch": ["rock.velocity.x", "damper.force"],
+    }
     for master in ("sequential", "jacobi"):
         plain, compiled = both_ways(system_from({**data, "master": master}), tmp_path)
         assert len(plain.series) == len(compiled.series) > 15
@@ -74,24 +111,55 @@ def test_the_same_as_fmpy_alone(rock_fmu, tmp_path):
     from fmpy import simulate_fmu
 
     start = {"velocity0.x": 2.0, "force.x": 3.0, "torque": 0.01}
-    system = system_from({"name": "one", "components": {"rock": {"fmu": str(rock_fmu), "parameters": start}}, "exchange_step": 1e-3,
-                          "stop_time": 0.05})
+    system = system_from(
+        {
+            "name": "one",
+            "components": {"rock": {"fmu": str(rock_fmu), "parameters": start}},
+            "exchange_step": 1e-3,
+            "stop_time": 0.05,
+        }
+    )
     ours = simulate(system, tmp_path / "run").series
-    theirs = simulate_fmu(str(rock_fmu), stop_time=0.05, step_size=1e-3, output_interval=1e-3, start_values=start,
-                          output=["position.x", "position.y", "angle"])
+    theirs = simulate_fmu(
+        str(rock_fmu),
+        stop_time=0.05,
+        step_size=1e-3,
+        output_interval=1e-3,
+        start_values=start,
+        output=["position.x", "position.y", "angle"],
+    )
     for name in ("position.x", "position.y", "angle"):
         assert theirs[name] == pytest.approx(ours[f"rock.{name}"], abs=1e-15)
 
 
 def test_a_recorded_state_goes_on_bit_for_bit_in_a_new_slave(rock_fmu, tmp_path):
-    system = system_from({"name": "one", "components": {"rock": {"fmu": str(rock_fmu), "record_states": True,
-                                                                 "parameters": {"force.x": 3.0, "velocity0.x": 0.3}}},
-                          "exchange_step": 1e-3, "stop_time": 0.02, "state_interval": 0.01})
+    system = system_from(
+        {
+            "name": "one",
+            "components": {
+                "rock": {
+                    "fmu": str(rock_fmu),
+                    "record_states": True,
+                    "parameters": {"force.x": 3.0, "velocity0.x": 0.3},
+                }
+            },
+            "exchange_step": 1e-3,
+            "stop_time": 0.02,
+            "state_interval": 0.01,
+        }
+    )
     run = simulate(system, tmp_path / "run")
     time, state = list(run.states("rock"))[1]
     description = read_description(FmuFile(rock_fmu).model_description())
     slave = FmuFile(rock_fmu).instantiate("another")
-    assert max(slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation()) == 0
+    assert (
+        max(
+            slave.setup_experiment(0.0, 1.0),
+            slave.enter_initialisation(),
+            slave.exit_initialisation(),
+        )
+        == 0
+    )
     slave.restore(state)
     for n in range(10):
         assert slave.step(time + n * 1e-3, 1e-3) == 0
@@ -106,9 +174,18 @@ def test_rollback_of_a_stranger(foreign):
     """Back to an earlier state and forward again: the same output; a state that is none is refused."""
     slave = FmuFile(foreign).instantiate("a")
     description = read_description(FmuFile(foreign).model_description())
-    ports = {name: np.array([port.reference], np.uint32) for name, port in description.ports.items()}
+    ports = {
+        name: np.array([port.reference], np.uint32) for name, port in description.ports.items()
+    }
     values = np.zeros(1)
-    assert max(slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation()) == 0
+    assert (
+        max(
+            slave.setup_experiment(0.0, 1.0),
+            slave.enter_initialisation(),
+            slave.exit_initialisation(),
+        )
+        == 0
+    )
     slave.set(ports["speed"], np.array([2.0]))
     slave.set(ports["level"], np.array([4.0]), INTEGER)
     slave.set(ports["enabled"], np.array([1.0]), BOOLEAN)
@@ -119,8 +196,12 @@ def test_rollback_of_a_stranger(foreign):
     slave.get(ports["force"], values)
     assert values[0] == -10.0
     slave.restore(state)
-    for name, kind, expected in (("force", "Real", -4.0), ("next_level", INTEGER, 5.0), ("speed", "Real", 2.0),
-                                 ("disabled", BOOLEAN, 0.0)):
+    for name, kind, expected in (
+        ("force", "Real", -4.0),
+        ("next_level", INTEGER, 5.0),
+        ("speed", "Real", 2.0),
+        ("disabled", BOOLEAN, 0.0),
+    ):
         slave.get(ports[name], values, kind)
         assert values[0] == expected, name
     slave.free()
@@ -129,7 +210,14 @@ def test_rollback_of_a_stranger(foreign):
 def test_a_damaged_state_is_refused_and_a_sound_one_still_taken(rock_fmu):
     """pythonfmu's binary returns OK for both; the FMU logs an error."""
     slave = FmuFile(rock_fmu).instantiate("rock")
-    assert max(slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation()) == OK
+    assert (
+        max(
+            slave.setup_experiment(0.0, 1.0),
+            slave.enter_initialisation(),
+            slave.exit_initialisation(),
+        )
+        == OK
+    )
     state = slave.state()
     with pytest.raises(RuntimeError, match=r"rock: the state cannot be restored: .*damaged"):
         slave.restore(state[:-1] + bytes([state[-1] ^ 1]))
@@ -142,8 +230,15 @@ def test_a_damaged_state_is_refused_and_a_sound_one_still_taken(rock_fmu):
 
 @pytest.mark.parametrize("plain", [True, False])
 def test_a_strangers_failure_is_told_in_its_own_words(foreign, tmp_path, plain):
-    with pytest.raises(RunFailed, match=r"b at t = 0\.5 s: the step by 0\.1 s failed \(Discard\): the damper is broken"):
-        simulate(strangers(foreign, RING, parameters={"b": {"fail_at": 0.55}}), tmp_path / "run", plain=plain)
+    with pytest.raises(
+        RunFailed,
+        match=r"b at t = 0\.5 s: the step by 0\.1 s failed \(Discard\): the damper is broken",
+    ):
+        simulate(
+            strangers(foreign, RING, parameters={"b": {"fail_at": 0.55}}),
+            tmp_path / "run",
+            plain=plain,
+        )
     kept = read_run(tmp_path / "run")
     assert (kept.status, kept.series["time"][-1]) == ("failed", 0.5)
 
@@ -151,7 +246,11 @@ def test_a_strangers_failure_is_told_in_its_own_words(foreign, tmp_path, plain):
 @pytest.mark.parametrize("plain", [True, False])
 def test_a_strangers_nan_is_found_where_it_comes_from(foreign, tmp_path, plain):
     with pytest.raises(RunFailed, match=r"a at t = 0\.8 s: a\.force is no finite number"):
-        simulate(strangers(foreign, RING, parameters={"a": {"nan_at": 0.75}}), tmp_path / "run", plain=plain)
+        simulate(
+            strangers(foreign, RING, parameters={"a": {"nan_at": 0.75}}),
+            tmp_path / "run",
+            plain=plain,
+        )
 
 
 def test_an_error_logged_in_the_initialisation_is_a_refusal(foreign, tmp_path):
@@ -160,16 +259,25 @@ def test_an_error_logged_in_the_initialisation_is_a_refusal(foreign, tmp_path):
     with pytest.raises(InputRefused) as refusal:
         simulate(strangers(foreign, RING, parameters=parameters), tmp_path / "run")
     assert [str(problem) for problem in refusal.value.problems] == [
-        "a: this one is 100% unwilling: %s %d", "b: none is 100% unwilling: %s %d"]
+        "a: this one is 100% unwilling: %s %d",
+        "b: none is 100% unwilling: %s %d",
+    ]
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_slave_in_python_beside_an_fmu(foreign, tmp_path):
     """The loop cannot be compiled then, and the run is the same."""
     system = strangers(foreign, ["b.y -> a.speed", "a.force -> b.x"])
-    relay = Mock([inp("x"), out("y"), out("local_time")], lambda v, t, h: v.update({"y": t + h, "local_time": t + h}))
-    run = simulate(system.model_copy(update={"record": ["a.force"]}), tmp_path / "run", sources={"b": relay})
-    assert run.series["a.force"] == pytest.approx([0.0] + [-2.0 * n * 0.1 for n in range(10)], abs=1e-12)
+    relay = Mock(
+        [inp("x"), out("y"), out("local_time")],
+        lambda v, t, h: v.update({"y": t + h, "local_time": t + h}),
+    )
+    run = simulate(
+        system.model_copy(update={"record": ["a.force"]}), tmp_path / "run", sources={"b": relay}
+    )
+    assert run.series["a.force"] == pytest.approx(
+        [0.0] + [-2.0 * n * 0.1 for n in range(10)], abs=1e-12
+    )
 
 
 def test_unpacked_files_are_removed(foreign, tmp_path, monkeypatch):
@@ -197,8 +305,14 @@ def test_any_name_of_the_temporary_folder_will_do(foreign, rock_fmu, tmp_path):
     folder = tmp_path / "Müller #1 %41"
     folder.mkdir()
     for fmu in (foreign, rock_fmu):
-        done = subprocess.run([sys.executable, "-c", STEP, fmu], env=os.environ | {"TMPDIR": str(folder), "TEMP": str(folder)},
-                              capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(
+            [sys.executable, "-c", STEP, fmu],
+            env=os.environ | {"TMPDIR": str(folder), "TEMP": str(folder)},
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
         assert (done.returncode, done.stdout) == (0, "0\n"), done.stderr
     assert list(folder.iterdir()) == []
 
@@ -208,7 +322,9 @@ def test_but_for_one_that_is_refused(rock_fmu, tmp_path, monkeypatch):
     folder = tmp_path / "a%20b"
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    with pytest.raises(InputRefused, match=r"a%20b.* has %20 in its name: set TMPDIR to another one"):
+    with pytest.raises(
+        InputRefused, match=r"a%20b.* has %20 in its name: set TMPDIR to another one"
+    ):
         FmuFile(rock_fmu).instantiate("rock")
     assert list(folder.iterdir()) == []
 
@@ -237,15 +353,42 @@ def test_a_library_that_cannot_be_loaded(foreign, tmp_path):
 
 
 def test_values_of_integers_and_enumerations_reach_an_fmu(rock_fmu, tmp_path):
-    system = system_from({"name": "one", "components": {"rock": {"fmu": str(rock_fmu), "parameters": {
-        "shape": "disc", "mass": 2.0, "radius": 0.5, "angular_velocity0": 2.0, "velocity0.y": 0.0}}}, "exchange_step": 1e-3,
-        "stop_time": 1e-3})
+    system = system_from(
+        {
+            "name": "one",
+            "components": {
+                "rock": {
+                    "fmu": str(rock_fmu),
+                    "parameters": {
+                        "shape": "disc",
+                        "mass": 2.0,
+                        "radius": 0.5,
+                        "angular_velocity0": 2.0,
+                        "velocity0.y": 0.0,
+                    },
+                }
+            },
+            "exchange_step": 1e-3,
+            "stop_time": 1e-3,
+        }
+    )
     run = simulate(system, tmp_path / "run")
     assert run.provenance["components"]["rock"]["parameters"]["shape"]["value"] == "disc"
-    assert run.series["rock.energy.kinetic"][0] == pytest.approx(0.5 * (0.5 * 2.0 * 0.5 ** 2) * 2.0 ** 2)
+    assert run.series["rock.energy.kinetic"][0] == pytest.approx(
+        0.5 * (0.5 * 2.0 * 0.5**2) * 2.0**2
+    )
 
 
 def test_masses_of_mocks_and_files_alike(tmp_path):
     """A source given for a component replaces its file, which need not exist."""
-    system = system_from({"name": "one", "components": {"m": {"fmu": "nowhere.fmu"}}, "exchange_step": 0.1, "stop_time": 1.0})
-    assert simulate(system, tmp_path / "run", sources={"m": mass(velocity=2.0)}).series["m.position"][-1] == pytest.approx(2.0)
+    system = system_from(
+        {
+            "name": "one",
+            "components": {"m": {"fmu": "nowhere.fmu"}},
+            "exchange_step": 0.1,
+            "stop_time": 1.0,
+        }
+    )
+    assert simulate(system, tmp_path / "run", sources={"m": mass(velocity=2.0)}).series[
+        "m.position"
+    ][-1] == pytest.approx(2.0)

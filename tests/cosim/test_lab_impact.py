@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from rockshed.bench.monolithic import Monolith, from_system
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
@@ -25,7 +26,9 @@ def fmus() -> dict[str, str]:
 
 
 def system(fmus: dict[str, str], coupling: str = "paper") -> System:
-    return lab_system(fmus, laboratory_tests()[4], coupling).model_copy(update={"stop_time": END, "state_interval": END})
+    return lab_system(fmus, laboratory_tests()[4], coupling).model_copy(
+        update={"stop_time": END, "state_interval": END}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +49,7 @@ def final_sand(run: Run):
     assert time == pytest.approx(END, abs=1e-12)
     instance = SAND.instance()
     begin = content.index(b"rockshed")
-    instance.from_bytes(content[begin:begin + len(instance.to_bytes())])
+    instance.from_bytes(content[begin : begin + len(instance.to_bytes())])
     return instance
 
 
@@ -56,7 +59,9 @@ def test_positions_equal_the_monolithic_program_bit_for_bit(paper, monolith):
         beam = [paper.series[f"beam.position.{axis}[{i + 1}]"][-1] for i in range(24)]
         np.testing.assert_array_equal(beam, monolith.beam[f"position.{axis}"])
     discs = slice(0, ROW * 370)
-    np.testing.assert_array_equal(final_sand(paper).state("body")[discs], monolith.sand.state("body")[discs])
+    np.testing.assert_array_equal(
+        final_sand(paper).state("body")[discs], monolith.sand.state("body")[discs]
+    )
 
 
 def test_the_run_is_no_trivial_one(paper):
@@ -72,13 +77,19 @@ def test_impulse_conserving_exchange_is_as_good_at_ten_times_the_step(fmus, mono
     assert abs(run.figure("coupling.sand_rock.energy").value) < 0.0005 * IMPACT_ENERGY
     assert abs(run.figure("coupling.sand_beam.energy").value) < 0.0005 * IMPACT_ENERGY
     work = monolith.column("work_on_rock").sum()
-    assert run.figure("coupling.sand_rock.work.taker").value == pytest.approx(work, abs=0.005 * IMPACT_ENERGY)
+    assert run.figure("coupling.sand_rock.work.taker").value == pytest.approx(
+        work, abs=0.005 * IMPACT_ENERGY
+    )
 
 
 def test_jacobi_with_held_inputs_shows_its_error_in_the_ledger(fmus, tmp_path):
     """About 1.9 % of the impact energy by the digest of the paper, whose sand had another stiffness."""
     run = simulate(system(fmus, "jacobi"), tmp_path / "run")
-    assert 0.012 * IMPACT_ENERGY < run.figure("coupling.sand_rock.energy").value < 0.025 * IMPACT_ENERGY
+    assert (
+        0.012 * IMPACT_ENERGY
+        < run.figure("coupling.sand_rock.energy").value
+        < 0.025 * IMPACT_ENERGY
+    )
     assert any("sand_rock" in warning for warning in run.provenance["warnings"])
 
 
@@ -86,12 +97,20 @@ def residual(run: Run) -> float:
     """Largest error of the energy balance of the whole system, as a share of the impact energy: what the components miss
     themselves, and the work that one side of an interface counts and the other does not."""
     names = [f"{name}.energy.residual" for name in ("rock", "sand", "beam")]
-    names += ["rock.energy.work.contact", "sand.energy.work.rock", "beam.energy.work.contact", "sand.energy.work.beam"]
+    names += [
+        "rock.energy.work.contact",
+        "sand.energy.work.rock",
+        "beam.energy.work.contact",
+        "sand.energy.work.beam",
+    ]
     return float(np.abs(sum(run.series[name] for name in names)).max()) / IMPACT_ENERGY
 
 
 def test_energy_residual_is_small_and_halves_with_the_step(fmus, paper, tmp_path):
-    half = with_values(system(fmus), {"sand.internal_step": 5e-6, "rock.internal_step": 5e-6, "beam.internal_step": 5e-7})
+    half = with_values(
+        system(fmus),
+        {"sand.internal_step": 5e-6, "rock.internal_step": 5e-6, "beam.internal_step": 5e-7},
+    )
     finer = simulate(half.model_copy(update={"exchange_step": 5e-6}), tmp_path / "run")
     assert residual(paper) < 0.006
     assert residual(finer) < 0.6 * residual(paper)
@@ -106,7 +125,10 @@ def test_a_single_step_for_sand_and_beam_is_refused_with_both_numbers(fmus, tmp_
 
 def test_a_single_step_diverges_within_a_millisecond_when_it_is_allowed(fmus, tmp_path):
     coarse = with_values(system(fmus), {"beam.internal_step": 1e-5})
-    with pytest.raises(RunFailed, match=r"beam at t = .*diverged.*internal_step is 1e-05 s and the largest stable one 6"):
+    with pytest.raises(
+        RunFailed,
+        match=r"beam at t = .*diverged.*internal_step is 1e-05 s and the largest stable one 6",
+    ):
         simulate(coarse, tmp_path / "run", allow_unstable=True)
     run = read_run(tmp_path / "run")
     assert run.status == "failed"
@@ -123,12 +145,16 @@ def test_plain_calls_give_the_same_bits_as_the_compiled_loop(fmus, paper, tmp_pa
 def test_headline_impulses_do_not_depend_on_the_rows(fmus, paper, tmp_path):
     """Two rows say as much as two hundred: the momentum that the rock has lost, against gravity too. The force has not ended,
     and half an exchange step of it is what may be missing."""
-    coarse = simulate(system(fmus, "impulse").model_copy(update={"output_interval": END}), tmp_path / "run")
+    coarse = simulate(
+        system(fmus, "impulse").model_copy(update={"output_interval": END}), tmp_path / "run"
+    )
     assert coarse.series["time"].size == 2
     for run, tolerance in ((paper, 3e-4), (coarse, 3e-3)):
         change = run.series["rock.velocity.y"][-1] - run.series["rock.velocity.y"][0]
         gravity = run.provenance["components"]["rock"]["parameters"]["gravity"]["value"]
         found = {figure.name: figure.value for figure in headlines.headlines(run)}
-        assert found[headlines.IMPULSE_ROCK] == pytest.approx(4.0 * (change + gravity * END), rel=tolerance)
+        assert found[headlines.IMPULSE_ROCK] == pytest.approx(
+            4.0 * (change + gravity * END), rel=tolerance
+        )
     fine = headlines.integral(paper, "sand.transmitted_force")
     assert headlines.integral(coarse, "sand.transmitted_force") == pytest.approx(fine, rel=0.02)

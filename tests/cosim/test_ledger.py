@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from rockshed.core.run import simulate
 
+from rockshed.core.run import simulate
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
 BOND = {"giver": "spring", "force": ["end1.force"], "taker": "mass", "position": ["position"]}
@@ -15,8 +15,14 @@ LINKS = ["spring.end1.force -> mass.force", "mass.position -> spring.end1.positi
 def oscillate(folder, step, master, mocks=None, **settings):
     """1 kg on a spring of 4 N/m (2 rad/s) for five periods, or another time, 2 J at the start."""
     exchanges = round(settings.pop("time", 5.0 * math.pi) / step)
-    system, sources = wired(mocks or {"spring": spring(4.0), "mass": mass(1.0, position=1.0)}, LINKS, master=master,
-                            exchange_step=step, stop_time=exchanges * step, **{"bonds": {"b": BOND}, **settings})
+    system, sources = wired(
+        mocks or {"spring": spring(4.0), "mass": mass(1.0, position=1.0)},
+        LINKS,
+        master=master,
+        exchange_step=step,
+        stop_time=exchanges * step,
+        **{"bonds": {"b": BOND}, **settings},
+    )
     return simulate(system, folder / "run", sources=sources)
 
 
@@ -40,7 +46,9 @@ def test_held_values_make_energy_at_the_rate_of_their_lag(tmp_path, master, lag)
     for step in (0.004, 0.002, 0.001):
         time = round(5.0 * math.pi / step) * step
         expected = math.exp(lag * 4.0 * step * time) - 1.0
-        assert made(oscillate(tmp_path, step, master)) / 2.0 == pytest.approx(expected, rel=2.5 * step)
+        assert made(oscillate(tmp_path, step, master)) / 2.0 == pytest.approx(
+            expected, rel=2.5 * step
+        )
 
 
 def test_the_energy_made_is_of_first_order_in_the_exchange_step(tmp_path):
@@ -51,30 +59,43 @@ def test_the_energy_made_is_of_first_order_in_the_exchange_step(tmp_path):
 def counting_spring(stiffness):
     """A spring that counts the work done on it itself, by its own stored energy."""
     plain = spring(stiffness)
+
     def step(v, t=0.0, h=0.0):
         plain.step(v, t, h)
         v["work"] = 7.0 + 0.5 * v["stiffness"] * v["end1.position"] ** 2
+
     return Mock([*plain.ports, out("work", "J")], step, step)
 
 
 def test_the_givers_own_account_is_taken_where_it_has_one(tmp_path):
     """It need not begin at zero, and gives the same energy as the force times the displacement that the giver was shown."""
-    own = oscillate(tmp_path, 0.01, "jacobi", {"spring": counting_spring(4.0), "mass": mass(1.0, position=1.0)},
-                    bonds={"b": {**BOND, "work": "work"}})
+    own = oscillate(
+        tmp_path,
+        0.01,
+        "jacobi",
+        {"spring": counting_spring(4.0), "mass": mass(1.0, position=1.0)},
+        bonds={"b": {**BOND, "work": "work"}},
+    )
     shown = oscillate(tmp_path, 0.01, "jacobi")
-    assert own.series["coupling.b.energy"] == pytest.approx(shown.series["coupling.b.energy"], abs=1e-11)
+    assert own.series["coupling.b.energy"] == pytest.approx(
+        shown.series["coupling.b.energy"], abs=1e-11
+    )
 
 
 def test_a_slow_taker_is_charged_with_the_force_it_held(tmp_path):
     """The mass steps every third exchange; its kinetic energy is still the work that the ledger says it got."""
     result = oscillate(tmp_path, 0.01, "sequential", components={"mass": {"step": 0.03}}, time=3.0)
-    assert result.series["coupling.b.work.taker"] == pytest.approx(0.5 * result.series["mass.velocity"] ** 2, abs=1e-11)
+    assert result.series["coupling.b.work.taker"] == pytest.approx(
+        0.5 * result.series["mass.velocity"] ** 2, abs=1e-11
+    )
 
 
 def test_a_constant_force_makes_no_energy(tmp_path):
     """Giver and taker agree on all of the way but its last part, which the giver has not been shown yet."""
-    weight = Mock([par("weight", 3.0), inp("end1.position", "m"), out("end1.force", "N")],
-                  start=lambda v: v.update({"end1.force": -v["weight"]}))
+    weight = Mock(
+        [par("weight", 3.0), inp("end1.position", "m"), out("end1.force", "N")],
+        start=lambda v: v.update({"end1.force": -v["weight"]}),
+    )
     result = oscillate(tmp_path, 0.1, "sequential", {"spring": weight, "mass": mass(1.0)})
     last_way = np.diff(result.series["mass.position"])[-1]
     assert made(result) == pytest.approx(-3.0 * last_way, rel=1e-9)
@@ -82,32 +103,66 @@ def test_a_constant_force_makes_no_energy(tmp_path):
 
 def test_an_array_of_forces_is_one_bond(tmp_path):
     """Two masses on two springs behind one bond: twice the energy of one."""
+
     def both(v, t=0.0, h=0.0):
         for i in (1, 2):
             v[f"force[{i}]"] = -4.0 * v[f"position[{i}]"]
-    springs = Mock([*(inp(f"position[{i}]", "m") for i in (1, 2)), *(out(f"force[{i}]", "N") for i in (1, 2))], both, both)
+
+    springs = Mock(
+        [*(inp(f"position[{i}]", "m") for i in (1, 2)), *(out(f"force[{i}]", "N") for i in (1, 2))],
+        both,
+        both,
+    )
 
     def move(v, t, h):
         for i in (1, 2):
             v[f"position[{i}]"] += h * (v[f"velocity[{i}]"] + 0.5 * v[f"force[{i}]"] * h)
             v[f"velocity[{i}]"] += v[f"force[{i}]"] * h
+
     names = ("force", "position", "velocity")
-    masses = Mock([(inp if name == "force" else out)(f"{name}[{i}]", {"force": "N", "position": "m", "velocity": "m/s"}[name])
-                   for name in names for i in (1, 2)], move, lambda v: v.update({"position[1]": 1.0, "position[2]": -1.0}))
-    system, sources = wired({"spring": springs, "mass": masses}, ["spring.force[*] -> mass.force[*]",
-                                                                 "mass.position[*] -> spring.position[1..2]"],
-                            exchange_step=0.01, stop_time=1.0, master="jacobi",
-                            bonds={"b": {"giver": "spring", "force": ["force[*]"], "taker": "mass", "position": ["position[*]"]}})
+    masses = Mock(
+        [
+            (inp if name == "force" else out)(
+                f"{name}[{i}]", {"force": "N", "position": "m", "velocity": "m/s"}[name]
+            )
+            for name in names
+            for i in (1, 2)
+        ],
+        move,
+        lambda v: v.update({"position[1]": 1.0, "position[2]": -1.0}),
+    )
+    system, sources = wired(
+        {"spring": springs, "mass": masses},
+        ["spring.force[*] -> mass.force[*]", "mass.position[*] -> spring.position[1..2]"],
+        exchange_step=0.01,
+        stop_time=1.0,
+        master="jacobi",
+        bonds={
+            "b": {
+                "giver": "spring",
+                "force": ["force[*]"],
+                "taker": "mass",
+                "position": ["position[*]"],
+            }
+        },
+    )
     double = simulate(system, tmp_path / "two", sources=sources).series["coupling.b.energy"]
     single = oscillate(tmp_path, 0.01, "jacobi", time=1.0).series["coupling.b.energy"]
     assert double == pytest.approx(2.0 * single, rel=1e-12, abs=1e-13)
 
 
-@pytest.mark.parametrize(("reference", "alarms"), [(2.0, True), (1e3, False), ("spring.work", True)])
+@pytest.mark.parametrize(
+    ("reference", "alarms"), [(2.0, True), (1e3, False), ("spring.work", True)]
+)
 def test_the_alarm_compares_with_a_reference(tmp_path, reference, alarms):
     """0.02 of 2 J are made soon; the spring's own account stands at 9 J at the start."""
-    result = oscillate(tmp_path, 0.01, "jacobi", {"spring": counting_spring(4.0), "mass": mass(1.0, position=1.0)},
-                       energy_alarm={"share": 0.02, "reference": reference})
+    result = oscillate(
+        tmp_path,
+        0.01,
+        "jacobi",
+        {"spring": counting_spring(4.0), "mass": mass(1.0, position=1.0)},
+        energy_alarm={"share": 0.02, "reference": reference},
+    )
     warnings = [text for text in result.provenance["warnings"] if "coupling energy" in text]
     assert len(warnings) == alarms
     if alarms:

@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
-import rockshed
 from PIL import Image
+from typer.testing import CliRunner
+
+import rockshed
 from rockshed.analyses.pile.blows import bearing_graph, drive
 from rockshed.analyses.pile.preparation import prepare
 from rockshed.commands.app import app
 from rockshed.core.errors import InputRefused
-from typer.testing import CliRunner
 
 EXAMPLES = Path(rockshed.__file__).parent / "examples"
 SPT = (EXAMPLES / "spt.toml").read_text(encoding="utf-8")
@@ -22,6 +23,7 @@ SPT = (EXAMPLES / "spt.toml").read_text(encoding="utf-8")
 @pytest.fixture
 def site(tmp_path):
     """Write a site and prepare it."""
+
     def prepared(text, *replaced):
         for old, new in replaced:
             assert old in text
@@ -29,6 +31,7 @@ def site(tmp_path):
         file = tmp_path / "site.toml"
         file.write_text(text, encoding="utf-8")
         return prepare(file)
+
     return prepared
 
 
@@ -52,7 +55,9 @@ def test_the_bearing_graph_of_the_spt_rod_is_monotone_and_its_energy_closed(grap
 def test_the_set_is_about_the_energy_over_the_resistance_for_soft_ground(spt, graph):
     """Of 5 kN: the ram's energy and the weights' way go into R (s + Q/2), the damping and the rod take the rest."""
     soft = graph[0]
-    most = (soft.impact_energy + (63.5 + 10.24 * 5.8e-4 * 7850.0) * 9.80665 * soft.set) / soft.resistance
+    most = (
+        soft.impact_energy + (63.5 + 10.24 * 5.8e-4 * 7850.0) * 9.80665 * soft.set
+    ) / soft.resistance
     assert 0.35 * most < soft.set < most
 
 
@@ -62,7 +67,9 @@ def test_the_first_force_at_the_head_is_impedance_times_velocity(spt, graph):
 
 
 def test_more_segments_hardly_change_the_set(site, graph):
-    fine = site(SPT, ("segments = 100", "segments = 400"), ("[5e3, 7.5e3, 10e3, 15e3, 20e3", "[20e3"))
+    fine = site(
+        SPT, ("segments = 100", "segments = 400"), ("[5e3, 7.5e3, 10e3, 15e3, 20e3", "[20e3")
+    )
     assert bearing_graph(fine)[0].set == pytest.approx(graph[4].set, rel=0.01)
 
 
@@ -70,7 +77,9 @@ def test_several_blows_leave_residual_forces_that_settle():
     made = prepare(EXAMPLES / "pile.toml")
     blows = drive(made)
     assert len(blows) == 5
-    assert blows[0].set < blows[1].set  # the locked-in force at the toe spares the second blow a part of the quake
+    assert (
+        blows[0].set < blows[1].set
+    )  # the locked-in force at the toe spares the second blow a part of the quake
     assert blows[4].set == pytest.approx(blows[3].set, rel=1e-3)
     assert blows[-1].residual.max() > 1e5
     assert np.all(blows[-1].residual[24:110] > 0.0)  # the shaft holds the rod down against the toe
@@ -81,7 +90,9 @@ def test_several_blows_leave_residual_forces_that_settle():
 def test_the_command_writes_tables_files_and_pictures(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
-    text = SPT.replace("5e3, 7.5e3, 10e3, 15e3, 20e3, 25e3, 30e3, 35e3, 40e3, 45e3, 50e3, 55e3, 60e3", "10e3, 40e3")
+    text = SPT.replace(
+        "5e3, 7.5e3, 10e3, 15e3, 20e3, 25e3, 30e3, 35e3, 40e3, 45e3, 50e3, 55e3, 60e3", "10e3, 40e3"
+    )
     Path("short.toml").write_text(text, encoding="utf-8")
     shown = CliRunner().invoke(app, ["pile", "short.toml", "--quiet"])
     assert shown.exit_code == 0, shown.output
@@ -89,15 +100,29 @@ def test_the_command_writes_tables_files_and_pictures(tmp_path, monkeypatch):
     assert "energy balance closed to" in shown.output
     folder = tmp_path / "results" / "spt"
     assert {file.name for file in folder.iterdir()} == {
-        "run.json", "summary.json", "traces.parquet", "traces.csv", "envelopes.parquet", "envelopes.csv", "bearing.parquet",
-        "bearing.csv", "figures"}
-    assert {file.name for file in (folder / "figures").iterdir()} == {"traces.png", "envelopes.png", "bearing.png"}
+        "run.json",
+        "summary.json",
+        "traces.parquet",
+        "traces.csv",
+        "envelopes.parquet",
+        "envelopes.csv",
+        "bearing.parquet",
+        "bearing.csv",
+        "figures",
+    }
+    assert {file.name for file in (folder / "figures").iterdir()} == {
+        "traces.png",
+        "envelopes.png",
+        "bearing.png",
+    }
     for file in (folder / "figures").iterdir():
         assert len(np.unique(np.asarray(Image.open(file).convert("L")))) > 20
     table = pyarrow.parquet.read_table(folder / "traces.parquet")
     assert table.schema.field("head.zv").metadata[b"unit"] == b"N"
     assert json.loads((folder / "run.json").read_text())["site"]["hammer"]["mass"] == 63.5
-    as_json = CliRunner().invoke(app, ["pile", "short.toml", "--quiet", "--json", "--no-figures", "--blows", "2"])
+    as_json = CliRunner().invoke(
+        app, ["pile", "short.toml", "--quiet", "--json", "--no-figures", "--blows", "2"]
+    )
     figures = {figure["name"]: figure["value"] for figure in json.loads(as_json.stdout)["figures"]}
     assert figures["blows"] == 2
     assert figures["bearing.10000.set"] > figures["bearing.40000.set"]
@@ -106,10 +131,12 @@ def test_the_command_writes_tables_files_and_pictures(tmp_path, monkeypatch):
 
 def test_residual_forces_are_those_of_a_rod_at_rest(site):
     text = (EXAMPLES / "pile.toml").read_text(encoding="utf-8").replace("blows = 5", "blows = 1")
-    short, = drive(site(text, ("time = 0.25", "time = 0.1")))
-    longer, = drive(site(text, ("time = 0.25", "time = 0.2")))
+    (short,) = drive(site(text, ("time = 0.25", "time = 0.1")))
+    (longer,) = drive(site(text, ("time = 0.25", "time = 0.2")))
     assert short.residual == pytest.approx(longer.residual, abs=1e-4 * longer.residual.max())
-    assert short.residual[0] == pytest.approx(0.0, abs=0.02 * short.residual.max())  # nothing presses on the head
+    assert short.residual[0] == pytest.approx(
+        0.0, abs=0.02 * short.residual.max()
+    )  # nothing presses on the head
 
 
 # --- refusals ---
@@ -117,24 +144,59 @@ def test_residual_forces_are_those_of_a_rod_at_rest(site):
 SHAFT = "damping = 0.5\n[[shaft]]\nfrom = 5\nto = {to}\nresistance = 1e3"
 
 
-@pytest.mark.parametrize(("replaced", "place", "words"), [
-    (("quake = 2.5e-3", "quake = 0"), "quake = 0", "toe.quake: input should be greater than 0"),
-    (("gravity = 9.80665", "time = 1e-3"), "time = 1e-3", "0.001 s is too short for a blow: a wave needs 0.002 s from head to toe"),
-    (("quake = 2.5e-3", "quake = true"), "quake = true", "toe.quake: input should be a valid number (given: True)"),
-    (("quake = 2.5e-3", 'quake = "2"'), 'quake = "2"', "toe.quake: input should be a valid number (given: '2')"),
-    (("area = 5.8e-4", "area = -1"), "area = -1", "rod[1].area: input should be greater than 0"),
-    (("density = 7850.0", "density = 0"), "density = 0", "rod[1].density"),
-    (("segments = 100", "segments = 0"), "segments = 0", "segments: input should be greater than or equal to 1"),
-    (("resistance = 20e3", "resistance = nan"), "resistance = nan", "toe.resistance: input should be"),
-    (("resistance = 20e3", "resistance = -1"), "resistance = -1", "toe.resistance: input should be greater than 0"),
-    (("resistance = 20e3", "resistance = 900"), "resistance = 900", "they sink without a blow"),
-    (("drop = 0.75", "dropp = 0.75"), "dropp", "there is no such key"),
-    (("damping = 0.5", SHAFT.format(to=11)), "to = 11", "below the toe, at 10.24 m"),
-    (("damping = 0.5", SHAFT.format(to=4)), "[[shaft]]", "let it end below its beginning"),
-    (("gravity = 9.80665", "time = 1e6"), "time = 1e6", "rows, and at most 2e+07 are kept"),
-    (("gravity = 9.80665", "gauge = 11"), "gauge = 11", "the gauge at 11 m is below the toe"),
-    (("damping = 0.5", "damping = 0.5\n[cushion]\nstiffness = 1e8\nrestitution = 0.001"), "restitution", "cushion.restitution"),
-])
+@pytest.mark.parametrize(
+    ("replaced", "place", "words"),
+    [
+        (("quake = 2.5e-3", "quake = 0"), "quake = 0", "toe.quake: input should be greater than 0"),
+        (
+            ("gravity = 9.80665", "time = 1e-3"),
+            "time = 1e-3",
+            "0.001 s is too short for a blow: a wave needs 0.002 s from head to toe",
+        ),
+        (
+            ("quake = 2.5e-3", "quake = true"),
+            "quake = true",
+            "toe.quake: input should be a valid number (given: True)",
+        ),
+        (
+            ("quake = 2.5e-3", 'quake = "2"'),
+            'quake = "2"',
+            "toe.quake: input should be a valid number (given: '2')",
+        ),
+        (
+            ("area = 5.8e-4", "area = -1"),
+            "area = -1",
+            "rod[1].area: input should be greater than 0",
+        ),
+        (("density = 7850.0", "density = 0"), "density = 0", "rod[1].density"),
+        (
+            ("segments = 100", "segments = 0"),
+            "segments = 0",
+            "segments: input should be greater than or equal to 1",
+        ),
+        (
+            ("resistance = 20e3", "resistance = nan"),
+            "resistance = nan",
+            "toe.resistance: input should be",
+        ),
+        (
+            ("resistance = 20e3", "resistance = -1"),
+            "resistance = -1",
+            "toe.resistance: input should be greater than 0",
+        ),
+        (("resistance = 20e3", "resistance = 900"), "resistance = 900", "they sink without a blow"),
+        (("drop = 0.75", "dropp = 0.75"), "dropp", "there is no such key"),
+        (("damping = 0.5", SHAFT.format(to=11)), "to = 11", "below the toe, at 10.24 m"),
+        (("damping = 0.5", SHAFT.format(to=4)), "[[shaft]]", "let it end below its beginning"),
+        (("gravity = 9.80665", "time = 1e6"), "time = 1e6", "rows, and at most 2e+07 are kept"),
+        (("gravity = 9.80665", "gauge = 11"), "gauge = 11", "the gauge at 11 m is below the toe"),
+        (
+            ("damping = 0.5", "damping = 0.5\n[cushion]\nstiffness = 1e8\nrestitution = 0.001"),
+            "restitution",
+            "cushion.restitution",
+        ),
+    ],
+)
 def test_refused_with_the_line(site, replaced, place, words):
     text = SPT.replace(*replaced)
     line = text.count("\n", 0, text.index(place)) + 1
@@ -146,5 +208,10 @@ def test_refused_with_the_line(site, replaced, place, words):
 
 def test_everything_wrong_is_told_at_once(site):
     with pytest.raises(InputRefused) as refusal:
-        site(SPT, ("mass = 63.5", "mass = 0"), ("area = 5.8e-4", "area = -1"), ("quake = 2.5e-3", "quake = 0"))
+        site(
+            SPT,
+            ("mass = 63.5", "mass = 0"),
+            ("area = 5.8e-4", "area = -1"),
+            ("quake = 2.5e-3", "quake = 0"),
+        )
     assert len(refusal.value.problems) == 3

@@ -3,18 +3,29 @@
 import json
 
 import pytest
+from typer.testing import CliRunner
+
 from rockshed.commands.app import app
 from rockshed.papers.running import run_all
 from rockshed.papers.sonoda1993.fig19 import COARSE, _single
 from rockshed.papers.study import COMPLETE, FAILED, Task
 from rockshed.runs.job import Request
-from typer.testing import CliRunner
 
 
 @pytest.fixture(scope="module")
 def table_5(tmp_path_factory):
     folder = tmp_path_factory.mktemp("reproduction") / "out"
-    arguments = ["reproduce", "sonoda1993", "--quick", "--only", "table5", "--workers", "2", "--output-dir", str(folder)]
+    arguments = [
+        "reproduce",
+        "sonoda1993",
+        "--quick",
+        "--only",
+        "table5",
+        "--workers",
+        "2",
+        "--output-dir",
+        str(folder),
+    ]
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 0, result.output
     return folder, result
@@ -30,7 +41,9 @@ def test_table_5_has_its_nine_rows_with_both_models(table_5):
     for row in rows:
         if row["model"] == "calibrated" and row["unit"] != "%":
             assert abs(row["deviation_from_paper"]) < 0.12
-        assert row["model_options"]["rotation"] == ("free" if row["model"] == "literal" else "locked")
+        assert row["model_options"]["rotation"] == (
+            "free" if row["model"] == "literal" else "locked"
+        )
         assert set(row["fmus"]) == {"sand", "rock", "beam"}
     assert "Table 5" in result.stdout
     assert "runs: 27 of 27" in result.stderr

@@ -10,11 +10,11 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from fmpy.util import read_csv
+
 from rockshed.core.errors import InputRefused
 from rockshed.core.results.reading import add_figures, read_run
 from rockshed.core.results.run_folder import Column, Figure, RunFolder, running_folder
 from rockshed.core.run import simulate
-
 from tests.cosim.mocks import Mock, mass, out, spring, wired
 
 LINKS = ["spring.end1.force -> mass.force", "mass.position -> spring.end1.position"]
@@ -22,15 +22,26 @@ LINKS = ["spring.end1.force -> mass.force", "mass.position -> spring.end1.positi
 
 @pytest.fixture
 def result(tmp_path):
-    system, sources = wired({"spring": spring(4.0), "mass": mass(1.0, position=1.0)}, LINKS, exchange_step=0.01,
-                            output_interval=0.1, state_interval=0.25,
-                            components={"mass": {"record_states": True, "parameters": {"mass": 2.0}}})
+    system, sources = wired(
+        {"spring": spring(4.0), "mass": mass(1.0, position=1.0)},
+        LINKS,
+        exchange_step=0.01,
+        output_interval=0.1,
+        state_interval=0.25,
+        components={"mass": {"record_states": True, "parameters": {"mass": 2.0}}},
+    )
     return simulate(system, tmp_path / "deep" / "run", sources=sources, facts={"case": "test"})
 
 
 def test_the_folder_holds_these_files_and_nothing_else(result):
     assert sorted(path.name for path in result.folder.iterdir()) == [
-        "columns.csv", "run.json", "states.h5", "summary.json", "timeseries.csv", "timeseries.parquet"]
+        "columns.csv",
+        "run.json",
+        "states.h5",
+        "summary.json",
+        "timeseries.csv",
+        "timeseries.parquet",
+    ]
     assert [path.name for path in result.folder.parent.iterdir()] == ["run"]
 
 
@@ -63,7 +74,10 @@ def test_the_provenance_tells_what_was_run(result):
     assert (told["status"], told["error"], told["case"]) == ("complete", None, "test")
     assert told["components"]["mass"]["parameters"]["mass"] == {"value": 2.0, "unit": "kg"}
     assert told["components"]["mass"]["parameters"]["position0"] == {"value": 1.0, "unit": "m"}
-    assert told["system"]["connections"][0] == {"source": "spring.end1.force", "target": "mass.force"}
+    assert told["system"]["connections"][0] == {
+        "source": "spring.end1.force",
+        "target": "mass.force",
+    }
     assert {"python", "rockshed", "numpy", "numba", "fmpy", "pythonfmu"} <= set(told["versions"])
     assert told["started"] < told["ended"]
     assert set(told["wall_time"]) == {"preparation", "exchanges", "recording"}
@@ -72,16 +86,35 @@ def test_the_provenance_tells_what_was_run(result):
 def test_figures_can_be_added_and_replaced(result):
     add_figures(result.folder, [Figure("mine", 1.5, "kN"), Figure("exchanges", 7)])
     again = read_run(result.folder)
-    assert (again.figure("mine").value, again.figure("mine").unit, again.figure("exchanges").value) == (1.5, "kN", 7)
+    assert (
+        again.figure("mine").value,
+        again.figure("mine").unit,
+        again.figure("exchanges").value,
+    ) == (1.5, "kN", 7)
     assert len([figure for figure in again.summary if figure.name == "exchanges"]) == 1
 
 
 def test_what_other_programs_add_to_a_summary_is_passed_over(result):
     path = result.folder / "summary.json"
-    path.write_text(json.dumps([{"name": "theirs", "value": 2.0, "unit": "m", "checked": True,
-                                 "references": {"paper": {"value": 4.0, "deviation": -0.5, "page": 7}}}]))
+    path.write_text(
+        json.dumps(
+            [
+                {
+                    "name": "theirs",
+                    "value": 2.0,
+                    "unit": "m",
+                    "checked": True,
+                    "references": {"paper": {"value": 4.0, "deviation": -0.5, "page": 7}},
+                }
+            ]
+        )
+    )
     theirs = read_run(result.folder).figure("theirs")
-    assert (theirs.value, theirs.references["paper"].value, theirs.references["paper"].deviation) == (2.0, 4.0, -0.5)
+    assert (
+        theirs.value,
+        theirs.references["paper"].value,
+        theirs.references["paper"].deviation,
+    ) == (2.0, 4.0, -0.5)
 
 
 def test_integers_and_inputs_can_be_recorded(tmp_path):
@@ -134,8 +167,13 @@ def test_folders_made_for_a_refused_run_are_removed(tmp_path):
 
 def test_a_folder_of_something_else_is_not_overwritten(tmp_path):
     (tmp_path / "thesis.tex").write_text("important")
-    with pytest.raises(InputRefused, match="is no folder of a run, and would be overwritten; choose another folder"), \
-            RunFolder(tmp_path):
+    with (
+        pytest.raises(
+            InputRefused,
+            match="is no folder of a run, and would be overwritten; choose another folder",
+        ),
+        RunFolder(tmp_path),
+    ):
         pass
     assert (tmp_path / "thesis.tex").read_text() == "important"
 
@@ -151,8 +189,13 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
 
 def test_two_runs_into_one_folder(tmp_path):
     first = writing(tmp_path / "run")
-    with pytest.raises(InputRefused, match="another run is writing there; wait for its end or choose another folder"), \
-            RunFolder(tmp_path / "run"):
+    with (
+        pytest.raises(
+            InputRefused,
+            match="another run is writing there; wait for its end or choose another folder",
+        ),
+        RunFolder(tmp_path / "run"),
+    ):
         pass
     first.rows(np.array([0.0]), np.array([[1.0]]))
     first.finish("complete", [])
@@ -165,7 +208,12 @@ def test_two_runs_into_one_folder(tmp_path):
 def test_two_processes_into_one_folder(tmp_path):
     first = writing(tmp_path / "run")
     script = "import sys, pathlib, rockshed.core.results.run_folder as r; r.RunFolder(pathlib.Path(sys.argv[1])).__enter__()"
-    second = subprocess.run([sys.executable, "-c", script, str(tmp_path / "run")], capture_output=True, text=True, check=False)
+    second = subprocess.run(
+        [sys.executable, "-c", script, str(tmp_path / "run")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert "another run is writing there" in second.stderr
     first.__exit__(None, None, None)
 

@@ -11,15 +11,16 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
-import rockshed
 from PIL import Image
+from typer.testing import CliRunner
+
+import rockshed
 from rockshed.analyses.rockfall import campaign
 from rockshed.analyses.rockfall.preparation import prepare
 from rockshed.analyses.rockfall.replay import replay
 from rockshed.analyses.rockfall.results import passings
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE
-from typer.testing import CliRunner
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 
@@ -43,9 +44,15 @@ def records(made):
 
 # --- the campaign ---
 
+
 def test_the_first_200_of_5000_trials_are_a_run_of_200_for_any_number_of_threads(made, records):
     few = prepare(EXAMPLE, trials=200).campaign
-    for workers, given, first in ((1, few, 200), (2, few, 200), (2, made.campaign, 5000), (3, made.campaign, 5000)):
+    for workers, given, first in (
+        (1, few, 200),
+        (2, few, 200),
+        (2, made.campaign, 5000),
+        (3, made.campaign, 5000),
+    ):
         found = campaign.run(given, workers)
         for name in ("outcomes", "passages", "peaks"):
             np.testing.assert_array_equal(getattr(found, name), getattr(records, name)[:first])
@@ -54,11 +61,15 @@ def test_the_first_200_of_5000_trials_are_a_run_of_200_for_any_number_of_threads
 def test_a_replay_ends_where_the_campaign_has_it_and_passes_its_lines_there(made, records):
     for number in (3, 41):
         shown = replay(made, number, 0.01)
-        assert (shown.x[-1], shown.y[-1]) == pytest.approx(tuple(records.outcomes[number, [OUTCOME.x, OUTCOME.y]]), abs=1e-9)
+        assert (shown.x[-1], shown.y[-1]) == pytest.approx(
+            tuple(records.outcomes[number, [OUTCOME.x, OUTCOME.y]]), abs=1e-9
+        )
         assert shown.time[-1] == records.outcomes[number, OUTCOME.time]
         at = records.passages[number, 1, PASSAGE.time]
         assert np.interp(at, shown.time, shown.x) == pytest.approx(90.0, abs=1e-2)
-        assert np.interp(at, shown.time, shown.speed) == pytest.approx(records.passages[number, 1, PASSAGE.speed], rel=0.02)
+        assert np.interp(at, shown.time, shown.speed) == pytest.approx(
+            records.passages[number, 1, PASSAGE.speed], rel=0.02
+        )
 
 
 def test_a_barrier_stops_breaks_or_is_overtopped(made, records):
@@ -68,7 +79,9 @@ def test_a_barrier_stops_breaks_or_is_overtopped(made, records):
 
 
 def test_a_strong_barrier_that_is_low_is_overtopped_only(tmp_path):
-    (tmp_path / "low.toml").write_text(EXAMPLE.read_text().replace("height = 3.0", "height = 1.3").replace("300e3", "1e9"))
+    (tmp_path / "low.toml").write_text(
+        EXAMPLE.read_text().replace("height = 3.0", "height = 1.3").replace("300e3", "1e9")
+    )
     low = prepare(tmp_path / "low.toml", trials=1000)
     fence = passings(low.campaign, campaign.run(low.campaign, 1))[3]
     assert fence.barrier["broken_through"] == 0
@@ -77,20 +90,32 @@ def test_a_strong_barrier_that_is_low_is_overtopped_only(tmp_path):
 
 # --- the command ---
 
+
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rockfall") / "out"
-    result = CliRunner().invoke(app, ["rockfall", str(EXAMPLE), "--preset", "paper", "--output-dir", str(folder)],
-                                env={"COLUMNS": "500"})
+    result = CliRunner().invoke(
+        app,
+        ["rockfall", str(EXAMPLE), "--preset", "paper", "--output-dir", str(folder)],
+        env={"COLUMNS": "500"},
+    )
     assert result.exit_code == 0, result.output
     return folder, result
 
 
 def test_a_campaign_leaves_its_files_and_shows_its_table(finished):
     folder, result = finished
-    assert {file.name for file in folder.iterdir()} == {"run.json", "summary.json", "trials.parquet", "envelopes.parquet",
-                                                        "envelopes.csv", "figures"}
-    assert {"envelopes.png", "lines.png", "ends.png"} == {file.name for file in (folder / "figures").iterdir()}
+    assert {file.name for file in folder.iterdir()} == {
+        "run.json",
+        "summary.json",
+        "trials.parquet",
+        "envelopes.parquet",
+        "envelopes.csv",
+        "figures",
+    }
+    assert {"envelopes.png", "lines.png", "ends.png"} == {
+        file.name for file in (folder / "figures").iterdir()
+    }
     assert "lower slope  200 of 200 rocks pass" in result.stdout
     assert re.search(r"energy +kJ +\d+ +[\d.]+ +\d+ \[\d+, \d+\]", result.stdout)
     facts = json.loads((folder / "run.json").read_text())
@@ -103,13 +128,24 @@ def test_the_table_of_trials_has_units_and_agrees_with_the_summary(finished):
     table = pyarrow.parquet.read_table(folder / "trials.parquet")
     assert table.num_rows == 200
     units = {field.name: field.metadata[b"unit"].decode() for field in table.schema}
-    assert (units["road.energy"], units["road.height"], units["time"], units["limit_speed"]) == ("J", "m", "s", "m/s")
+    assert (units["road.energy"], units["road.height"], units["time"], units["limit_speed"]) == (
+        "J",
+        "m",
+        "s",
+        "m/s",
+    )
     energies = np.sort(table["road.energy"].drop_null().to_numpy())
-    summary = {entry["name"]: entry["value"] for entry in json.loads((folder / "summary.json").read_text())}
+    summary = {
+        entry["name"]: entry["value"] for entry in json.loads((folder / "summary.json").read_text())
+    }
     ends = table["end"].to_pylist()
     assert summary["line.road.passing"] == len(energies) == ends.count("beyond the right end")
     assert np.mean(energies <= summary["line.road.energy.p90"]) == pytest.approx(0.9, abs=0.01)
-    assert summary["line.road.energy.p90.low"] < summary["line.road.energy.p90"] < summary["line.road.energy.p90.high"]
+    assert (
+        summary["line.road.energy.p90.low"]
+        < summary["line.road.energy.p90"]
+        < summary["line.road.energy.p90.high"]
+    )
     assert "line.road.energy.p99.high" not in summary  # 200 trials do not bound it
     assert summary["barrier.fence.stopped"] == table["barrier"].to_pylist().count("fence") > 0
 
@@ -117,7 +153,9 @@ def test_the_table_of_trials_has_units_and_agrees_with_the_summary(finished):
 def test_envelopes_lie_in_order(finished):
     table = pyarrow.parquet.read_table(finished[0] / "envelopes.parquet")
     for name in ("height", "speed", "energy"):
-        columns = [table[f"{name}.{which}"].to_numpy() for which in ("p50", "p90", "p95", "p99", "max")]
+        columns = [
+            table[f"{name}.{which}"].to_numpy() for which in ("p50", "p90", "p95", "p99", "max")
+        ]
         for lower, upper in pairwise(columns):
             here = np.isfinite(upper)
             assert here.sum() > 190
@@ -127,15 +165,25 @@ def test_envelopes_lie_in_order(finished):
 def test_json_is_one_document_and_quiet_says_nothing(rockshed):
     result = rockshed("rockfall", EXAMPLE, "--trials", 50, "--no-figures", "--json", "--quiet")
     content = json.loads(result.stdout)
-    assert (result.exit_code, result.stderr, content["status"], content["pictures"]) == (0, "", "complete", [])
+    assert (result.exit_code, result.stderr, content["status"], content["pictures"]) == (
+        0,
+        "",
+        "complete",
+        [],
+    )
     assert {"name": "trials", "value": 50, "unit": "1"} in content["figures"]
     assert Path("results/slope/run.json").is_file()
 
 
-@pytest.mark.parametrize(("options", "words"), [
-    (["--preset", "papper"], "did you mean paper?"), (["--preset", "paper", "--trials", "5"], "give one of them"),
-    (["--replay", "200", "--trials", "200"], "choose one from 0 to 199"), (["--replay", "1", "--animation", "avi"], "mp4, gif"),
-])
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--preset", "papper"], "did you mean paper?"),
+        (["--preset", "paper", "--trials", "5"], "give one of them"),
+        (["--replay", "200", "--trials", "200"], "choose one from 0 to 199"),
+        (["--replay", "1", "--animation", "avi"], "mp4, gif"),
+    ],
+)
 def test_options_that_make_no_sense_are_refused_and_leave_nothing(rockshed, options, words):
     result = rockshed("rockfall", EXAMPLE, *options)
     assert result.exit_code == 2
@@ -158,10 +206,26 @@ def test_plot_says_that_a_campaign_is_no_run(rockshed, finished):
 
 
 def test_ctrl_c_leaves_nothing(tmp_path):
-    command = [sys.executable, "-m", "rockshed.commands.app", "rockfall", str(EXAMPLE), "--trials", "1000000", "--workers", "1",
-               "--output-dir", str(tmp_path / "out")]
-    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
-                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # tests in the background ignore it
+    command = [
+        sys.executable,
+        "-m",
+        "rockshed.commands.app",
+        "rockfall",
+        str(EXAMPLE),
+        "--trials",
+        "1000000",
+        "--workers",
+        "1",
+        "--output-dir",
+        str(tmp_path / "out"),
+    ]
+    run = subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )  # tests in the background ignore it
     assert run.stderr is not None
     assert any("trials: " in line for line in run.stderr)
     run.send_signal(signal.SIGINT)
@@ -177,13 +241,20 @@ def test_without_further_packages_there_are_gif_files(rockshed, monkeypatch):
     notes = []
     assert animation.kind_of(None, notes.append) == "gif"
     assert "rockshed[movie]" in notes[0]
-    assert "rockshed[movie]" in rockshed("rockfall", EXAMPLE, "--replay", 1, "--animation", "mp4").stderr
+    assert (
+        "rockshed[movie]"
+        in rockshed("rockfall", EXAMPLE, "--replay", 1, "--animation", "mp4").stderr
+    )
 
 
 def film(rockshed, kind):
     """The first metres of a trial as animation."""
-    Path("short.toml").write_text(EXAMPLE.read_text().replace("[profile] ", "[profile]\nend = 2.5 ").split("[[line]]")[0])
-    result = rockshed("rockfall", "short.toml", "--trials", 20, "--no-figures", "--replay", 1, "--animation", kind)
+    Path("short.toml").write_text(
+        EXAMPLE.read_text().replace("[profile] ", "[profile]\nend = 2.5 ").split("[[line]]")[0]
+    )
+    result = rockshed(
+        "rockfall", "short.toml", "--trials", 20, "--no-figures", "--replay", 1, "--animation", kind
+    )
     assert result.exit_code == 0, result.stderr
     return Path(f"results/slope/figures/trial-1.{kind}")
 
@@ -194,7 +265,10 @@ def test_a_gif_has_a_frame_for_each_instant_in_real_time(rockshed):
     shown = replay(made, 1, 1.0 / 25.0)
     assert (shown.end, shown.x[-1]) == ("beyond the right end", pytest.approx(2.5))
     with Image.open(short) as opened:
-        assert opened.n_frames in (len(shown.time) + 1, len(shown.time))  # equal frames, as those of the end, become one
+        assert opened.n_frames in (
+            len(shown.time) + 1,
+            len(shown.time),
+        )  # equal frames, as those of the end, become one
         lengths = []
         for i in range(opened.n_frames):
             opened.seek(i)

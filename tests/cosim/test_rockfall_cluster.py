@@ -13,11 +13,12 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
+from typer.testing import CliRunner
+
 import rockshed
 from rockshed.analyses.rockfall import campaign, cluster
 from rockshed.analyses.rockfall.preparation import prepare
 from rockshed.commands.app import app
-from typer.testing import CliRunner
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 
@@ -54,7 +55,9 @@ def assert_same(found, expected):
 def busiest(client):
     """Process number of the worker that has the most to do."""
     waiting = client.processing()
-    return client.run(os.getpid, workers=[max(waiting, key=lambda name: len(waiting[name]))]).popitem()[1]
+    return client.run(
+        os.getpid, workers=[max(waiting, key=lambda name: len(waiting[name]))]
+    ).popitem()[1]
 
 
 class Killer:
@@ -84,12 +87,16 @@ def test_any_number_of_workers_gives_the_same_bits(client, made, records, monkey
     client.cluster.scale(workers)
     client.wait_for_workers(workers)
     told = []
-    assert_same(cluster._run(client, made, lambda count, total: told.append((count, total))), records)
+    assert_same(
+        cluster._run(client, made, lambda count, total: told.append((count, total))), records
+    )
     assert len(told) == 17
     assert told[-1] == (5000, 5000)
     few = prepare(EXAMPLE, trials=200).campaign
-    assert_same(cluster._run(client, few, lambda count, total: None),
-                campaign.Records(records.passages[:200], records.peaks[:200], records.outcomes[:200]))
+    assert_same(
+        cluster._run(client, few, lambda count, total: None),
+        campaign.Records(records.passages[:200], records.peaks[:200], records.outcomes[:200]),
+    )
 
 
 def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch):
@@ -100,8 +107,10 @@ def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch
     assert not psutil.pid_exists(killer.killed)
 
 
-@pytest.mark.parametrize(("trials", "workers", "size"), [
-    (1_000_000, 2, 20_000), (10_000, 2, 1000), (100_000, 4, 3125), (50, 4, 1000)])
+@pytest.mark.parametrize(
+    ("trials", "workers", "size"),
+    [(1_000_000, 2, 20_000), (10_000, 2, 1000), (100_000, 4, 3125), (50, 4, 1000)],
+)
 def test_tasks_are_neither_too_small_nor_too_few(made, trials, workers, size):
     assert cluster._block_size(dataclasses.replace(made, trials=trials), workers) == size
 
@@ -113,7 +122,9 @@ def test_tasks_with_large_records_have_few_trials(made):
 
 def test_workers_with_another_version_are_refused(client, made, monkeypatch):
     monkeypatch.setattr(cluster, "source_stamp", lambda component: "another")
-    with pytest.raises(campaign.CampaignFailed, match="another version of rockshed: install the same"):
+    with pytest.raises(
+        campaign.CampaignFailed, match="another version of rockshed: install the same"
+    ):
         cluster._run(client, made, lambda count, total: None)
 
 
@@ -124,17 +135,31 @@ def test_the_command_takes_a_running_scheduler(client, rockshed):
     assert "trials: 6000 of 6000" in result.stderr
     facts = json.loads(Path("results/slope/run.json").read_text())
     assert (facts["scheduler"], facts["workers"]) == (address, len(client.nthreads()))
-    on_threads = rockshed("rockfall", EXAMPLE, "--trials", 6000, "--no-figures", "--output-dir", "threads")
+    on_threads = rockshed(
+        "rockfall", EXAMPLE, "--trials", 6000, "--no-figures", "--output-dir", "threads"
+    )
     assert on_threads.exit_code == 0
-    assert Path("threads/trials.parquet").read_bytes() == Path("results/slope/trials.parquet").read_bytes()
-    assert Path("threads/envelopes.csv").read_bytes() == Path("results/slope/envelopes.csv").read_bytes()
+    assert (
+        Path("threads/trials.parquet").read_bytes()
+        == Path("results/slope/trials.parquet").read_bytes()
+    )
+    assert (
+        Path("threads/envelopes.csv").read_bytes()
+        == Path("results/slope/envelopes.csv").read_bytes()
+    )
 
 
-@pytest.mark.parametrize(("options", "words"), [
-    (["--scheduler", "locl"], "--scheduler locl: is no address"),
-    (["--scheduler", "tcp://localhost:8786", "--workers", "2"], "a running scheduler has its own workers"),
-    (["--scheduler", "carrier-pigeon://loft"], "unknown address scheme 'carrier-pigeon'"),
-])
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--scheduler", "locl"], "--scheduler locl: is no address"),
+        (
+            ["--scheduler", "tcp://localhost:8786", "--workers", "2"],
+            "a running scheduler has its own workers",
+        ),
+        (["--scheduler", "carrier-pigeon://loft"], "unknown address scheme 'carrier-pigeon'"),
+    ],
+)
 def test_addresses_that_are_none_are_refused(rockshed, options, words):
     result = rockshed("rockfall", EXAMPLE, *options)
     assert result.exit_code == 2
@@ -149,7 +174,9 @@ def test_an_unreachable_scheduler_is_refused_within_seconds(rockshed, monkeypatc
         address = f"tcp://127.0.0.1:{unused.getsockname()[1]}"
         result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", address)
     assert result.exit_code == 2
-    assert f"--scheduler {address}: no scheduler answers there within 0.5 s" in " ".join(result.stderr.split())
+    assert f"--scheduler {address}: no scheduler answers there within 0.5 s" in " ".join(
+        result.stderr.split()
+    )
     assert not list(Path().iterdir())
 
 
@@ -165,15 +192,39 @@ def test_a_scheduler_without_workers_is_refused(client, rockshed, monkeypatch):
 
 def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):
     monkeypatch.setattr(cluster, "find_spec", lambda name: None)
-    assert 'pip install "rockshed[cluster]"' in rockshed("rockfall", EXAMPLE, "--scheduler", "local").stderr
+    assert (
+        'pip install "rockshed[cluster]"'
+        in rockshed("rockfall", EXAMPLE, "--scheduler", "local").stderr
+    )
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="a terminal's Ctrl-C is a signal to a group of processes")
+@pytest.mark.skipif(
+    sys.platform == "win32", reason="a terminal's Ctrl-C is a signal to a group of processes"
+)
 def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_nothing(tmp_path):
-    command = [sys.executable, "-m", "rockshed.commands.app", "rockfall", str(EXAMPLE), "--trials", "400000", "--scheduler", "local",
-               "--workers", "1", "--output-dir", str(tmp_path / "out")]
-    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True,
-                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    command = [
+        sys.executable,
+        "-m",
+        "rockshed.commands.app",
+        "rockfall",
+        str(EXAMPLE),
+        "--trials",
+        "400000",
+        "--scheduler",
+        "local",
+        "--workers",
+        "1",
+        "--output-dir",
+        str(tmp_path / "out"),
+    ]
+    run = subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     assert run.stderr is not None
     assert any("trials: " in line for line in run.stderr)
     started = psutil.Process(run.pid).children(recursive=True)

@@ -4,12 +4,13 @@ import json
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
 from rockshed.commands.app import app
 from rockshed.components.catalogue import NAMES as CATALOGUE
 from rockshed.core.results.reading import read_run
 from rockshed.fmus.build import BuildError
 from rockshed.fmus.native.fmu import compiler, own_platform
-from typer.testing import CliRunner
 
 NAMES = [f"{name}.fmu" for name in CATALOGUE]
 SHORT = ["--stop-time", "0.001", "--no-figures"]
@@ -35,14 +36,19 @@ def needs_compiler():
 def runtime_of(folder):
     """The runtime that a run says it had, and the folders of its FMUs."""
     facts = read_run(folder).provenance
-    return facts["runtime"], {Path(part["fmu"]).parent.name for part in facts["components"].values()}
+    return facts["runtime"], {
+        Path(part["fmu"]).parent.name for part in facts["components"].values()
+    }
 
 
 def test_both_runtimes_are_built_side_by_side(rockshed, needs_compiler, tmp_path):
     result = rockshed("build", "--runtime", "both")
     assert result.exit_code == 0, result.stderr
     assert [line.split()[0] for line in result.stdout.splitlines()] == [
-        str(tmp_path / "dist" / runtime / name) for runtime in ("python", "native") for name in NAMES]
+        str(tmp_path / "dist" / runtime / name)
+        for runtime in ("python", "native")
+        for name in NAMES
+    ]
 
 
 def test_native_fmus_are_run_when_they_are_there_and_up_to_date(rockshed, needs_compiler, tmp_path):
@@ -59,7 +65,8 @@ def test_native_fmus_are_run_when_they_are_there_and_up_to_date(rockshed, needs_
     fifth = rockshed("run", "lab-impact", *SHORT, "--output-dir", "e", "--runtime", "python")
     assert fifth.exit_code == 0
     assert [runtime_of(tmp_path / name) for name in "abcde"] == [
-        (runtime, {runtime}) for runtime in ("python", "native", "python", "native", "python")]
+        (runtime, {runtime}) for runtime in ("python", "native", "python", "native", "python")
+    ]
     series = [read_run(tmp_path / name).series for name in "abcde"]
     assert all((series[0][name] == other[name]).all() for name in series[0] for other in series[1:])
 
@@ -68,23 +75,54 @@ def test_a_compiler_that_fails_leaves_nothing(rockshed, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "false")
     built = rockshed("build", "--runtime", "both")
     assert built.exit_code == 2
-    assert "FallingRock: the compiler failed for linux64, no native FMU was built: false" in built.stderr
+    assert (
+        "FallingRock: the compiler failed for linux64, no native FMU was built: false"
+        in built.stderr
+    )
     assert not (tmp_path / "dist").exists()
     run = rockshed("run", "lab-impact", "--runtime", "native", *SHORT)
     assert run.exit_code == 2
     assert "rockshed build --runtime python" in run.stderr
 
 
-@pytest.mark.parametrize(("arguments", "said"), [
-    (["build", "--runtime", "java"], ["'java' is unknown", "choose one of python, native, both"]),
-    (["build", "--runtime", "native", "--platform", "beos"], ["--platform beos", "no such platform", "linux64"]),
-    (["build", "--platform", "win64"], ["--platform: is for native FMUs", "add --runtime native"]),
-    (["build", "--fmi", "3", "--runtime", "python"], ["--fmi 3 --runtime python: FMUs with Python inside are for FMI 2.0 only"]),
-    (["build", "--fmi", "3", "--runtime", "both"], ["--fmi 3 --runtime both: FMUs with Python", "add --runtime native"]),
-    (["build", "--fmi", "4"], ["--fmi 4: there is no such version of FMI here", "choose 2 or 3"]),
-    (["run", "lab-impact", "--runtime", "both"], ["'both' is unknown", "auto, native, python"]),
-    (["run", "lab-impact", "--runtime", "native", "--in-process"], ["--runtime: is for FMUs", "leave one of them out"]),
-    (["run", "some.toml", "--runtime", "native"], ["--runtime: is for cases only", "a system file names FMU files"])])
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ["build", "--runtime", "java"],
+            ["'java' is unknown", "choose one of python, native, both"],
+        ),
+        (
+            ["build", "--runtime", "native", "--platform", "beos"],
+            ["--platform beos", "no such platform", "linux64"],
+        ),
+        (
+            ["build", "--platform", "win64"],
+            ["--platform: is for native FMUs", "add --runtime native"],
+        ),
+        (
+            ["build", "--fmi", "3", "--runtime", "python"],
+            ["--fmi 3 --runtime python: FMUs with Python inside are for FMI 2.0 only"],
+        ),
+        (
+            ["build", "--fmi", "3", "--runtime", "both"],
+            ["--fmi 3 --runtime both: FMUs with Python", "add --runtime native"],
+        ),
+        (
+            ["build", "--fmi", "4"],
+            ["--fmi 4: there is no such version of FMI here", "choose 2 or 3"],
+        ),
+        (["run", "lab-impact", "--runtime", "both"], ["'both' is unknown", "auto, native, python"]),
+        (
+            ["run", "lab-impact", "--runtime", "native", "--in-process"],
+            ["--runtime: is for FMUs", "leave one of them out"],
+        ),
+        (
+            ["run", "some.toml", "--runtime", "native"],
+            ["--runtime: is for cases only", "a system file names FMU files"],
+        ),
+    ],
+)
 def test_what_does_not_fit_is_refused(rockshed, tmp_path, arguments, said):
     result = rockshed(*arguments)
     assert result.exit_code == 2
@@ -112,7 +150,9 @@ def test_an_exported_system_of_both_runtimes_keeps_all_its_fmus(rockshed, needs_
 
 
 def test_fmus_of_fmi_3_are_built_and_shown_and_not_run(rockshed, needs_compiler, tmp_path):
-    built = rockshed("build", "SandCushion", "--fmi", "3", "--size", "discs=20", "--size", "elements=3")
+    built = rockshed(
+        "build", "SandCushion", "--fmi", "3", "--size", "discs=20", "--size", "elements=3"
+    )
     assert built.exit_code == 0, built.stderr
     file = tmp_path / "dist/native-fmi3/SandCushion-discs20-elements3.fmu"
     assert built.stdout.split()[0] == str(file)
@@ -132,4 +172,7 @@ def test_fmus_of_fmi_3_are_built_and_shown_and_not_run(rockshed, needs_compiler,
     refused = rockshed("run", "alone.toml")
     assert refused.exit_code == 2
     said = " ".join(refused.stderr.split())
-    assert f"sand: {file} is FMI 3.0; this program drives FMI 2.0 → use an FMU of it for FMI 2.0" in said
+    assert (
+        f"sand: {file} is FMI 3.0; this program drives FMI 2.0 → use an FMU of it for FMI 2.0"
+        in said
+    )

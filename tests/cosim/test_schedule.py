@@ -5,6 +5,7 @@ counts the operations of the exchange.
 """
 
 import pytest
+
 from rockshed.core.system.schedule import Action, Operation, fits, nearest_steps, plan
 
 SET, STEP, GET = Action.SET, Action.STEP, Action.GET
@@ -12,8 +13,14 @@ SET, STEP, GET = Action.SET, Action.STEP, Action.GET
 
 def _told(schedule):
     """Each exchange in short: ``i a`` inputs of a, ``a 0+4`` a step of a from 0 by 4, ``o a`` outputs of a."""
+
     def word(o):
-        return {SET: f"i {o.component}", GET: f"o {o.component}", STEP: f"{o.component} {o.begin}+{o.length}"}[o.action]
+        return {
+            SET: f"i {o.component}",
+            GET: f"o {o.component}",
+            STEP: f"{o.component} {o.begin}+{o.length}",
+        }[o.action]
+
     return [[word(o) for o in exchange] for exchange in schedule.operations]
 
 
@@ -24,7 +31,8 @@ def test_sequential():
     rock  |            4i==5==6o|    the rock takes what the sand has reached at 10
     """
     assert _told(plan(["sand", "rock"], {"sand": 10, "rock": 10}, 10, "sequential")) == [
-        ["i sand", "sand 0+10", "o sand", "i rock", "rock 0+10", "o rock"]]
+        ["i sand", "sand 0+10", "o sand", "i rock", "rock 0+10", "o rock"]
+    ]
 
 
 def test_sequential_in_the_other_order():
@@ -34,7 +42,8 @@ def test_sequential_in_the_other_order():
     sand  |            4i==5==6o|
     """
     assert _told(plan(["rock", "sand"], {"sand": 10, "rock": 10}, 10, "sequential")) == [
-        ["i rock", "rock 0+10", "o rock", "i sand", "sand 0+10", "o sand"]]
+        ["i rock", "rock 0+10", "o rock", "i sand", "sand 0+10", "o sand"]
+    ]
 
 
 def test_jacobi():
@@ -44,7 +53,8 @@ def test_jacobi():
     rock  |2i=====4========6o|       both take the values of tick 0
     """
     assert _told(plan(["sand", "rock"], {"sand": 10, "rock": 10}, 10, "jacobi")) == [
-        ["i sand", "i rock", "sand 0+10", "rock 0+10", "o sand", "o rock"]]
+        ["i sand", "i rock", "sand 0+10", "rock 0+10", "o sand", "o rock"]
+    ]
 
 
 def test_a_fast_component_is_stepped_several_times_with_the_inputs_held():
@@ -54,7 +64,8 @@ def test_a_fast_component_is_stepped_several_times_with_the_inputs_held():
     beam  |4i=5=|=6==|=7==8o|
     """
     assert _told(plan(["sand", "beam"], {"sand": 6, "beam": 2}, 6, "sequential")) == [
-        ["i sand", "sand 0+6", "o sand", "i beam", "beam 0+2", "beam 2+2", "beam 4+2", "o beam"]]
+        ["i sand", "sand 0+6", "o sand", "i beam", "beam 0+2", "beam 2+2", "beam 4+2", "o beam"]
+    ]
 
 
 def test_a_slow_component_holds_its_inputs_and_shows_its_outputs_when_the_others_are_there():
@@ -65,7 +76,8 @@ def test_a_slow_component_holds_its_inputs_and_shows_its_outputs_when_the_others
     """
     assert _told(plan(["slow", "quick"], {"slow": 20, "quick": 10}, 10, "sequential")) == [
         ["i slow", "i quick", "quick 0+10", "o quick"],
-        ["slow 0+20", "o slow", "i quick", "quick 10+10", "o quick"]]
+        ["slow 0+20", "o slow", "i quick", "quick 10+10", "o quick"],
+    ]
 
 
 def test_a_slow_component_under_jacobi():
@@ -76,7 +88,8 @@ def test_a_slow_component_under_jacobi():
     """
     assert _told(plan(["slow", "quick"], {"slow": 20, "quick": 10}, 10, "jacobi")) == [
         ["i slow", "i quick", "quick 0+10", "o quick"],
-        ["i quick", "slow 0+20", "quick 10+10", "o slow", "o quick"]]
+        ["i quick", "slow 0+20", "quick 10+10", "o slow", "o quick"],
+    ]
 
 
 def test_three_rates_repeat_after_their_common_period():
@@ -90,9 +103,21 @@ def test_three_rates_repeat_after_their_common_period():
     assert schedule.period == 6
     told = _told(schedule)
     assert [[word for word in exchange if word.startswith("two ")] for exchange in told] == [
-        [], ["two 0+8"], [], ["two 8+8"], [], ["two 16+8"]]
+        [],
+        ["two 0+8"],
+        [],
+        ["two 8+8"],
+        [],
+        ["two 16+8"],
+    ]
     assert [[word for word in exchange if word.startswith("three ")] for exchange in told] == [
-        [], [], ["three 0+12"], [], [], ["three 12+12"]]
+        [],
+        [],
+        ["three 0+12"],
+        [],
+        [],
+        ["three 12+12"],
+    ]
     assert told[4] == ["i two", "i fast", "fast 16+2", "fast 18+2", "o fast"]
 
 
@@ -101,14 +126,20 @@ def test_every_component_covers_the_whole_period_without_gap_or_overlap(scheme):
     steps = {"a": 3, "b": 12, "c": 18, "d": 6}
     schedule = plan(list(steps), steps, 6, scheme)
     for name, step in steps.items():
-        taken = [o for exchange in schedule.operations for o in exchange if o.component == name and o.action is STEP]
+        taken = [
+            o
+            for exchange in schedule.operations
+            for o in exchange
+            if o.component == name and o.action is STEP
+        ]
         assert [o.begin for o in taken] == list(range(0, schedule.period * 6, step))
         assert {o.length for o in taken} == {step}
 
 
 def test_an_operation_says_what_it_is():
     assert plan(["a"], {"a": 1}, 1, "jacobi").operations == (
-        (Operation(SET, "a"), Operation(STEP, "a", 0, 1), Operation(GET, "a")),)
+        (Operation(SET, "a"), Operation(STEP, "a", 0, 1), Operation(GET, "a")),
+    )
 
 
 def test_steps_that_fit_and_the_nearest_that_do():

@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pytest
+
 from rockshed.analyses.rockfall import campaign
 from rockshed.analyses.rockfall.preparation import prepare as prepare_site
 from rockshed.analyses.rockfall.statistics import percentile
@@ -44,8 +45,12 @@ def test_the_trial_is_that_of_the_percentile(landed):
 def test_the_rock_is_handed_over_as_the_campaign_has_it(run, landed):
     """Where it passes the search line, which is the receiver's upper side, and with the energy of the percentile."""
     passed, at = landed[case.TRIAL], case.LEAD_TIME
-    for name, value in (("position.x", passed[PASSAGE.x]), ("position.y", passed[PASSAGE.y]),
-                        ("angular_velocity", passed[PASSAGE.omega]), ("energy.kinetic", passed[PASSAGE.kinetic])):
+    for name, value in (
+        ("position.x", passed[PASSAGE.x]),
+        ("position.y", passed[PASSAGE.y]),
+        ("angular_velocity", passed[PASSAGE.omega]),
+        ("energy.kinetic", passed[PASSAGE.kinetic]),
+    ):
         found = np.interp(at, run.series["time"], run.series[f"rock.{name}"])
         assert found == pytest.approx(value, rel=2e-3)
     assert run.series["rock.handover.time"][-1] == pytest.approx(at, abs=1e-9)
@@ -76,14 +81,27 @@ def test_it_has_its_table_and_pictures(run, tmp_path):
     assert float(rows["impact energy E0"]) == pytest.approx(1.29e5, rel=0.02)
     told = []
     drawn = draw_all(run, tmp_path, told.append, told.append)
-    assert {file.stem for file in drawn} == {"overview", "sand", "forces", "penetration", "beam", "energy"}
+    assert {file.stem for file in drawn} == {
+        "overview",
+        "sand",
+        "forces",
+        "penetration",
+        "beam",
+        "energy",
+    }
     assert told == []
 
 
 def test_afterwards_it_goes_on_down_the_slope(tmp_path):
     """Off the roof and over its wall to the ground below; with the impulse-conserving coupling, four times as fast."""
-    job = prepare(Request("slope-to-cushion", coupling="impulse", in_process=True,
-                          options={"stop_time": 2.4, "state_interval": 1.2, "output_interval": 2e-3}))
+    job = prepare(
+        Request(
+            "slope-to-cushion",
+            coupling="impulse",
+            in_process=True,
+            options={"stop_time": 2.4, "state_interval": 1.2, "output_interval": 2e-3},
+        )
+    )
     run = simulate(job.system, tmp_path / "run", sources=job.sources, facts=job.facts)
     assert run.series["rock.position.x"][-1] > 11.0
     assert run.series["rock.position.y"][-1] < 0.0

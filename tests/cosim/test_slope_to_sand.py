@@ -5,15 +5,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import rockshed
 from rockshed.core.run import simulate
 from rockshed.core.system.system import system_from
 from rockshed.fmus.build import build_if_needed
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "rigid_floor.toml"
-SLOPE = {"receiver.present": True, "receiver.left": -0.15, "receiver.right": 0.15, "receiver.bottom": -0.5, "receiver.top": 0.16,
-         "position0.x": 0.0, "velocity0.x": 0.0,
-         "profile.x": -2.0, "profile.y": -0.6, "end.x[1]": 2.0, "end.y[1]": -0.6}
+SLOPE = {
+    "receiver.present": True,
+    "receiver.left": -0.15,
+    "receiver.right": 0.15,
+    "receiver.bottom": -0.5,
+    "receiver.top": 0.16,
+    "position0.x": 0.0,
+    "velocity0.x": 0.0,
+    "profile.x": -2.0,
+    "profile.y": -0.6,
+    "end.x[1]": 2.0,
+    "end.y[1]": -0.6,
+}
 """The slope is a floor under the cushion; the receiver begins a little above the sand."""
 
 
@@ -33,9 +44,17 @@ def test_handed_over_from_the_start_it_is_the_falling_rock(tmp_path):
     falling = run(tmp_path / "falling", "FallingRock", 0.01)
     touched = falling.series["sand.rock.force.y"] > 0.0
     assert touched.sum() > 50
-    for name in ("rock.position.x", "rock.velocity.y", "rock.angular_velocity", "sand.rock.force.y", "sand.transmitted_force"):
+    for name in (
+        "rock.position.x",
+        "rock.velocity.y",
+        "rock.angular_velocity",
+        "sand.rock.force.y",
+        "sand.transmitted_force",
+    ):
         largest = np.abs(falling.series[name]).max()
-        np.testing.assert_allclose(from_slope.series[name], falling.series[name], rtol=0.0, atol=1e-4 * largest)
+        np.testing.assert_allclose(
+            from_slope.series[name], falling.series[name], rtol=0.0, atol=1e-4 * largest
+        )
 
 
 def test_out_of_its_flight_it_hits_the_sand_as_the_falling_rock_does(tmp_path):
@@ -50,4 +69,4 @@ def test_out_of_its_flight_it_hits_the_sand_as_the_falling_rock_does(tmp_path):
         peak = falling.series[name].max()
         assert peak > 0.0
         assert from_slope.series[name].max() == pytest.approx(peak, rel=0.02)
-    assert abs(from_slope.figure("coupling.sand_rock.energy").value) < 0.005 * 0.5 * 4.0 * 7.0 ** 2
+    assert abs(from_slope.figure("coupling.sand_rock.energy").value) < 0.005 * 0.5 * 4.0 * 7.0**2

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+
 from rockshed.fmus.build import BuildError
 from rockshed.fmus.native.fmu import compiler, own_platform
 
@@ -23,8 +24,13 @@ SLOW = {"numba", "scipy", "matplotlib", "dask", "pandas"}
 
 
 def python(script, *arguments, **environment):
-    done = subprocess.run([sys.executable, "-c", script, *map(str, arguments)], env=os.environ | environment, capture_output=True,
-                          text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", script, *map(str, arguments)],
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     return done
 

@@ -3,11 +3,12 @@
 import json
 
 import pytest
+from typer.testing import CliRunner
+
 from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.results.reading import read_run
 from rockshed.metrics import headlines as h
-from typer.testing import CliRunner
 
 FAST = ["--set", "sand.internal_step=1e-4"]
 
@@ -15,7 +16,9 @@ FAST = ["--set", "sand.internal_step=1e-4"]
 @pytest.fixture(scope="module")
 def pushed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("static") / "run"
-    result = CliRunner().invoke(app, ["run", "static-test", "--json", *FAST, "--output-dir", str(folder)])
+    result = CliRunner().invoke(
+        app, ["run", "static-test", "--json", *FAST, "--output-dir", str(folder)]
+    )
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout), folder
 
@@ -37,20 +40,37 @@ def test_the_machine_does_all_the_work(pushed):
     content, folder = pushed
     run = read_run(folder)
     figures = {figure["name"]: figure["value"] for figure in content["figures"]}
-    assert figures[h.MACHINE_WORK] == pytest.approx(run.series["sand.energy.work.rock"][-1], rel=0.06)  # less the rock's weight
+    assert figures[h.MACHINE_WORK] == pytest.approx(
+        run.series["sand.energy.work.rock"][-1], rel=0.06
+    )  # less the rock's weight
     assert abs(figures[h.RESIDUAL_WORK_SHARE]) < 5e-3
     assert set(run.series["rock.velocity.y"]) == {-0.01}
 
 
 def test_pictures_are_those_of_a_static_test(pushed):
     content, folder = pushed
-    assert {path.name for path in (folder / "figures").iterdir()} == {"load.png", "sand.png", "energy.png"}
+    assert {path.name for path in (folder / "figures").iterdir()} == {
+        "load.png",
+        "sand.png",
+        "energy.png",
+    }
     assert len(content["pictures"]) == 3
 
 
 def test_a_run_that_does_not_reach_4_cm_has_no_spring_constant(tmp_path):
-    result = CliRunner().invoke(app, ["run", "static-test", *FAST, "--stop-time", "0.5", "--no-figures", "--output-dir",
-                                      str(tmp_path / "short")])
+    result = CliRunner().invoke(
+        app,
+        [
+            "run",
+            "static-test",
+            *FAST,
+            "--stop-time",
+            "0.5",
+            "--no-figures",
+            "--output-dir",
+            str(tmp_path / "short"),
+        ],
+    )
     assert result.exit_code == 0
     assert "is not driven 4 cm deep" in result.stdout
     assert "kgf/cm " not in result.stdout

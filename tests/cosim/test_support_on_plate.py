@@ -1,6 +1,7 @@
 """A beam whose supports stand on Mogami's plates, without rods: force in, settlement out."""
 
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.core.run import simulate
 from rockshed.core.system.system import system_from
@@ -11,21 +12,52 @@ SIDES = ("left", "right")
 
 def load(folder, force, **ground):
     """A force (N) on the middle discs of the laboratory beam from t = 0 on, for 30 ms."""
-    plates = {f"plate_{side}": {"fmu": "in process", "parameters": {"resistance.start": 2e3, "resistance.end": 2e4,
-                                                                    "resistance.time": 10e-3, **ground}} for side in SIDES}
+    plates = {
+        f"plate_{side}": {
+            "fmu": "in process",
+            "parameters": {
+                "resistance.start": 2e3,
+                "resistance.end": 2e4,
+                "resistance.time": 10e-3,
+                **ground,
+            },
+        }
+        for side in SIDES
+    }
     connections, bonds = [], {}
     for number, plate in enumerate(plates, 1):
-        connections += [f"beam.support.mean_force.y[{number}] -> {plate}.force.y",
-                        f"{plate}.position.y -> beam.support.position.y[{number}]",
-                        f"{plate}.velocity.y -> beam.support.velocity.y[{number}]"]
-        bonds[plate] = {"giver": "beam", "force": [f"support.mean_force.y[{number}]"], "taker": plate, "position": ["position.y"],
-                        "work": f"support.work[{number}]"}
-    beam = {"fmu": "in process", "parameters": {"force.y[12]": -0.5 * force, "force.y[13]": -0.5 * force}}
-    system = system_from({"name": "plates", "stop_time": 0.03, "exchange_step": 2e-6, "output_interval": 1e-4,
-                          "master": "sequential", "components": {"beam": beam, **plates}, "connections": connections,
-                          "bonds": bonds}, "plates")
+        connections += [
+            f"beam.support.mean_force.y[{number}] -> {plate}.force.y",
+            f"{plate}.position.y -> beam.support.position.y[{number}]",
+            f"{plate}.velocity.y -> beam.support.velocity.y[{number}]",
+        ]
+        bonds[plate] = {
+            "giver": "beam",
+            "force": [f"support.mean_force.y[{number}]"],
+            "taker": plate,
+            "position": ["position.y"],
+            "work": f"support.work[{number}]",
+        }
+    beam = {
+        "fmu": "in process",
+        "parameters": {"force.y[12]": -0.5 * force, "force.y[13]": -0.5 * force},
+    }
+    system = system_from(
+        {
+            "name": "plates",
+            "stop_time": 0.03,
+            "exchange_step": 2e-6,
+            "output_interval": 1e-4,
+            "master": "sequential",
+            "components": {"beam": beam, **plates},
+            "connections": connections,
+            "bonds": bonds,
+        },
+        "plates",
+    )
     sources = {"beam": InProcess(component("RBSMBeam"), {"elements": 24})} | {
-        plate: InProcess(component("ImpulsiveGround"), {}) for plate in plates}
+        plate: InProcess(component("ImpulsiveGround"), {}) for plate in plates
+    }
     return simulate(system, folder, sources=sources)
 
 

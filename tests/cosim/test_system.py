@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from rockshed.core.errors import InputRefused
 from rockshed.core.system.system import Connection, load_system, system_from, with_values
 
@@ -38,13 +39,21 @@ position = ["position.x"]
 
 
 def minimal(**more):
-    return {"name": "x", "components": {"a": {"fmu": "a.fmu"}}, "exchange_step": 1.0, "stop_time": 1.0, **more}
+    return {
+        "name": "x",
+        "components": {"a": {"fmu": "a.fmu"}},
+        "exchange_step": 1.0,
+        "stop_time": 1.0,
+        **more,
+    }
 
 
 def refused(data):
     with pytest.raises(InputRefused) as refusal:
         system_from(data)
-    return {problem.where.removeprefix("system: "): problem.what for problem in refusal.value.problems}
+    return {
+        problem.where.removeprefix("system: "): problem.what for problem in refusal.value.problems
+    }
 
 
 def test_a_toml_file_becomes_a_system(tmp_path):
@@ -53,18 +62,40 @@ def test_a_toml_file_becomes_a_system(tmp_path):
     assert system.components["rock"].fmu == str(tmp_path / "dist/Rock.fmu")
     assert system.components["rock"].parameters == {"mass": 4.0, "shape": "sphere"}
     assert (system.step("rock"), system.step("sand")) == (1e-5, 2e-5)
-    assert system.connections == [Connection(source="sand.rock.force.x", target="rock.force.x"),
-                                  Connection(source="rock.position.x", target="sand.rock.position.x")]
+    assert system.connections == [
+        Connection(source="sand.rock.force.x", target="rock.force.x"),
+        Connection(source="rock.position.x", target="sand.rock.position.x"),
+    ]
     assert system.master == "sequential"
     assert system.bonds["rock"].taker == "rock"
 
 
 def test_all_problems_of_form_are_told_at_once_with_the_path_of_the_key():
-    found = refused({"name": "x", "stop_time": float("nan"), "exchange_step": 1.0, "outputinterval": 1.0, "master": "gauss",
-                     "components": {"a": {"fmu": "a.fmu", "step": -1.0, "stp": 2.0}, "time": {"fmu": "t.fmu"}, "b": {}},
-                     "connections": ["a.x > b.y"]})
-    assert set(found) == {"stop_time", "outputinterval", "master", "components.a.step", "components.a.stp", "components.b.fmu",
-                          "components.time.[key]", "connections.0"}
+    found = refused(
+        {
+            "name": "x",
+            "stop_time": float("nan"),
+            "exchange_step": 1.0,
+            "outputinterval": 1.0,
+            "master": "gauss",
+            "components": {
+                "a": {"fmu": "a.fmu", "step": -1.0, "stp": 2.0},
+                "time": {"fmu": "t.fmu"},
+                "b": {},
+            },
+            "connections": ["a.x > b.y"],
+        }
+    )
+    assert set(found) == {
+        "stop_time",
+        "outputinterval",
+        "master",
+        "components.a.step",
+        "components.a.stp",
+        "components.b.fmu",
+        "components.time.[key]",
+        "connections.0",
+    }
     assert "did you mean output_interval" in found["outputinterval"]
     assert "did you mean step" in found["components.a.stp"]
     assert "greater than 0 (given: -1.0)" in found["components.a.step"]
@@ -73,7 +104,9 @@ def test_all_problems_of_form_are_told_at_once_with_the_path_of_the_key():
     assert "'a.x > b.y' is no connection" in found["connections.0"]
 
 
-@pytest.mark.parametrize(("text", "message"), [("name = ", "is not valid TOML"), (None, "cannot be read")])
+@pytest.mark.parametrize(
+    ("text", "message"), [("name = ", "is not valid TOML"), (None, "cannot be read")]
+)
 def test_a_file_that_is_no_toml(tmp_path, text, message):
     path = tmp_path / "s.toml"
     if text is not None:
@@ -111,7 +144,9 @@ def test_overrides_that_cannot_be_meant():
 
 
 def test_paths_stay_absolute(tmp_path):
-    (tmp_path / "s.toml").write_text('name="x"\nexchange_step=1.0\nstop_time=1.0\ncomponents.a.fmu="/opt/a.fmu"')
+    (tmp_path / "s.toml").write_text(
+        'name="x"\nexchange_step=1.0\nstop_time=1.0\ncomponents.a.fmu="/opt/a.fmu"'
+    )
     assert Path(load_system(tmp_path / "s.toml").components["a"].fmu) == Path("/opt/a.fmu")
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from rockshed import components
 from rockshed.components.catalogue import NAMES
 from rockshed.fmus.build import BuildError, Fmi, Runtime, build, build_component
@@ -27,7 +28,8 @@ def probe():
 def built(runtime, probe, folder, fmi=Fmi.TWO):
     """Files of the FMUs by name."""
     return {name: build(name, destination=folder, runtime=runtime, fmi=fmi) for name in NAMES} | {
-        "Probe": build_component(probe, destination=folder, runtime=runtime, fmi=fmi)}
+        "Probe": build_component(probe, destination=folder, runtime=runtime, fmi=fmi)
+    }
 
 
 @pytest.fixture(scope="session")
@@ -61,9 +63,17 @@ def fmus(python_fmus):
 @pytest.fixture(scope="session")
 def python():
     """Run a script in a process of its own; return what it printed. It must end by itself, without error."""
+
     def run(script, *arguments, timeout=120, **environment):
-        done = subprocess.run([sys.executable, "-c", script, *map(str, arguments)], cwd=ROOT, timeout=timeout, text=True,
-                              env=os.environ | {"PYTHONPATH": str(ROOT)} | environment, capture_output=True)
+        done = subprocess.run(
+            [sys.executable, "-c", script, *map(str, arguments)],
+            cwd=ROOT,
+            timeout=timeout,
+            text=True,
+            env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
+            capture_output=True,
+        )
         assert done.returncode == 0, f"{done.returncode}\n{done.stdout}\n{done.stderr}"
         return done.stdout
+
     return run

@@ -56,15 +56,24 @@ class Host:
         Host.last = self  # reached also when the instance cannot be made
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(
-            lambda env, name, status, category, text: self.messages.append((status, (category or b"").decode(), text.decode())))
+            lambda env, name, status, category, text: self.messages.append(
+                (status, (category or b"").decode(), text.decode())
+            )
+        )
         self._callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         self._callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        slave = FMU2Slave(guid=guid or self.description.guid, unzipDirectory=str(self.folder), instanceName=name,
-                          modelIdentifier=self.description.coSimulation.modelIdentifier)
+        slave = FMU2Slave(
+            guid=guid or self.description.guid,
+            unzipDirectory=str(self.folder),
+            instanceName=name,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+        )
         slave.instantiate(callbacks=self._callbacks, loggingOn=logging)
         self.fmu = Tolerant(slave)
         self.is_native = not self.description.coSimulation.needsExecutionTool
-        self.refusal = ERROR if self.is_native else DISCARD  # pythonfmu's binary cannot return an error
+        self.refusal = (
+            ERROR if self.is_native else DISCARD
+        )  # pythonfmu's binary cannot return an error
 
     def close(self, keep_folder=False):
         self.fmu.freeInstance()
@@ -100,7 +109,9 @@ class Host:
 
     def step(self, time, step):
         """Status of fmi2DoStep."""
-        return self.fmu.dll.fmi2DoStep(self.fmu.component, fmpy.fmi2.fmi2Real(time), fmpy.fmi2.fmi2Real(step), 1)
+        return self.fmu.dll.fmi2DoStep(
+            self.fmu.component, fmpy.fmi2.fmi2Real(time), fmpy.fmi2.fmi2Real(step), 1
+        )
 
     def steps(self, count, step, first=0):
         """Make steps that must succeed."""

@@ -25,9 +25,15 @@ class Host3:
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.messages = []
         Host3.last = self  # reached also when the instance cannot be made
-        slave = FMU3Slave(guid=token or self.description.guid, unzipDirectory=self.folder, instanceName=name,
-                          modelIdentifier=self.description.coSimulation.modelIdentifier)
-        slave.instantiate(loggingOn=logging, earlyReturnAllowed=early_return, logMessage=self._keep, **options)
+        slave = FMU3Slave(
+            guid=token or self.description.guid,
+            unzipDirectory=self.folder,
+            instanceName=name,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+        )
+        slave.instantiate(
+            loggingOn=logging, earlyReturnAllowed=early_return, logMessage=self._keep, **options
+        )
         self.fmu = Tolerant(slave)
 
     def _keep(self, _environment, status, category, text):
@@ -51,12 +57,18 @@ class Host3:
 
     def length(self, name):
         """Number of elements of a variable."""
-        return int(np.prod([int(dimension.start) for dimension in self.variables[name].dimensions], initial=1))
+        return int(
+            np.prod(
+                [int(dimension.start) for dimension in self.variables[name].dimensions], initial=1
+            )
+        )
 
     def array(self, name):
         """All elements of a variable."""
         variable = self.variables[name]
-        return getattr(self.fmu, f"get{CALLS[variable.type]}")([variable.valueReference], self.length(name))
+        return getattr(self.fmu, f"get{CALLS[variable.type]}")(
+            [variable.valueReference], self.length(name)
+        )
 
     def set_array(self, name, values):
         """Set all elements of a variable."""
@@ -92,7 +104,10 @@ class Host3:
             if name != "time":
                 values = self.array(name)
                 is_array = self.variables[name].dimensions
-                found |= {f"{name}[{i + 1}]" if is_array else name: value for i, value in enumerate(values)}
+                found |= {
+                    f"{name}[{i + 1}]" if is_array else name: value
+                    for i, value in enumerate(values)
+                }
         return found
 
     def errors(self):

@@ -9,30 +9,52 @@ import sys
 import zipfile
 
 import pytest
+
 from rockshed.components.catalogue import NAMES, component
 from rockshed.components.common.component import ComponentError
-from rockshed.fmus.build import BuildError, build, build_component, build_if_needed, file_name, fmu_files
+from rockshed.fmus.build import (
+    BuildError,
+    build,
+    build_component,
+    build_if_needed,
+    file_name,
+    fmu_files,
+)
 
 from .conftest import ROOT
 
-BUILD = "import sys, hashlib; from rockshed.fmus.build import build; print(hashlib.sha256(build(sys.argv[1], destination=sys.argv[2])" \
-        ".read_bytes()).hexdigest())"
+BUILD = (
+    "import sys, hashlib; from rockshed.fmus.build import build; print(hashlib.sha256(build(sys.argv[1], destination=sys.argv[2])"
+    ".read_bytes()).hexdigest())"
+)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_builds_are_equal_byte_for_byte_in_other_processes(fmus, python, tmp_path, name):
     expected = hashlib.sha256(fmus[name].read_bytes()).hexdigest()
     for seed in ("1", "2"):
-        assert python(BUILD, name, tmp_path / seed, PYTHONHASHSEED=seed, TZ="Asia/Tokyo").strip() == expected
+        assert (
+            python(BUILD, name, tmp_path / seed, PYTHONHASHSEED=seed, TZ="Asia/Tokyo").strip()
+            == expected
+        )
 
 
 def test_a_build_from_another_directory_is_equal(fmus, python, tmp_path):
     copy = tmp_path / "a copy"
     for folder, place in (("orchestrator", ""), ("components", "components"), ("fmus", "fmus")):
-        shutil.copytree(ROOT / folder, copy / "rockshed" / place, ignore=shutil.ignore_patterns("__pycache__", "dist"))
-    script = f"import sys; sys.path.insert(0, {str(copy)!r})\n" \
-             f"import rockshed; assert rockshed.__file__.startswith({str(copy)!r})\n" + BUILD
-    assert python(script, "FallingRock", tmp_path).strip() == hashlib.sha256(fmus["FallingRock"].read_bytes()).hexdigest()
+        shutil.copytree(
+            ROOT / folder,
+            copy / "rockshed" / place,
+            ignore=shutil.ignore_patterns("__pycache__", "dist"),
+        )
+    script = (
+        f"import sys; sys.path.insert(0, {str(copy)!r})\n"
+        f"import rockshed; assert rockshed.__file__.startswith({str(copy)!r})\n" + BUILD
+    )
+    assert (
+        python(script, "FallingRock", tmp_path).strip()
+        == hashlib.sha256(fmus["FallingRock"].read_bytes()).hexdigest()
+    )
 
 
 def test_an_fmu_that_is_as_it_should_be_is_left_alone_and_any_other_is_replaced(tmp_path):
@@ -55,14 +77,22 @@ def test_sizes_that_differ_are_part_of_the_file_name_and_not_of_the_model_name(p
 
 def test_guid_and_module_names_follow_the_content(probe, tmp_path):
     def parts(files):
-        script, = (path for path in files if path.startswith("resources/rockshed_") and path.count("/") == 1)
+        (script,) = (
+            path
+            for path in files
+            if path.startswith("resources/rockshed_") and path.count("/") == 1
+        )
         library = next(path.split("/")[1] for path in files if path.endswith("/isolation.py"))
         return files["modelDescription.xml"].split(b'guid="')[1][:38], script, library
 
     copy = tmp_path / "probe"
     shutil.copytree(probe.folder, copy)
     guid, script, library = parts(fmu_files(probe, {"tanks": 3}))
-    assert parts(fmu_files(dataclasses.replace(probe, folder=copy), {"tanks": 3})) == (guid, script, library)
+    assert parts(fmu_files(dataclasses.replace(probe, folder=copy), {"tanks": 3})) == (
+        guid,
+        script,
+        library,
+    )
     other_size = parts(fmu_files(probe, {"tanks": 4}))
     assert other_size[2] == library  # the same code: compiled once for all sizes
     (copy / "README.md").write_text("# Changed\n")
@@ -81,8 +111,10 @@ def test_documentation_has_the_readme_and_all_variables_and_sizes(fmus):
     assert "<h1>Probe</h1>" in page
     assert "<td>y &amp; z</td>" in page  # a table of the README
     assert "<title>Probe: leaky tanks &lt;in a row&gt; &amp; a counter</title>" in page
-    assert ("<tr><td>limit</td><td>parameter</td><td>m</td><td>10</td><td>≥ 0.1, ≤ 100</td>"
-            "<td>highest level allowed, 100 % full</td><td>made up</td></tr>") in page
+    assert (
+        "<tr><td>limit</td><td>parameter</td><td>m</td><td>10</td><td>≥ 0.1, ≤ 100</td>"
+        "<td>highest level allowed, 100 % full</td><td>made up</td></tr>"
+    ) in page
     assert "<td>level0[1..3]</td><td>parameter</td><td>m</td><td>0 ... 0.666666667</td>" in page
     assert "<td>linear</td><td>none, linear</td>" in page
     assert "<tr><td>tanks</td><td>3</td><td>number of tanks</td></tr>" in page
@@ -90,7 +122,9 @@ def test_documentation_has_the_readme_and_all_variables_and_sizes(fmus):
 
 def test_the_license_of_pythonfmu_accompanies_its_files(fmus):
     with zipfile.ZipFile(fmus["Probe"]) as archive:
-        assert b"Permission is hereby granted" in archive.read("documentation/licenses/pythonfmu.txt")
+        assert b"Permission is hereby granted" in archive.read(
+            "documentation/licenses/pythonfmu.txt"
+        )
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -102,10 +136,15 @@ def test_the_icon_is_a_small_picture(fmus, name):
 
 
 def test_two_builds_at_once_leave_one_whole_file(fmus, tmp_path):
-    builds = [subprocess.Popen([sys.executable, "-c", BUILD, "FallingRock", str(tmp_path)], cwd=ROOT) for _ in range(2)]
+    builds = [
+        subprocess.Popen([sys.executable, "-c", BUILD, "FallingRock", str(tmp_path)], cwd=ROOT)
+        for _ in range(2)
+    ]
     assert [process.wait(120) for process in builds] == [0, 0]
     assert (tmp_path / "FallingRock.fmu").read_bytes() == fmus["FallingRock"].read_bytes()
-    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(".lock")] == ["FallingRock.fmu"]
+    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(".lock")] == [
+        "FallingRock.fmu"
+    ]
 
 
 def test_nothing_half_written_is_left_when_a_build_is_interrupted(monkeypatch, tmp_path):
@@ -118,7 +157,9 @@ def test_nothing_half_written_is_left_when_a_build_is_interrupted(monkeypatch, t
     with pytest.raises(KeyboardInterrupt):
         build("FallingRock", destination=tmp_path)
     assert file.read_bytes() == before
-    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(".lock")] == ["FallingRock.fmu"]
+    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(".lock")] == [
+        "FallingRock.fmu"
+    ]
 
 
 def test_a_folder_that_cannot_be_written_is_refused_with_a_remedy(monkeypatch, tmp_path):
@@ -135,8 +176,14 @@ def test_the_environment_variable_moves_the_folder(monkeypatch, tmp_path):
     assert build("FallingRock") == tmp_path / "elsewhere" / "python" / "FallingRock.fmu"
 
 
-@pytest.mark.parametrize(("sizes", "reason"), [
-    ({"tanks": 0}, "tanks = 0: allowed is 1 to 50"), ({"tanks": 51}, "tanks = 51"), ({"discs": 3}, "has no size 'discs'")])
+@pytest.mark.parametrize(
+    ("sizes", "reason"),
+    [
+        ({"tanks": 0}, "tanks = 0: allowed is 1 to 50"),
+        ({"tanks": 51}, "tanks = 51"),
+        ({"discs": 3}, "has no size 'discs'"),
+    ],
+)
 def test_sizes_out_of_range_and_unknown_ones_are_refused(probe, tmp_path, sizes, reason):
     with pytest.raises(ComponentError, match=reason):
         build_component(probe, sizes, tmp_path)

@@ -4,6 +4,7 @@ import zipfile
 
 import pytest
 from lxml import etree
+
 from rockshed.fmus.description.fmi3 import TERMINALS
 
 from .host import Host
@@ -18,7 +19,9 @@ STEP, STEPS = SYSTEM["STEP"], 40
 def terminal(file, name):
     """Variables of a terminal by member."""
     with zipfile.ZipFile(file) as archive:
-        found, = etree.fromstring(archive.read(TERMINALS)).xpath("//Terminal[@name=$name]", name=name)
+        (found,) = etree.fromstring(archive.read(TERMINALS)).xpath(
+            "//Terminal[@name=$name]", name=name
+        )
     return {member.get("memberName"): member.get("variableName") for member in found}
 
 
@@ -28,7 +31,9 @@ def connections(hosts, files):
         ends = [(key, terminal(files[MODELS[key]], name)) for key, name in (one, other)]
         for member in ends[0][1]:
             pair = [(key, its[member]) for key, its in ends]
-            yield sorted(pair, key=lambda port: hosts[port[0]].variables[port[1]].causality == "input")
+            yield sorted(
+                pair, key=lambda port: hosts[port[0]].variables[port[1]].causality == "input"
+            )
 
 
 def run(hosts, transfer):

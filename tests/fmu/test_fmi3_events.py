@@ -7,7 +7,13 @@ from fmpy import simulate_fmu
 
 from .host3 import Host3
 
-BOX = {"receiver.present": True, "receiver.left": 60.0, "receiver.right": 62.0, "receiver.bottom": -100.0, "receiver.top": 200.0}
+BOX = {
+    "receiver.present": True,
+    "receiver.left": 60.0,
+    "receiver.right": 62.0,
+    "receiver.bottom": -100.0,
+    "receiver.top": 200.0,
+}
 STEP, STEPS = 0.5, 30
 PICOSECOND = 1e-12
 
@@ -37,7 +43,10 @@ def walk(host, on_event=lambda _: None, steps=STEPS, start=0.0):
 def descent(fmi3_fmus):
     """Rows without early return, rows and stops with it, and what is seen at each stop."""
     seen = []
-    with Host3(fmi3_fmus["SlopeRockfall"]) as plain, Host3(fmi3_fmus["SlopeRockfall"], early_return=True) as stopping:
+    with (
+        Host3(fmi3_fmus["SlopeRockfall"]) as plain,
+        Host3(fmi3_fmus["SlopeRockfall"], early_return=True) as stopping,
+    ):
         rows, none = walk(plain.start(**BOX))
         assert none == []
         stopped_rows, stops = walk(stopping.start(**BOX), lambda host: seen.append(host.outputs()))
@@ -63,18 +72,26 @@ def test_every_impact_is_met(descent):
 def test_every_stop_changes_the_motion_or_the_ground(descent):
     _, _, _, seen = descent
     for before, after in pairwise(seen):
-        assert any(after[name] != before[name] for name in ("impacts", "mode", "cell", "handovers")), (before, after)
+        assert any(
+            after[name] != before[name] for name in ("impacts", "mode", "cell", "handovers")
+        ), (before, after)
 
 
 def test_a_stop_is_where_the_component_said_and_has_the_event_behind_it(descent):
     _, _, stops, seen = descent
     assert all(outputs["next_event.time"] > stop for stop, outputs in zip(stops, seen))
-    assert all(outputs["next_event.time"] >= following for following, outputs in zip(stops[1:], seen))
+    assert all(
+        outputs["next_event.time"] >= following for following, outputs in zip(stops[1:], seen)
+    )
 
 
 def test_the_hand_over_is_met_at_its_time(descent):
     _, _, stops, seen = descent
-    stop, = [stop for stop, before, after in zip(stops[1:], seen, seen[1:]) if after["received"] and not before["received"]]
+    (stop,) = [
+        stop
+        for stop, before, after in zip(stops[1:], seen, seen[1:])
+        if after["received"] and not before["received"]
+    ]
     after = seen[stops.index(stop)]
     assert 0.0 <= stop - after["handover.time"] <= 1.01 * PICOSECOND
     assert after["position.x"] == pytest.approx(60.0, abs=1e-9)
@@ -88,7 +105,9 @@ def test_another_start_time_shifts_the_stops(fmi3_fmus, descent):
     assert stops == pytest.approx([64.0 + stop for stop in expected], abs=0.1 * PICOSECOND)
 
 
-def test_there_is_no_early_return_under_a_force_of_which_the_component_does_not_know_how_long_it_acts(fmi3_fmus):
+def test_there_is_no_early_return_under_a_force_of_which_the_component_does_not_know_how_long_it_acts(
+    fmi3_fmus,
+):
     def push(host):
         if host["received"]:
             host["force.x"] = -10.0
@@ -104,7 +123,9 @@ def test_there_is_no_early_return_under_a_force_of_which_the_component_does_not_
                     time = host.told[3]
                 received = time if host["received"] else None
         host["force.x"] = -10.0
-        assert host["next_event.time"] < received + 0.5  # it would leave the receiver, if no force acted
+        assert (
+            host["next_event.time"] < received + 0.5
+        )  # it would leave the receiver, if no force acted
         assert host.step(received, 0.01) == 0
         assert host.told == (False, False, False, received + 0.01)
 
@@ -116,9 +137,17 @@ def test_other_components_never_return_early(fmi3_fmus):
 
 
 def test_fmpy_records_the_events(fmi3_fmus):
-    options = {"stop_time": 5.0, "step_size": 1.0, "output_interval": 1.0, "output": ["position.x", "position.y"]}
+    options = {
+        "stop_time": 5.0,
+        "step_size": 1.0,
+        "output_interval": 1.0,
+        "output": ["position.x", "position.y"],
+    }
     file = str(fmi3_fmus["SlopeRockfall"])
-    plain, stopping = simulate_fmu(file, **options), simulate_fmu(file, early_return_allowed=True, **options)
+    plain, stopping = (
+        simulate_fmu(file, **options),
+        simulate_fmu(file, early_return_allowed=True, **options),
+    )
     assert len(stopping) > len(plain) == 6
     at = dict(zip(stopping["time"], stopping[["position.x", "position.y"]].tolist()))
     assert [at[time] for time in plain["time"]] == plain[["position.x", "position.y"]].tolist()

@@ -4,6 +4,7 @@ import timeit
 
 import numpy as np
 import pytest
+
 from rockshed.components.catalogue import NAMES, component
 from rockshed.core.fmu.fmu_slave import FmuFile, read_description
 from rockshed.fmus.in_process import InProcess, slave_class
@@ -18,7 +19,11 @@ def test_description_values_and_state_are_those_of_the_fmu(fmus, name):
     results = []
     for source in sources:
         slave, values = source.instantiate("one"), np.zeros(references.size)
-        assert [slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation()] == [0, 0, 0]
+        assert [
+            slave.setup_experiment(0.0, 1.0),
+            slave.enter_initialisation(),
+            slave.exit_initialisation(),
+        ] == [0, 0, 0]
         assert [slave.step(i * 1e-5, 1e-5) for i in range(5)] == [0] * 5
         assert slave.get(references, values) == 0
         results.append((values.tolist(), slave.state(), slave.messages))
@@ -32,13 +37,19 @@ def test_description_values_and_state_are_those_of_the_fmu(fmus, name):
 def tank(probe):
     source = InProcess(probe, {"tanks": 4})
     slave = source.instantiate("tank")
-    slave.references = {name: np.array([port.reference], np.uint32)
-                        for name, port in read_description(source.model_description()).ports.items()}
+    slave.references = {
+        name: np.array([port.reference], np.uint32)
+        for name, port in read_description(source.model_description()).ports.items()
+    }
     return slave
 
 
 def test_types_are_converted(tank):
-    for name, value, kind in (("leak", 1.0, "Integer"), ("counting", 0.0, "Boolean"), ("first_count", 5.0, "Integer")):
+    for name, value, kind in (
+        ("leak", 1.0, "Integer"),
+        ("counting", 0.0, "Boolean"),
+        ("first_count", 5.0, "Integer"),
+    ):
         out = np.zeros(1)
         assert tank.set(tank.references[name], np.array([value]), kind) == 0
         assert tank.get(tank.references[name], out, kind) == 0
@@ -46,7 +57,11 @@ def test_types_are_converted(tank):
 
 
 def test_what_is_wrong_is_the_status_of_the_call_itself(tank):
-    assert [tank.setup_experiment(0.0, 1.0), tank.enter_initialisation(), tank.exit_initialisation()] == [0, 0, 0]
+    assert [
+        tank.setup_experiment(0.0, 1.0),
+        tank.enter_initialisation(),
+        tank.exit_initialisation(),
+    ] == [0, 0, 0]
     assert tank.set(tank.references["inflow"], np.array([np.nan])) == 3
     assert tank.step(0.0, 0.1) == 2
     assert "inflow = nan" in tank.messages[0][1]
@@ -88,5 +103,7 @@ def test_references_in_any_order_are_nearly_as_fast_as_a_block(probe):
     times = {True: [], False: []}
     for _ in range(20):
         for ordered, references in ((True, block), (False, scattered)):
-            times[ordered].append(timeit.timeit(lambda references=references: exchange(references), number=50))
+            times[ordered].append(
+                timeit.timeit(lambda references=references: exchange(references), number=50)
+            )
     assert min(times[False]) < 10 * min(times[True])

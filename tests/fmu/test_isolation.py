@@ -7,6 +7,7 @@ import shutil
 import zipfile
 
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.fmus.build import build_component
 from rockshed.fmus.python.isolation import require_libraries
@@ -73,6 +74,7 @@ print(json.dumps(results))
 @pytest.fixture(scope="session")
 def foreign(tmp_path_factory):
     """Function that builds a foreign FMU with pythonfmu's builder: it ships modules whose names others use too."""
+
     def make(python, imports=""):
         source = tmp_path_factory.mktemp("source")
         (source / "foreign.py").write_text(FOREIGN.format(imports=imports))
@@ -84,6 +86,7 @@ def foreign(tmp_path_factory):
             (source / f"{name}.py").write_text("njit = ndarray = 'not the real one'\n")
         file = python(BUILD_FOREIGN, source, tmp_path_factory.mktemp("foreign")).strip()
         return with_another_pythonfmu(file)
+
     return make
 
 
@@ -92,7 +95,12 @@ def with_another_pythonfmu(file):
     changed = file.replace("Foreign.fmu", "changed-Foreign.fmu")
     with zipfile.ZipFile(file) as old, zipfile.ZipFile(changed, "w") as new:
         for path in old.namelist():
-            new.writestr(path, old.read(path).replace(b"self.log_queue.append(log_msg)", b"raise RuntimeError('the other one')"))
+            new.writestr(
+                path,
+                old.read(path).replace(
+                    b"self.log_queue.append(log_msg)", b"raise RuntimeError('the other one')"
+                ),
+            )
     return changed
 
 
@@ -104,18 +112,26 @@ def heavier_rock(tmp_path_factory):
     shutil.copytree(rock.folder, folder)
     kernel = folder / "kernel.py"
     kernel.write_text(kernel.read_text().replace("- gravity)", "- 2.0 * gravity)"))
-    return build_component(dataclasses.replace(rock, folder=folder), destination=tmp_path_factory.mktemp("other"))
+    return build_component(
+        dataclasses.replace(rock, folder=folder), destination=tmp_path_factory.mktemp("other")
+    )
 
 
 @pytest.mark.slow
-def test_ours_and_a_foreign_fmu_with_modules_of_any_name_give_what_they_give_alone(fmus, python, foreign, heavier_rock):
+def test_ours_and_a_foreign_fmu_with_modules_of_any_name_give_what_they_give_alone(
+    fmus, python, foreign, heavier_rock
+):
     other, rock, probe, heavier = foreign(python), fmus["FallingRock"], fmus["Probe"], heavier_rock
     alone = {}
     for file in (other, rock, probe, heavier):
         alone |= json.loads(python(RUN, file))
     assert float.fromhex(alone[other]["y"]) == pytest.approx(0.2 * 3.0 * 2.0)
     assert alone[str(rock)]["velocity.y"] != alone[str(heavier)]["velocity.y"]
-    for order in ((other, rock, probe, heavier), (heavier, rock, probe, other), (rock, other, heavier, probe)):
+    for order in (
+        (other, rock, probe, heavier),
+        (heavier, rock, probe, other),
+        (rock, other, heavier, probe),
+    ):
         assert json.loads(python(RUN, *order)) == alone
 
 
@@ -137,7 +153,9 @@ foreign.close()
 
 
 def test_a_foreign_module_in_the_place_of_a_library_is_told(fmus, python, foreign, tmp_path):
-    text = python(IMPOSTER, foreign(python, "import numba"), fmus["FallingRock"], tmp_path / "unpacked")
+    text = python(
+        IMPOSTER, foreign(python, "import numba"), fmus["FallingRock"], tmp_path / "unpacked"
+    )
     assert "another FMU has loaded a module of its own under this name" in text
     assert "Remedy: instantiate FallingRock first, or in a process of its own" in text
 
@@ -165,7 +183,9 @@ def test_a_missing_library_is_told_and_can_be_mended(fmus, python):
 
 def test_an_old_python_is_told(monkeypatch):
     monkeypatch.setattr("sys.version_info", (3, 9, 1))
-    with pytest.raises(ImportError, match=r"FallingRock needs Python 3\.11 or later; this process runs 3\."):
+    with pytest.raises(
+        ImportError, match=r"FallingRock needs Python 3\.11 or later; this process runs 3\."
+    ):
         require_libraries("FallingRock")
 
 

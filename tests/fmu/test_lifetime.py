@@ -100,7 +100,9 @@ host.close()
 """
 
 
-def test_a_second_process_finds_the_compiled_kernels_though_the_fmu_is_unpacked_elsewhere(fmus, python, tmp_path):
+def test_a_second_process_finds_the_compiled_kernels_though_the_fmu_is_unpacked_elsewhere(
+    fmus, python, tmp_path
+):
     def run():
         return python(CACHE, fmus["FallingRock"], ROCKSHED_CACHE_DIR=str(tmp_path)).split()
 
@@ -111,4 +113,6 @@ def test_a_second_process_finds_the_compiled_kernels_though_the_fmu_is_unpacked_
 
 
 def test_without_a_folder_for_the_cache_it_runs_all_the_same(fmus, python):
-    assert python(CACHE, fmus["FallingRock"], ROCKSHED_CACHE_DIR="/dev/null/nowhere").split()[0] == "0"
+    assert (
+        python(CACHE, fmus["FallingRock"], ROCKSHED_CACHE_DIR="/dev/null/nowhere").split()[0] == "0"
+    )

@@ -25,8 +25,15 @@ def test_a_wrong_guid_is_accepted(fmus):
 
 
 def test_the_wrong_fmu_type_is_accepted(tank):
-    other = tank.fmu.dll.fmi2Instantiate(b"other", fmi2ModelExchange, b"", (tank.folder / "resources").as_uri().encode(),
-                                         ctypes.byref(tank._callbacks), 0, 0)
+    other = tank.fmu.dll.fmi2Instantiate(
+        b"other",
+        fmi2ModelExchange,
+        b"",
+        (tank.folder / "resources").as_uri().encode(),
+        ctypes.byref(tank._callbacks),
+        0,
+        0,
+    )
     assert other
     tank.fmu.dll.fmi2FreeInstance(ctypes.c_void_p(other))
 
@@ -35,8 +42,12 @@ def test_a_refused_call_returns_ok_and_the_next_step_tells(tank):
     references = (ctypes.c_uint * 1)(999)
     values = (ctypes.c_double * 1)(1.0)
     tank.start()
-    assert tank.fmu.dll.fmi2SetReal(tank.fmu.component, references, ctypes.c_size_t(1), values) == OK
-    assert tank.fmu.dll.fmi2GetReal(tank.fmu.component, references, ctypes.c_size_t(1), values) == OK
+    assert (
+        tank.fmu.dll.fmi2SetReal(tank.fmu.component, references, ctypes.c_size_t(1), values) == OK
+    )
+    assert (
+        tank.fmu.dll.fmi2GetReal(tank.fmu.component, references, ctypes.c_size_t(1), values) == OK
+    )
     assert tank.fmu.dll.fmi2EnterInitializationMode(tank.fmu.component) == OK
     assert len(tank.errors()) == 3
     assert tank.step(0.0, 0.1) == DISCARD
@@ -64,14 +75,20 @@ def test_selecting_all_messages_by_category_selects_none(tank):
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at the end of a crashed process")
 def test_a_path_with_a_special_character_ends_the_process(fmus, tmp_path):
     script = "import sys; from tests.fmu.host import Host; Host(sys.argv[1], folder=sys.argv[2])"
-    done = subprocess.run([sys.executable, "-c", script, fmus["Probe"], tmp_path / "ü"], cwd=ROOT, capture_output=True, timeout=60,
-                          env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", script, fmus["Probe"], tmp_path / "ü"],
+        cwd=ROOT,
+        capture_output=True,
+        timeout=60,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=False,
+    )
     assert done.returncode < 0
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at a shared object")
 def test_a_host_without_python_cannot_load_the_binary(tank):
-    library, = (tank.folder / "binaries" / "linux64").glob("*.so")
+    (library,) = (tank.folder / "binaries" / "linux64").glob("*.so")
     content = library.read_bytes()
     assert b"_Py_NoneStruct" in content  # needed from the host
     assert not re.search(rb"libpython[0-9]", content)  # and not brought along

@@ -10,6 +10,7 @@ import pytest
 from fmpy import read_model_description
 from fmpy.fmi2 import fmi2ModelExchange
 from fmpy.validation import validate_fmu
+
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
 from rockshed.components.catalogue import NAMES
@@ -21,9 +22,16 @@ from rockshed.fmus.native.fmu import compiler
 from .conftest import HERE
 from .host import ERROR, OK, Host
 
-DRIVE = {"RBSMBeam": ("force.y[2]", -1e3), "FallingRock": ("force.x", 3.0), "SandCushion": ("rock.velocity.y", -1.0),
-         "Probe": ("inflow", 0.5), "SlopeRockfall": ("force.x", 0.0), "Hammer": ("head.wave", 1e3), "PileRod": ("head.force", 1e4),
-         "ImpulsiveGround": ("force.y", -5e3)}
+DRIVE = {
+    "RBSMBeam": ("force.y[2]", -1e3),
+    "FallingRock": ("force.x", 3.0),
+    "SandCushion": ("rock.velocity.y", -1.0),
+    "Probe": ("inflow", 0.5),
+    "SlopeRockfall": ("force.x", 0.0),
+    "Hammer": ("head.wave", 1e3),
+    "PileRod": ("head.force", 1e4),
+    "ImpulsiveGround": ("force.y", -5e3),
+}
 """An input of each component, and a value that makes it move."""
 STEPS = 20
 
@@ -46,7 +54,10 @@ def test_the_description_differs_in_guid_tool_and_the_need_of_one(python_fmus, n
     different = [(one, other) for one, other in pairs if one != other]
     assert len(different) == 2
     assert all("guid=" in line and "generationTool=" in line for line in different[0])
-    assert different[1][0].replace('needsExecutionTool="true"', 'needsExecutionTool="false"') == different[1][1]
+    assert (
+        different[1][0].replace('needsExecutionTool="true"', 'needsExecutionTool="false"')
+        == different[1][1]
+    )
 
 
 @pytest.mark.parametrize("name", [*NAMES, "Probe"])
@@ -65,8 +76,18 @@ def test_threads_change_no_bit(native_fmus, tmp_path):
     file, outputs = build("SandCushion", {"discs": 2 * PART}, tmp_path, Runtime.NATIVE), []
     for threads in (1, 2):
         with Host(file) as host:
-            host.start(**{"box.width": 2.0, "box.left": 0.0, "base": 1, "lattice_shift": 0.02, "settling.time": 1e-3,
-                          "rock.position.x": 1.0, "rock.position.y": 50.0, "threads": threads}).steps(10, 1e-4)
+            host.start(
+                **{
+                    "box.width": 2.0,
+                    "box.left": 0.0,
+                    "base": 1,
+                    "lattice_shift": 0.02,
+                    "settling.time": 1e-3,
+                    "rock.position.x": 1.0,
+                    "rock.position.y": 50.0,
+                    "threads": threads,
+                }
+            ).steps(10, 1e-4)
             outputs.append(host.outputs())
     assert outputs[0]["energy.sliding"] > 0.0
     assert outputs[0].pop("threads") != outputs[1].pop("threads")
@@ -87,13 +108,24 @@ def test_a_state_goes_from_one_runtime_to_the_other(python_fmus, native_fmus):
 @pytest.fixture(scope="module")
 def impacts(native_fmus, tmp_path_factory):
     """The first 10 ms of the laboratory impact by runtime, exchange every 0.01 ms."""
+
     def run(runtime):
         names = {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}
-        files = {key: str(build_if_needed(name, destination=tmp_path_factory.getbasetemp() / runtime, runtime=runtime))
-                 for key, name in names.items()}
+        files = {
+            key: str(
+                build_if_needed(
+                    name, destination=tmp_path_factory.getbasetemp() / runtime, runtime=runtime
+                )
+            )
+            for key, name in names.items()
+        }
         system = lab_system(files, laboratory_tests()[4], "paper")
-        return simulate(system.model_copy(update={"stop_time": 0.01, "output_interval": None, "state_interval": 1e-3}),
-                        tmp_path_factory.mktemp(runtime) / "run")
+        return simulate(
+            system.model_copy(
+                update={"stop_time": 0.01, "output_interval": None, "state_interval": 1e-3}
+            ),
+            tmp_path_factory.mktemp(runtime) / "run",
+        )
 
     return run(Runtime.PYTHON), run(Runtime.NATIVE)
 
@@ -120,10 +152,21 @@ def test_a_wrong_guid_and_the_wrong_type_are_refused_with_both_guids(native_fmus
     with Host(native_fmus["Probe"]) as host:
         with pytest.raises(Exception, match="Failed to instantiate"):
             Host(native_fmus["Probe"], guid="{00000000-0000-0000-0000-000000000000}", logging=False)
-        text, = Host.last.errors()
-        assert "the GUID is {00000000-0000-0000-0000-000000000000}, and this FMU has " + host.description.guid in text
-        assert not host.fmu.dll.fmi2Instantiate(b"other", fmi2ModelExchange, host.description.guid.encode(), b"",
-                                                ctypes.byref(host._callbacks), 0, 0)
+        (text,) = Host.last.errors()
+        assert (
+            "the GUID is {00000000-0000-0000-0000-000000000000}, and this FMU has "
+            + host.description.guid
+            in text
+        )
+        assert not host.fmu.dll.fmi2Instantiate(
+            b"other",
+            fmi2ModelExchange,
+            host.description.guid.encode(),
+            b"",
+            ctypes.byref(host._callbacks),
+            0,
+            0,
+        )
         assert "model exchange is asked for" in host.errors()[0]
 
 
@@ -141,7 +184,7 @@ def test_more_reasons_than_a_message_can_hold_are_cut(native_fmus):
         host.start()
         inputs = [v.valueReference for v in host.variables.values() if v.causality == "input"]
         host.fmu.setReal(inputs * 2, [float("nan")] * 2 * len(inputs))
-        text, = host.errors()
+        (text,) = host.errors()
         assert "rock.position.x = nan" in text
         assert text.endswith(" ...")
 
@@ -159,7 +202,10 @@ def test_a_wrong_parameter_fails_the_end_of_the_initialization_mode(native_fmus)
 def test_a_state_that_is_none_is_refused(native_fmus):
     with Host(native_fmus["Probe"]) as host:
         host.start()
-        for state in (ctypes.c_void_p(), ctypes.cast(ctypes.create_string_buffer(64), ctypes.c_void_p)):
+        for state in (
+            ctypes.c_void_p(),
+            ctypes.cast(ctypes.create_string_buffer(64), ctypes.c_void_p),
+        ):
             host.fmu.setFMUstate(state)
             assert host.fmu.status == ERROR
             host.fmu.reset()
@@ -184,9 +230,20 @@ def test_what_it_cannot_do_is_refused_with_a_word(native_fmus):
         component, one = host.fmu.component, ctypes.c_size_t(1)
         references, values = (ctypes.c_uint * 1)(0), (ctypes.c_double * 1)(0.0)
         orders = (ctypes.c_int * 1)(1)
-        assert host.fmu.dll.fmi2SetRealInputDerivatives(component, references, one, orders, values) == ERROR
-        assert host.fmu.dll.fmi2GetRealOutputDerivatives(component, references, one, orders, values) == ERROR
-        assert host.fmu.dll.fmi2GetDirectionalDerivative(component, references, one, references, one, values, values) == ERROR
+        assert (
+            host.fmu.dll.fmi2SetRealInputDerivatives(component, references, one, orders, values)
+            == ERROR
+        )
+        assert (
+            host.fmu.dll.fmi2GetRealOutputDerivatives(component, references, one, orders, values)
+            == ERROR
+        )
+        assert (
+            host.fmu.dll.fmi2GetDirectionalDerivative(
+                component, references, one, references, one, values, values
+            )
+            == ERROR
+        )
         assert host.fmu.dll.fmi2CancelStep(component) == ERROR
         assert len(host.errors()) == 4
 
@@ -198,13 +255,19 @@ def test_what_it_cannot_do_is_refused_with_a_word(native_fmus):
 def c_host(tmp_path_factory):
     """A program in C that runs an FMU's library."""
     program = tmp_path_factory.mktemp("host") / "host"
-    subprocess.run([*compiler("linux64"), "-o", str(program), str(HERE / "host.c"), "-ldl"], check=True, capture_output=True)
+    subprocess.run(
+        [*compiler("linux64"), "-o", str(program), str(HERE / "host.c"), "-ldl"],
+        check=True,
+        capture_output=True,
+    )
     return program
 
 
 @linux
 @pytest.mark.parametrize("name", [*NAMES, "Probe"])
-def test_a_c_program_without_python_gets_the_same_bits(python_fmus, native_fmus, c_host, tmp_path, name):
+def test_a_c_program_without_python_gets_the_same_bits(
+    python_fmus, native_fmus, c_host, tmp_path, name
+):
     port, value = DRIVE[name]
     with Host(python_fmus[name]) as host:
         step = float(host.description.defaultExperiment.stepSize)
@@ -216,7 +279,13 @@ def test_a_c_program_without_python_gets_the_same_bits(python_fmus, native_fmus,
     guid = read_model_description(str(native_fmus[name])).guid
     with zipfile.ZipFile(native_fmus[name]) as archive:
         library = archive.extract(f"binaries/linux64/{name}.so", tmp_path)
-    done = subprocess.run([c_host, library, guid, repr(step), str(STEPS), input_reference, repr(value), *references], env={},
-                          capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        [c_host, library, guid, repr(step), str(STEPS), input_reference, repr(value), *references],
+        env={},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert [float.fromhex(line) for line in done.stdout.split()] == expected

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import read_model_description
+
 from rockshed import fmus as package
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
@@ -22,7 +23,7 @@ BLOCKS = re.findall(r"^```python\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 
 def block(word):
     """The one piece of the README's code in which a word occurs."""
-    code, = (code for code in BLOCKS if word in code)
+    (code,) = (code for code in BLOCKS if word in code)
     return code
 
 
@@ -34,6 +35,7 @@ STEP, STEPS = SYSTEM["STEP"], SYSTEM["STEPS"]
 
 def needs(*packages):
     """Mark of a test that needs other tools' packages."""
+
     def is_missing(name):
         try:
             distribution(name)
@@ -42,7 +44,9 @@ def needs(*packages):
         return False
 
     missing = [name for name in packages if is_missing(name)]
-    return lambda test: pytest.mark.peers(pytest.mark.skipif(bool(missing), reason=f"not installed: {', '.join(missing)}")(test))
+    return lambda test: pytest.mark.peers(
+        pytest.mark.skipif(bool(missing), reason=f"not installed: {', '.join(missing)}")(test)
+    )
 
 
 @pytest.fixture(scope="session")
@@ -54,20 +58,32 @@ def folder(fmus):
 @pytest.fixture(scope="session")
 def outputs(folder):
     """All outputs of the three FMUs."""
-    return [(name, variable.name) for name, file in SYSTEM["FMUS"].items()
-            for variable in read_model_description(folder / file).modelVariables if variable.causality == "output"]
+    return [
+        (name, variable.name)
+        for name, file in SYSTEM["FMUS"].items()
+        for variable in read_model_description(folder / file).modelVariables
+        if variable.causality == "output"
+    ]
 
 
 @pytest.fixture
 def run(python, folder, outputs, tmp_path):
     """Run a piece of the README's code after its common one; return the series of all outputs, not only of those it watches."""
+
     def series(code):
         result = tmp_path / "series.json"
-        script = "\n".join([
-            f"import os; os.chdir({str(folder)!r})", COMMON, f"WATCH = {outputs!r}", code,
-            f"import json; json.dump([list(series[port]) for port in WATCH], open({str(result)!r}, 'w'))"])
+        script = "\n".join(
+            [
+                f"import os; os.chdir({str(folder)!r})",
+                COMMON,
+                f"WATCH = {outputs!r}",
+                code,
+                f"import json; json.dump([list(series[port]) for port in WATCH], open({str(result)!r}, 'w'))",
+            ]
+        )
         python(script, timeout=100, TMPDIR=str(tmp_path))
         return dict(zip(outputs, np.array(json.loads(result.read_text()))))
+
     return series
 
 
@@ -76,10 +92,22 @@ def ours(folder, outputs, tmp_path_factory):
     """Our own Jacobi run: the laboratory with the README's start values."""
     files = {name: str(folder / file) for name, file in SYSTEM["FMUS"].items()}
     laboratory = lab_system(files, laboratory_tests()[4], "jacobi")
-    start = {name: {port: value for (owner, port), value in SYSTEM["START"].items() if owner == name} for name in files}
-    system = laboratory.model_copy(update={
-        "components": {name: spec.model_copy(update={"parameters": start[name]}) for name, spec in laboratory.components.items()},
-        "shared": {}, "exchange_step": STEP, "stop_time": STEP * STEPS, "output_interval": STEP})
+    start = {
+        name: {port: value for (owner, port), value in SYSTEM["START"].items() if owner == name}
+        for name in files
+    }
+    system = laboratory.model_copy(
+        update={
+            "components": {
+                name: spec.model_copy(update={"parameters": start[name]})
+                for name, spec in laboratory.components.items()
+            },
+            "shared": {},
+            "exchange_step": STEP,
+            "stop_time": STEP * STEPS,
+            "output_interval": STEP,
+        }
+    )
     result = simulate(system, tmp_path_factory.mktemp("ours") / "run", plain=True).series
     return {port: result[".".join(port)] for port in outputs}
 
@@ -120,8 +148,10 @@ def alone(folder, python, tmp_path_factory):
     """What the README's code for single FMUs computes, by name."""
     temporary = tmp_path_factory.mktemp("alone")
     file = temporary / "results.npz"
-    python(f"import os; os.chdir({str(folder)!r})\n{block('import simulate_fmu')}\nnp.savez({str(file)!r}, fall=fall, press=press)",
-           TMPDIR=str(temporary))
+    python(
+        f"import os; os.chdir({str(folder)!r})\n{block('import simulate_fmu')}\nnp.savez({str(file)!r}, fall=fall, press=press)",
+        TMPDIR=str(temporary),
+    )
     return np.load(file)
 
 
@@ -130,23 +160,35 @@ def test_simulate_fmu_runs_the_rock_alone(alone):
     t, dt, g = alone["fall"]["time"], 1e-5, ROCK.instance()["gravity"]
     assert t.size == 101
     assert alone["fall"]["velocity.y"] == pytest.approx(-8.0 - g * t, rel=1e-11)
-    assert alone["fall"]["position.y"] == pytest.approx(10.0 - 8.0 * t - 0.5 * g * t * (t + dt), rel=1e-12)
+    assert alone["fall"]["position.y"] == pytest.approx(
+        10.0 - 8.0 * t - 0.5 * g * t * (t + dt), rel=1e-12
+    )
 
 
 def test_the_readmes_first_lines_for_fmpy_print_why_a_value_is_refused(folder, python, tmp_path):
     readme = (Path(package.__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-    code, = (code for code in re.findall(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE) if "fmpy" in code)
+    (code,) = (
+        code
+        for code in re.findall(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE)
+        if "fmpy" in code
+    )
     code = code.replace("fmus/dist/python", str(folder))
     fell = "print(len(result), result['velocity.y'][-1] < -8.9)"
     assert python(f"{code}\n{fell}", TMPDIR=str(tmp_path)).split() == ["101", "True"]
-    assert "mass = -4 kg: allowed is 1e-06 kg or more" in python(code.replace("1000.0", "-4.0"), TMPDIR=str(tmp_path))
+    assert "mass = -4 kg: allowed is 1e-06 kg or more" in python(
+        code.replace("1000.0", "-4.0"), TMPDIR=str(tmp_path)
+    )
 
 
 def test_simulate_fmu_runs_the_sand_alone(alone):
     """The same bits as the component itself with the inputs and steps that fmpy has set."""
     press = alone["press"]
     sand = SAND.instance()
-    sand["rock.position.x"], sand["rock.position.y"], sand["rock.velocity.y"] = 0.6, press["rock.position.y"][0], -1.0
+    sand["rock.position.x"], sand["rock.position.y"], sand["rock.velocity.y"] = (
+        0.6,
+        press["rock.position.y"][0],
+        -1.0,
+    )
     sand.initialise()
     for before, after in pairwise(press):
         sand["rock.position.y"] = after["rock.position.y"]

@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+
 from rockshed.components.catalogue import NAMES
 from rockshed.fmus.parts import Runtime
 
@@ -26,9 +27,13 @@ def test_start_values_really_hold(fmus, name):
     with Host(fmus[name]) as host:
         started = {name: v for name, v in host.variables.items() if v.start is not None}
         kinds = {"Real": float, "Boolean": lambda text: text == "true"}
-        assert {n: host[n] for n in started} == {n: kinds.get(v.type, int)(v.start) for n, v in started.items()}
+        assert {n: host[n] for n in started} == {
+            n: kinds.get(v.type, int)(v.start) for n, v in started.items()
+        }
         host.start()
-        assert {n: host[n] for n in started} == {n: kinds.get(v.type, int)(v.start) for n, v in started.items()}
+        assert {n: host[n] for n in started} == {
+            n: kinds.get(v.type, int)(v.start) for n, v in started.items()
+        }
         assert not host.errors()
 
 
@@ -63,7 +68,9 @@ def test_every_type_is_set_and_acts(tank):
     tank.start(leak=1, counting=False, first_count=7, **{"level0[2]": 4.0}, inflow=2.0, valve=0.5)
     assert (tank["leak"], tank["counting"], tank["first_count"], tank["tanks"]) == (1, False, 7, 3)
     tank.steps(10, 0.1)
-    assert tank["level[2]"] == pytest.approx(4.0 + 1.0 * 1.0, rel=1e-14)  # no leak: level0 + valve * inflow * time
+    assert tank["level[2]"] == pytest.approx(
+        4.0 + 1.0 * 1.0, rel=1e-14
+    )  # no leak: level0 + valve * inflow * time
     assert tank["count"] == 7.0
 
 
@@ -88,7 +95,9 @@ def test_inputs_that_do_not_fit_yet_can_be_corrected_before_the_initialization_m
     tank.fmu.enterInitializationMode()
     tank["inflow"] = 20.0
     assert [tank["flow"], tank["flow"]] == [20.0, 20.0]
-    assert [(status, category) for status, category, _ in tank.messages] == [(WARNING, "logStatusWarning")]
+    assert [(status, category) for status, category, _ in tank.messages] == [
+        (WARNING, "logStatusWarning")
+    ]
     tank["inflow"] = 1.0
     tank.fmu.exitInitializationMode()
     assert tank["flow"] == 1.0
@@ -97,9 +106,15 @@ def test_inputs_that_do_not_fit_yet_can_be_corrected_before_the_initialization_m
 
 def test_a_wrong_start_is_refused_with_all_its_reasons_when_the_initialization_mode_ends(tank):
     tank.start(limit=1000.0, valve=-1.0, inflow=math.nan, leak=3, first_count=-1)
-    text, = tank.errors()
-    for part in ("tank (Probe)", "limit = 1000 m: allowed is 0.1 to 100 m", "valve = -1", "inflow = nan", "leak = 3",
-                 "first_count = -1"):
+    (text,) = tank.errors()
+    for part in (
+        "tank (Probe)",
+        "limit = 1000 m: allowed is 0.1 to 100 m",
+        "valve = -1",
+        "inflow = nan",
+        "leak = 3",
+        "first_count = -1",
+    ):
         assert part in text
     assert tank.step(0.0, 0.1) == tank.refusal
 
@@ -119,7 +134,7 @@ def test_a_fault_of_the_component_at_the_start_and_later_is_told(tank):
 
 def test_an_internal_step_above_the_stable_one_gives_a_warning(tank):
     tank.start(internal_step=0.75)
-    (status, category, text), = tank.messages
+    ((status, category, text),) = tank.messages
     assert (status, category) == (WARNING, "logStatusWarning")
     assert "internal_step = 0.75 s exceeds stable_step = 0.5 s" in text
     assert tank.step(0.0, 0.1) == OK
@@ -133,17 +148,44 @@ def set_extra(host, *values):
 
 
 MISUSE = {
-    "NaN input": (lambda h: h.__setitem__("inflow", math.nan), "at t = 0 s: inflow = nan: must be a finite number"),
-    "infinite input": (lambda h: set_extra(h, math.inf, 0.0, 1.0), "extra[1] = inf: must be a finite number"),
-    "infinities that cancel": (lambda h: set_extra(h, 0.0, math.inf, -math.inf), "extra[2] = inf: must be a finite number"),
+    "NaN input": (
+        lambda h: h.__setitem__("inflow", math.nan),
+        "at t = 0 s: inflow = nan: must be a finite number",
+    ),
+    "infinite input": (
+        lambda h: set_extra(h, math.inf, 0.0, 1.0),
+        "extra[1] = inf: must be a finite number",
+    ),
+    "infinities that cancel": (
+        lambda h: set_extra(h, 0.0, math.inf, -math.inf),
+        "extra[2] = inf: must be a finite number",
+    ),
     "input out of range": (lambda h: h.__setitem__("valve", 1.5), "valve = 1.5: allowed is 0 to 1"),
-    "parameter set late": (lambda h: h.__setitem__("limit", 20.0), "limit = 20 is refused: a parameter is fixed"),
-    "enumeration set late": (lambda h: h.__setitem__("leak", 1), "leak = 1 is refused: a parameter is fixed"),
-    "boolean set late": (lambda h: h.__setitem__("counting", False), "counting = 0 is refused: a parameter is fixed"),
-    "output set": (lambda h: h.__setitem__("level[2]", 1.0), "level[2] = 1 is refused: it is an output"),
-    "unknown reference read": (lambda h: h.fmu.getReal([999]), "value reference 999 is unknown: allowed is 0 to "),
-    "huge reference read": (lambda h: h.fmu.getReal([2 ** 32 - 1]), "is unknown: allowed is 0 to "),
-    "unknown reference set": (lambda h: h.fmu.setReal([999], [1.0]), "value reference 999 is unknown"),
+    "parameter set late": (
+        lambda h: h.__setitem__("limit", 20.0),
+        "limit = 20 is refused: a parameter is fixed",
+    ),
+    "enumeration set late": (
+        lambda h: h.__setitem__("leak", 1),
+        "leak = 1 is refused: a parameter is fixed",
+    ),
+    "boolean set late": (
+        lambda h: h.__setitem__("counting", False),
+        "counting = 0 is refused: a parameter is fixed",
+    ),
+    "output set": (
+        lambda h: h.__setitem__("level[2]", 1.0),
+        "level[2] = 1 is refused: it is an output",
+    ),
+    "unknown reference read": (
+        lambda h: h.fmu.getReal([999]),
+        "value reference 999 is unknown: allowed is 0 to ",
+    ),
+    "huge reference read": (lambda h: h.fmu.getReal([2**32 - 1]), "is unknown: allowed is 0 to "),
+    "unknown reference set": (
+        lambda h: h.fmu.setReal([999], [1.0]),
+        "value reference 999 is unknown",
+    ),
     "unknown integer": (lambda h: h.fmu.getInteger([999]), "value reference 999 is unknown"),
     "unknown boolean": (lambda h: h.fmu.getBoolean([999]), "value reference 999 is unknown"),
     "wrong type read": (lambda h: h.fmu.getReal([1]), "leak is of type Enumeration, not Real"),
@@ -151,8 +193,14 @@ MISUSE = {
     "constant set": (lambda h: h.__setitem__("tanks", 4), "is unknown"),
     "string read": (lambda h: h.fmu.getString([0]), "this FMU has no string"),
     "string set": (lambda h: h.fmu.setString([0], ["x"]), "this FMU has no string"),
-    "initialised twice": (lambda h: h.fmu.enterInitializationMode(), "cannot enter the initialization mode: the slave is"),
-    "set up twice": (lambda h: h.fmu.setupExperiment(), "cannot set up the experiment: the slave is initialised already"),
+    "initialised twice": (
+        lambda h: h.fmu.enterInitializationMode(),
+        "cannot enter the initialization mode: the slave is",
+    ),
+    "set up twice": (
+        lambda h: h.fmu.setupExperiment(),
+        "cannot set up the experiment: the slave is initialised already",
+    ),
 }
 
 
@@ -162,7 +210,7 @@ def test_misuse_after_the_initialisation_is_logged_and_stops_the_slave(tank, wha
     tank.start()
     before = tank.outputs()
     misuse(tank)
-    text, = tank.errors()
+    (text,) = tank.errors()
     assert "tank (Probe): " in text
     assert expected in text
     assert tank.step(0.0, 0.1) == tank.refusal
@@ -224,7 +272,7 @@ def test_an_experiment_that_ends_before_it_starts_is_refused(tank):
 def test_messages_have_declared_categories_and_no_percent_sign(tank):
     tank["limit"] = math.nan  # its description has one
     tank.start()
-    (status, category, text), = tank.messages
+    ((status, category, text),) = tank.messages
     assert status == ERROR
     assert category in {c.name for c in tank.description.logCategories}
     assert "100 percent full" in text

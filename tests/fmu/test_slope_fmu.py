@@ -1,6 +1,7 @@
 """The FMU of the rock on its slope: the same trajectory whatever the steps, and states that lead back to any moment of it."""
 
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.fmus.build import Runtime
 
@@ -49,7 +50,13 @@ def test_the_fmu_is_the_component(fmus, rock):
         assert rock["position.y"] == instance["position.y"]
 
 
-BOX = {"receiver.present": True, "receiver.left": 60.0, "receiver.right": 62.0, "receiver.bottom": -100.0, "receiver.top": 200.0}
+BOX = {
+    "receiver.present": True,
+    "receiver.left": 60.0,
+    "receiver.right": 62.0,
+    "receiver.bottom": -100.0,
+    "receiver.top": 200.0,
+}
 
 
 @pytest.mark.parametrize("moment", [3, 73, 74, 75, 90])
@@ -69,22 +76,34 @@ def test_a_state_leads_back_to_any_moment(rock, moment):
 
 def test_all_that_is_wrong_with_the_profile_is_logged(rock):
     rock.start(**{"end.x[3]": 1.0, "friction[7]": 20.0})
-    text, = rock.errors()
+    (text,) = rock.errors()
     assert "cell 3 (end.x[3] = 1 m): its right node must lie to the right" in text
     assert "cell 7 (friction[7] = 20, roughness[7] up to 0.1588, mu tan(phi) = " in text
     assert rock.step(0.0, 0.1) == DISCARD
 
 
-@pytest.mark.parametrize(("values", "reason"), [
-    ({"end.x[3]": 1.0}, "cell 3 (end.x[3] = 1 m): its right node must lie to the right of its left node"),
-    ({"end.x[3]": 12.001}, "cell 3 (end.x[3] = 12.001 m): it is steeper than 89 degrees"),
-    ({"friction[7]": 20.0}, "cell 7 (friction[7] = 20, roughness[7] up to 0.1588, mu tan(phi) = 5.87"),
-    ({"roughness[2]": 1.98}, "cell 2 (roughness[2] = 1.98, largest 2.0388): roughness with its deviation reaches 2"),
-    ({"hardening[4]": 1.2}, "hardening[4] = 1.2: allowed is 0 to 1"),
-    ({"position0.y": 90.0}, "the rock starts below the surface: its lowest point is at -"),
-    ({"receiver.present": True}, "the receiver is empty"),
-    ({"lead_time": 0.1}, "never enters the receiver"),
-])
+@pytest.mark.parametrize(
+    ("values", "reason"),
+    [
+        (
+            {"end.x[3]": 1.0},
+            "cell 3 (end.x[3] = 1 m): its right node must lie to the right of its left node",
+        ),
+        ({"end.x[3]": 12.001}, "cell 3 (end.x[3] = 12.001 m): it is steeper than 89 degrees"),
+        (
+            {"friction[7]": 20.0},
+            "cell 7 (friction[7] = 20, roughness[7] up to 0.1588, mu tan(phi) = 5.87",
+        ),
+        (
+            {"roughness[2]": 1.98},
+            "cell 2 (roughness[2] = 1.98, largest 2.0388): roughness with its deviation reaches 2",
+        ),
+        ({"hardening[4]": 1.2}, "hardening[4] = 1.2: allowed is 0 to 1"),
+        ({"position0.y": 90.0}, "the rock starts below the surface: its lowest point is at -"),
+        ({"receiver.present": True}, "the receiver is empty"),
+        ({"lead_time": 0.1}, "never enters the receiver"),
+    ],
+)
 def test_both_runtimes_refuse_the_same_in_the_same_words(either, values, reason):
     either.start(**values)
     assert reason in " ".join(either.errors())

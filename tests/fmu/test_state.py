@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+
 from rockshed.components.catalogue import NAMES
 from rockshed.components.common.component import ComponentError
 from rockshed.fmus.parts import Runtime
@@ -140,7 +141,9 @@ def test_the_component_reads_the_state_of_its_fmu(fmus, probe):
         host.start(inflow=1.0, **{"level0[2]": 4.0}).steps(3, 0.1)
         instance = probe.instance()
         instance.from_bytes(component_state(host.state()))
-        assert np.array_equal(instance.state("hidden.level"), [host[f"level[{i}]"] for i in (1, 2, 3)])
+        assert np.array_equal(
+            instance.state("hidden.level"), [host[f"level[{i}]"] for i in (1, 2, 3)]
+        )
         assert instance["count"] == host["count"]
     with pytest.raises(ComponentError, match="no serialized state"):
         component_state(b"something else, long enough to be one")

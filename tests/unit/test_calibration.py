@@ -2,15 +2,23 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
+
 from rockshed.analyses.calibration import run as calibration
 from rockshed.analyses.calibration.measurement import Measurement, of_stiffness
-from rockshed.analyses.calibration.run import Calibration, Push, Unreachable, by_misfit, calibrate, fit
+from rockshed.analyses.calibration.run import (
+    Calibration,
+    Push,
+    Unreachable,
+    by_misfit,
+    calibrate,
+    fit,
+)
 from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.metrics.load_curve import LoadCurve
 from rockshed.papers.study import COMPLETE, FAILED, INTERRUPTED, Outcome
-from typer.testing import CliRunner
 
 E_BAR = kgf / cm**2
 PLACES = np.linspace(0.0, 0.05, 501)
@@ -43,7 +51,11 @@ def test_loads_that_do_not_go_with_the_modulus_itself():
 
 def test_samples_that_scatter_make_the_result_uncertain():
     """Six percent up and down in the load, with exponent 1: about 6 percent in E_bar."""
-    scattered = [push(e_bar, seed, factor) for e_bar in (30.0, 40.0, 50.0) for seed, factor in ((1, 0.94), (2, 1.0), (3, 1.06))]
+    scattered = [
+        push(e_bar, seed, factor)
+        for e_bar in (30.0, 40.0, 50.0)
+        for seed, factor in ((1, 0.94), (2, 1.0), (3, 1.06))
+    ]
     result = fit(of_stiffness(38e3 * 1.5, "k"), scattered)
     assert result.modulus / E_BAR == pytest.approx(45.0, rel=0.01)
     assert 0.045 < result.uncertainty / result.modulus < 0.065
@@ -61,15 +73,19 @@ def test_a_curve_of_another_shape_has_an_error_that_counts():
 
 @pytest.mark.parametrize("options", [{"exponent": 0.05}, {"factor": 0.0}])
 def test_a_load_that_does_not_rise_with_the_modulus_says_nothing_about_it(options):
-    with pytest.raises(Unreachable, match=r"57 kgf/cm|58\.1 kgf/cm.*out of reach.*E_bar from 30 to 50 kgf/cm2"):
+    with pytest.raises(
+        Unreachable, match=r"57 kgf/cm|58\.1 kgf/cm.*out of reach.*E_bar from 30 to 50 kgf/cm2"
+    ):
         fit(of_stiffness(57e3, "k"), pushes(**options))
 
 
 def test_the_model_with_the_smaller_error_is_chosen_and_the_other_kept():
     depth = np.linspace(0.002, 0.04, 20)
     measured = Measurement("curve", depth, 38e3 * depth)
-    bent, straight = (Calibration(name, (), [fit(measured, pushes(power=power))], ())
-                      for name, power in (("bent", 1.3), ("straight", 1.0)))
+    bent, straight = (
+        Calibration(name, (), [fit(measured, pushes(power=power))], ())
+        for name, power in (("bent", 1.3), ("straight", 1.0))
+    )
     made, lost = by_misfit({"bent": lambda: bent, "straight": lambda: straight})
     assert [c.rotation for c in made] == ["straight", "bent"]
     assert lost == {}
@@ -94,17 +110,32 @@ def test_a_model_that_cannot_have_the_load_leaves_it_to_the_other():
 @pytest.fixture
 def sand(monkeypatch):
     """Runs are replaced by a sand of 38 kN/m at E_bar = 30 (times ``factor``); ``status`` of those of the fit."""
+
     def use(factor=1.0, exponent=1.0, status=COMPLETE, failed_at=None):
         def run(task, status=COMPLETE):
             settings = dict(text.split("=") for text in task.request.settings)
             made = push(float(settings["sand.modulus"]) / E_BAR, 1, factor, exponent)
-            series = {"sand.penetration": made.curve.depth, "sand.rock.force.y": made.curve.load,
-                      "sand.surface_height": np.array([0.1]), "sand.stable_step": np.array([1e-4])}
-            return Outcome(task.key, status, "broken" if status == FAILED else "", failed_at, series=series,
-                           options={"packing": "square"})
+            series = {
+                "sand.penetration": made.curve.depth,
+                "sand.rock.force.y": made.curve.load,
+                "sand.surface_height": np.array([0.1]),
+                "sand.stable_step": np.array([1e-4]),
+            }
+            return Outcome(
+                task.key,
+                status,
+                "broken" if status == FAILED else "",
+                failed_at,
+                series=series,
+                options={"packing": "square"},
+            )
 
         monkeypatch.setattr(calibration, "run_here", lambda task, note=print: run(task))
-        monkeypatch.setattr(calibration, "run_all", lambda tasks, *rest: {task.key: run(task, status) for task in tasks})
+        monkeypatch.setattr(
+            calibration,
+            "run_all",
+            lambda tasks, *rest: {task.key: run(task, status) for task in tasks},
+        )
 
     return use
 
@@ -113,19 +144,26 @@ def sand(monkeypatch):
 def test_the_search_comes_to_the_modulus_from_far_away(sand, stiffness):
     sand(factor=0.2, exponent=1.2)
     found = calibrate([of_stiffness(stiffness, "k")], seeds=2).fits[0]
-    assert found.modulus / E_BAR == pytest.approx(30.0 * (stiffness / 38e3 / 0.2) ** (1 / 1.2), rel=1e-3)
+    assert found.modulus / E_BAR == pytest.approx(
+        30.0 * (stiffness / 38e3 / 0.2) ** (1 / 1.2), rel=1e-3
+    )
 
 
 def test_several_measurements_share_their_tests(sand):
     sand()
     made = calibrate([of_stiffness(k, str(k)) for k in (90e3, 30e3, 45e3)], seeds=2)
-    assert [f.modulus / E_BAR for f in made.fits] == pytest.approx([90 / 38 * 30, 30 / 38 * 30, 45 / 38 * 30], rel=1e-3)
+    assert [f.modulus / E_BAR for f in made.fits] == pytest.approx(
+        [90 / 38 * 30, 30 / 38 * 30, 45 / 38 * 30], rel=1e-3
+    )
     assert len(made.pushes) <= 12
 
 
 def test_a_spring_constant_out_of_reach_is_told_with_what_is_reached(sand):
     sand(factor=0.01)
-    with pytest.raises(Unreachable, match=r"39\.1 kgf/cm at 4 cm is out of reach: .* to 6\.46 kgf/cm for .* to 500 kgf/cm2"):
+    with pytest.raises(
+        Unreachable,
+        match=r"39\.1 kgf/cm at 4 cm is out of reach: .* to 6\.46 kgf/cm for .* to 500 kgf/cm2",
+    ):
         calibrate([of_stiffness(39.1 * kgf / cm, "k")])
 
 
@@ -140,8 +178,14 @@ def test_runs_without_a_result_end_the_calibration(sand):
 
 def test_what_the_calibration_chooses_cannot_be_set():
     with pytest.raises(InputRefused) as refusal:
-        calibrate([of_stiffness(38e3, "k")], settings=["sand.modulus=3e6", "sand.damping=0.1", "sand.seed=4"])
-    assert [problem.where for problem in refusal.value.problems] == ["--set sand.modulus=3e6", "--set sand.seed=4"]
+        calibrate(
+            [of_stiffness(38e3, "k")],
+            settings=["sand.modulus=3e6", "sand.damping=0.1", "sand.seed=4"],
+        )
+    assert [problem.where for problem in refusal.value.problems] == [
+        "--set sand.modulus=3e6",
+        "--set sand.seed=4",
+    ]
 
 
 # ------------------------------------------------------------------ the command
@@ -154,16 +198,22 @@ def command(tmp_path, monkeypatch):
     return lambda *arguments: CliRunner().invoke(app, ["calibrate", *arguments])
 
 
-@pytest.mark.parametrize(("arguments", "words"), [
-    ([], "takes either a file or --stiffness"),
-    (["curve.csv", "--stiffness", "1 N/m"], "not both"),
-    (["none.csv"], "none.csv: cannot be read"),
-    (["--stiffness", "39.1"], "has no unit"),
-    (["--stiffness", "39.1 kgf/cm", "--rotation", "fit"], "needs a curve"),
-    (["--stiffness", "39.1 kgf/cm", "--rotation", "loose"], "'loose' is unknown"),
-    (["--stiffness", "39.1 kgf/cm", "--set", "sand.modulus=1"], "is chosen by the calibration"),
-    (["curve.csv", "--rotation", "fit", "--set", "sand.rotation=free"], "is what --rotation fit chooses"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "takes either a file or --stiffness"),
+        (["curve.csv", "--stiffness", "1 N/m"], "not both"),
+        (["none.csv"], "none.csv: cannot be read"),
+        (["--stiffness", "39.1"], "has no unit"),
+        (["--stiffness", "39.1 kgf/cm", "--rotation", "fit"], "needs a curve"),
+        (["--stiffness", "39.1 kgf/cm", "--rotation", "loose"], "'loose' is unknown"),
+        (["--stiffness", "39.1 kgf/cm", "--set", "sand.modulus=1"], "is chosen by the calibration"),
+        (
+            ["curve.csv", "--rotation", "fit", "--set", "sand.rotation=free"],
+            "is what --rotation fit chooses",
+        ),
+    ],
+)
 def test_bad_input_is_refused(command, arguments, words):
     result = command(*arguments)
     assert result.exit_code == 2
@@ -185,9 +235,17 @@ def test_table_4_stands_beside_what_was_printed(command, sand, tmp_path):
     sand(factor=1.29 * 30.0 * kgf / cm / 38e3)  # the paper's line
     result = command("sonoda1993", "--output-dir", "here", "--seeds", "2")
     assert result.exit_code == 0, result.output
-    rows = {line.split()[1]: line.split() for line in result.stdout.splitlines() if line.startswith("test ")}
+    rows = {
+        line.split()[1]: line.split()
+        for line in result.stdout.splitlines()
+        if line.startswith("test ")
+    }
     assert list(rows) == ["2", "4", "6", "8", "10", "12"]
     for number, row in rows.items():
         assert float(row[4]) == pytest.approx(float(row[3]) / 1.29, abs=0.06)
         assert abs(float(row[-2])) <= (9 if number == "8" else 3)
-    assert {file.name for file in (tmp_path / "here").iterdir()} == {"calibration.json", "calibration.csv", "calibration.png"}
+    assert {file.name for file in (tmp_path / "here").iterdir()} == {
+        "calibration.json",
+        "calibration.csv",
+        "calibration.png",
+    }

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rockshed.metrics.headlines import low_pass
 from scipy.signal import butter, sosfiltfilt
+
+from rockshed.metrics.headlines import low_pass
 
 RATE = 1e4
 TIME = np.arange(400) / RATE
@@ -13,7 +14,9 @@ TIME = np.arange(400) / RATE
 
 @pytest.mark.parametrize("cut_off", [150.0, 222.3, 500.0])
 def test_the_same_as_scipys_filter_run_forwards_and_backwards(cut_off):
-    pulse = np.exp(-((TIME - 0.02) / 0.003) ** 2) * (1.0 + 0.2 * np.sin(2.0 * np.pi * 2000.0 * TIME))
+    pulse = np.exp(-(((TIME - 0.02) / 0.003) ** 2)) * (
+        1.0 + 0.2 * np.sin(2.0 * np.pi * 2000.0 * TIME)
+    )
     other = sosfiltfilt(butter(4, cut_off, fs=RATE, output="sos"), pulse)
     assert low_pass(TIME, pulse, cut_off) == pytest.approx(other, abs=5e-3)
     assert low_pass(TIME, pulse, cut_off).max() == pytest.approx(other.max(), rel=2e-3)
@@ -27,7 +30,9 @@ def test_a_sine_at_the_cut_off_keeps_half_of_its_height_and_its_phase():
 @settings(deadline=None)
 @given(st.floats(-1e6, 1e6), st.floats(30.0, 4900.0))
 def test_what_is_steady_stays_as_it_is(value, cut_off):
-    assert low_pass(TIME, np.full(TIME.size, value), cut_off) == pytest.approx(np.full(TIME.size, value), rel=1e-9, abs=1e-9)
+    assert low_pass(TIME, np.full(TIME.size, value), cut_off) == pytest.approx(
+        np.full(TIME.size, value), rel=1e-9, abs=1e-9
+    )
 
 
 def test_rows_too_few_or_too_far_apart_have_none():

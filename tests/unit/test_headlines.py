@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from rockshed.cases import sonoda1993
 from rockshed.cases.registry import case, cases, changes_of, references_of
 from rockshed.core.errors import InputRefused
@@ -23,22 +24,59 @@ def made_up(length=0.02, summary=(), **columns):
     late = np.clip(time - 0.002, 0.0, 0.01)
     zero = np.zeros_like(time)
     series = {
-        "time": time, "sand.rock.force.y": rock, "sand.transmitted_force": 50.0 + 2e3 * np.sin(np.pi * late / 0.01),
-        "sand.penetration": 0.06 * np.sin(np.pi * time / 0.02), "sand.surface_height": zero + 0.1,
-        "rock.energy.kinetic": 100.0 - 4e3 * time, "rock.energy.residual": 2e2 * time, "rock.energy.work.contact": -4e3 * time,
-        "sand.energy.residual": -5.0 * time, "sand.energy.work.rock": 3.9e3 * time, "sand.energy.work.beam": zero - 1.0,
-        "beam.energy.residual": zero, "beam.energy.work.contact": zero, "beam.position.y[1]": zero - 0.025,
-        "coupling.sand_rock.energy": -1e2 * time, **columns}
-    sand = {"base": "beam_discs", "base.y": 0.0, "beam.radius": 0.025, "disc.radius": 0.005, "rotation": "locked",
-            "stiffness_factor": 0.37, "unit_weight": 1800.0, "unit_weight_of": "disc", "base.shape": "flat", "cohesion": 0.0,
-            "unloading_ratio": 1.0, "disc.spread": 0.0, "solid_fraction": 0.785,
-            "modulus": 30.0 * KGF / 1e-4, "internal_step": 1e-5, "rolling_resistance": 0.0,
-            "packing": "square", "gravity": 9.81}
+        "time": time,
+        "sand.rock.force.y": rock,
+        "sand.transmitted_force": 50.0 + 2e3 * np.sin(np.pi * late / 0.01),
+        "sand.penetration": 0.06 * np.sin(np.pi * time / 0.02),
+        "sand.surface_height": zero + 0.1,
+        "rock.energy.kinetic": 100.0 - 4e3 * time,
+        "rock.energy.residual": 2e2 * time,
+        "rock.energy.work.contact": -4e3 * time,
+        "sand.energy.residual": -5.0 * time,
+        "sand.energy.work.rock": 3.9e3 * time,
+        "sand.energy.work.beam": zero - 1.0,
+        "beam.energy.residual": zero,
+        "beam.energy.work.contact": zero,
+        "beam.position.y[1]": zero - 0.025,
+        "coupling.sand_rock.energy": -1e2 * time,
+        **columns,
+    }
+    sand = {
+        "base": "beam_discs",
+        "base.y": 0.0,
+        "beam.radius": 0.025,
+        "disc.radius": 0.005,
+        "rotation": "locked",
+        "stiffness_factor": 0.37,
+        "unit_weight": 1800.0,
+        "unit_weight_of": "disc",
+        "base.shape": "flat",
+        "cohesion": 0.0,
+        "unloading_ratio": 1.0,
+        "disc.spread": 0.0,
+        "solid_fraction": 0.785,
+        "modulus": 30.0 * KGF / 1e-4,
+        "internal_step": 1e-5,
+        "rolling_resistance": 0.0,
+        "packing": "square",
+        "gravity": 9.81,
+    }
     provenance = {
-        "status": "complete", "name": "made-up", "system": {"description": "", "master": "sequential", "exchange_step": 1e-5},
-        "components": {name: {"model": model, "parameters": {key: {"value": value} for key, value in parameters.items()}}
-                       for name, model, parameters in (("rock", "FallingRock", {}), ("sand", "SandCushion", sand),
-                                                       ("beam", "RBSMBeam", {"internal_step": 1e-6}))}}
+        "status": "complete",
+        "name": "made-up",
+        "system": {"description": "", "master": "sequential", "exchange_step": 1e-5},
+        "components": {
+            name: {
+                "model": model,
+                "parameters": {key: {"value": value} for key, value in parameters.items()},
+            }
+            for name, model, parameters in (
+                ("rock", "FallingRock", {}),
+                ("sand", "SandCushion", sand),
+                ("beam", "RBSMBeam", {"internal_step": 1e-6}),
+            )
+        },
+    }
     return Run(None, provenance, list(summary), [], series)
 
 
@@ -58,7 +96,12 @@ def test_peaks_impulse_and_duration_of_a_half_sine():
 
 
 def test_extremes_over_all_exchanges_go_before_those_of_the_rows():
-    run = made_up(summary=[Figure("sand.rock.force.y maximum", 1234.0, "N"), Figure("sand.rock.force.y maximum at", 0.0049, "s")])
+    run = made_up(
+        summary=[
+            Figure("sand.rock.force.y maximum", 1234.0, "N"),
+            Figure("sand.rock.force.y maximum at", 0.0049, "s"),
+        ]
+    )
     assert figure(run, h.PEAK_ROCK) == 1234.0
     assert figure(run, h.PEAK_ROCK_AT) == 0.0049
 
@@ -113,13 +156,19 @@ def test_a_load_cell_shows_a_step_as_an_oscillator_of_damping_ratio_0_7_does():
     shown = h.load_cell(time, force, 1000.0)
     assert shown[time < 0.005] == pytest.approx(300.0, rel=1e-9)
     assert shown.max() == pytest.approx(1300.0 + 1000.0 * np.exp(-np.pi), rel=1e-3)
-    assert time[shown.argmax()] - 0.005 == pytest.approx(np.sqrt(2.0) * np.pi / (2.0 * np.pi * 1000.0), rel=0.02)
+    assert time[shown.argmax()] - 0.005 == pytest.approx(
+        np.sqrt(2.0) * np.pi / (2.0 * np.pi * 1000.0), rel=0.02
+    )
     assert shown[-1] == pytest.approx(1300.0, rel=1e-6)
 
 
 def test_a_load_cell_passes_slow_forces_and_halves_the_power_at_its_cut_off():
     time = np.linspace(0.0, 0.1, 20001)
-    for frequency, passed in ((20.0, 1.0), (1000.0, np.sqrt(0.5)), (4000.0, 1 / np.sqrt(1.0 + 4.0**4))):
+    for frequency, passed in (
+        (20.0, 1.0),
+        (1000.0, np.sqrt(0.5)),
+        (4000.0, 1 / np.sqrt(1.0 + 4.0**4)),
+    ):
         shown = h.load_cell(time, np.sin(2.0 * np.pi * frequency * time), 1000.0)
         assert np.ptp(shown[10000:]) / 2.0 == pytest.approx(passed, rel=0.01)
 
@@ -142,16 +191,28 @@ def test_the_load_cell_that_a_run_was_asked_for_stands_beside_the_measurement():
     assert row.experiment == "5.09"
 
 
-@pytest.mark.parametrize(("cut_off", "options", "said"), [
-    (2500.0, {}, r"2500 Hz: rows every 0\.1 ms carry a cut-off above 0 and up to 2000 Hz.*--output-interval 8e-05"),
-    (1000.0, {"output_interval": 1e-3}, r"rows every 1 ms carry .* up to 200 Hz"), (-5.0, {}, "-5 Hz.*above 0")])
+@pytest.mark.parametrize(
+    ("cut_off", "options", "said"),
+    [
+        (
+            2500.0,
+            {},
+            r"2500 Hz: rows every 0\.1 ms carry a cut-off above 0 and up to 2000 Hz.*--output-interval 8e-05",
+        ),
+        (1000.0, {"output_interval": 1e-3}, r"rows every 1 ms carry .* up to 200 Hz"),
+        (-5.0, {}, "-5 Hz.*above 0"),
+    ],
+)
 def test_a_cut_off_that_the_rows_cannot_carry_is_refused_before_the_run(cut_off, options, said):
     with pytest.raises(InputRefused, match=said):
         prepare(Request("lab-impact", in_process=True, options=options, load_cell=cut_off))
 
 
 def test_a_request_for_a_load_cell_goes_into_the_facts_of_the_run():
-    assert prepare(Request("lab-impact", in_process=True, load_cell=1000.0)).facts["load_cell"] == 1000.0
+    assert (
+        prepare(Request("lab-impact", in_process=True, load_cell=1000.0)).facts["load_cell"]
+        == 1000.0
+    )
     assert "load_cell" not in prepare(Request("lab-impact", in_process=True)).facts
 
 
@@ -160,7 +221,9 @@ def test_a_beam_bent_by_another_weight_than_the_sands_is_warned_of():
     beam = run.provenance["components"]["beam"]["parameters"]
     for weight, warned in ((52.0, False), (0.0, False), (60.0, True)):
         beam["cushion.weight"] = {"value": weight}
-        assert any("set beam.cushion.weight=50" in text for text in comparison.warnings(run)) == warned
+        assert (
+            any("set beam.cushion.weight=50" in text for text in comparison.warnings(run)) == warned
+        )
 
 
 def test_energy_of_the_beam_counts_from_the_start():
@@ -184,7 +247,9 @@ def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
     def works(file):
         file.write_bytes(b"")
 
-    made = [pictures._Picture(name, draw, ["time"]) for name, draw in (("one", fails), ("two", works))]
+    made = [
+        pictures._Picture(name, draw, ["time"]) for name, draw in (("one", fails), ("two", works))
+    ]
     monkeypatch.setattr(pictures, "_pictures", lambda run: made)
     said = []
     assert pictures.draw_all(made_up(), tmp_path, warn=said.append) == [tmp_path / "two.png"]
@@ -195,19 +260,29 @@ def test_energies_that_are_all_zero_are_drawn(tmp_path):
     from rockshed.pictures import curves
 
     run = made_up()
-    curves.energy(replace(run, series={name: np.zeros(1) for name in run.series}), tmp_path / "energy.png")
+    curves.energy(
+        replace(run, series={name: np.zeros(1) for name in run.series}), tmp_path / "energy.png"
+    )
     assert (tmp_path / "energy.png").is_file()
 
 
 def test_models_of_the_sand_have_their_names():
     run = made_up()
     sand = run.provenance["components"]["sand"]["parameters"]
-    assert comparison.model(run) == ("calibrated sand: rotation locked, stiffness factor 0.37, "
-                                     "square packing, fictitious modulus E_bar 30.0 kgf/cm²")
-    sand["rotation"]["value"], sand["stiffness_factor"]["value"], sand["base.shape"]["value"] = "free", 1.0, "round"
+    assert comparison.model(run) == (
+        "calibrated sand: rotation locked, stiffness factor 0.37, "
+        "square packing, fictitious modulus E_bar 30.0 kgf/cm²"
+    )
+    sand["rotation"]["value"], sand["stiffness_factor"]["value"], sand["base.shape"]["value"] = (
+        "free",
+        1.0,
+        "round",
+    )
     assert comparison.model(run).startswith("literal sand: rotation free")
     sand["rolling_resistance"]["value"] = 0.3
-    assert comparison.model(run).startswith("modified sand: rotation free, stiffness factor 1, rolling resistance 0.3, ")
+    assert comparison.model(run).startswith(
+        "modified sand: rotation free, stiffness factor 1, rolling resistance 0.3, "
+    )
     sand["rotation"]["value"], sand["rolling_resistance"]["value"] = "locked", 0.0
     assert comparison.model(run).startswith("modified sand")
 
@@ -230,8 +305,12 @@ def test_a_run_that_ends_too_soon_is_not_compared():
 
 def test_a_force_that_has_not_ended_is_told():
     depth = {"sand.penetration": 0.06 * np.sin(np.pi * np.linspace(0.0, 1.5, 401) / 1.6)}
-    assert any("has not ended" in note for note in comparison.notes(made_up(length=0.009, **depth), {}))
-    assert not any("has not ended" in note for note in comparison.notes(made_up(length=0.012, **depth), {}))
+    assert any(
+        "has not ended" in note for note in comparison.notes(made_up(length=0.009, **depth), {})
+    )
+    assert not any(
+        "has not ended" in note for note in comparison.notes(made_up(length=0.012, **depth), {})
+    )
 
 
 def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
@@ -252,7 +331,9 @@ def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
 def test_every_test_of_the_paper_is_a_case_and_finds_its_references_again():
     assert len(cases()) == 26
     assert next(iter(cases())) == "lab-impact"
-    assert references_of({"case": "lab-impact-10"}).known[h.PEAK_TRANSMITTED].experiment.value == pytest.approx(673.2 * KGF)
+    assert references_of({"case": "lab-impact-10"}).known[
+        h.PEAK_TRANSMITTED
+    ].experiment.value == pytest.approx(673.2 * KGF)
     assert references_of({}).known == {}
 
 
@@ -260,19 +341,42 @@ def of_lab_impact(changed, **sizes):
     return {"case": "lab-impact", "changed": changed, "sizes": {"sand": sizes}}
 
 
-@pytest.mark.parametrize("changed", [
-    {"beam.internal_step": 5e-7, "sand.rotation": "free", "sand.stiffness_factor": 1.0, "sand.friction_angle": 0.6,
-     "sand.packing": "random", "exchange_step": 2e-5, "stop_time": 0.02},
-    {"rock.mass": 4, "rock_radius": 0.0495, "sand.base": "beam_discs", "rock.position0.y": 0.15, "sand.damping": 0.2}])
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {
+            "beam.internal_step": 5e-7,
+            "sand.rotation": "free",
+            "sand.stiffness_factor": 1.0,
+            "sand.friction_angle": 0.6,
+            "sand.packing": "random",
+            "exchange_step": 2e-5,
+            "stop_time": 0.02,
+        },
+        {
+            "rock.mass": 4,
+            "rock_radius": 0.0495,
+            "sand.base": "beam_discs",
+            "rock.position0.y": 0.15,
+            "sand.damping": 0.2,
+        },
+    ],
+)
 def test_other_steps_and_models_and_the_tests_own_values_leave_the_comparison(changed):
     assert references_of(of_lab_impact(changed, discs=370)) == case("lab-impact").references({})
 
 
-@pytest.mark.parametrize(("changed", "sizes", "named"), [
-    ({"rock.mass": 8}, {}, "rock.mass differs"), ({"rock_mass": 8}, {}, "rock_mass differs"),
-    ({}, {"discs": 740}, "sand.discs differs"), ({"sand.base": "floor", "sand.modulus": 1e6}, {}, "sand.base differs"),
-    ({"rock.radius": 0.06, "sand.box.width": 0.4}, {}, "rock.radius, sand.box.width differ"),
-    ({"beam.gravity": 9.81}, {}, "beam.gravity differs")])
+@pytest.mark.parametrize(
+    ("changed", "sizes", "named"),
+    [
+        ({"rock.mass": 8}, {}, "rock.mass differs"),
+        ({"rock_mass": 8}, {}, "rock_mass differs"),
+        ({}, {"discs": 740}, "sand.discs differs"),
+        ({"sand.base": "floor", "sand.modulus": 1e6}, {}, "sand.base differs"),
+        ({"rock.radius": 0.06, "sand.box.width": 0.4}, {}, "rock.radius, sand.box.width differ"),
+        ({"beam.gravity": 9.81}, {}, "beam.gravity differs"),
+    ],
+)
 def test_another_system_is_not_compared_and_the_reason_is_named(changed, sizes, named):
     found = references_of(of_lab_impact(changed, **sizes))
     assert found.known == {}
@@ -290,7 +394,10 @@ def test_another_sand_is_compared_with_table_5_only():
 
 
 def test_changed_values_and_sizes_are_named():
-    assert changes_of(of_lab_impact({"rock.mass": 8, "rock.radius": 0.0495}, discs=740)) == {"rock.mass": 8, "sand.discs": 740}
+    assert changes_of(of_lab_impact({"rock.mass": 8, "rock.radius": 0.0495}, discs=740)) == {
+        "rock.mass": 8,
+        "sand.discs": 740,
+    }
     assert changes_of({"changed": {"stop_time": 0.1}}) == {"stop_time": 0.1}
     run = made_up()
     run.provenance.update(of_lab_impact({"rock.mass": 8}, discs=740), coupling="paper")

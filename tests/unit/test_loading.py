@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from rockshed.metrics.load_curve import DEPTH, WINDOW, LoadCurve, load_curve
 
 
@@ -33,7 +34,10 @@ def test_a_depth_is_reached_when_the_whole_window_is():
 
 
 def test_only_rows_of_a_sinking_rock_count():
-    series = {"sand.penetration": np.array([-0.1, 0.0, 0.1, 0.05, 0.2]), "sand.rock.force.y": np.arange(5.0)}
+    series = {
+        "sand.penetration": np.array([-0.1, 0.0, 0.1, 0.05, 0.2]),
+        "sand.rock.force.y": np.arange(5.0),
+    }
     found = load_curve(series, "sand")
     assert list(found.depth) == [-0.1, 0.0, 0.1, 0.2]
     assert list(found.load) == [0.0, 1.0, 2.0, 4.0]

@@ -2,22 +2,39 @@
 
 import numpy as np
 import pytest
+
 from rockshed.analyses.calibration.measurement import of_stiffness, read_curve, stiffness_from
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
 
 
-@pytest.mark.parametrize(("text", "value"), [
-    ("39.1kgf/cm", 39.1 * kgf / 0.01), ("39.1 kgf/cm", 39.1 * kgf / 0.01), ("38.3 kN/m", 38300.0), ("1e3N/mm", 1e6),
-    ("0.5 kN/cm", 5e4)])
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("39.1kgf/cm", 39.1 * kgf / 0.01),
+        ("39.1 kgf/cm", 39.1 * kgf / 0.01),
+        ("38.3 kN/m", 38300.0),
+        ("1e3N/mm", 1e6),
+        ("0.5 kN/cm", 5e4),
+    ],
+)
 def test_a_spring_constant_carries_its_unit(text, value):
     assert stiffness_from(text) == pytest.approx(value)
     assert float(of_stiffness(value, text).load[0]) == pytest.approx(0.04 * value)
 
 
-@pytest.mark.parametrize(("text", "reason"), [
-    ("39.1", "no unit"), ("39.1 kgf", "no spring constant"), ("stiff", "no spring constant"), ("39,1 kgf/cm", "no spring constant"),
-    ("3 lbf/inch", "the unit lbf/inch"), ("0 N/m", "not above zero"), ("-4 kN/m", "not above zero")])
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("39.1", "no unit"),
+        ("39.1 kgf", "no spring constant"),
+        ("stiff", "no spring constant"),
+        ("39,1 kgf/cm", "no spring constant"),
+        ("3 lbf/inch", "the unit lbf/inch"),
+        ("0 N/m", "not above zero"),
+        ("-4 kN/m", "not above zero"),
+    ],
+)
 def test_other_spring_constants_are_refused(text, reason):
     with pytest.raises(InputRefused, match=reason):
         stiffness_from(text)
@@ -26,6 +43,7 @@ def test_other_spring_constants_are_refused(text, reason):
 @pytest.fixture
 def curve(tmp_path):
     """Write a file of these lines and read it."""
+
     def read(*lines):
         file = tmp_path / "curve.csv"
         file.write_text("\n".join(lines))
@@ -34,7 +52,10 @@ def curve(tmp_path):
     return read
 
 
-@pytest.mark.parametrize("head", ["penetration (cm),load (kgf)", " Penetration [cm] , load_kgf", "penetration_cm,load kgf"])
+@pytest.mark.parametrize(
+    "head",
+    ["penetration (cm),load (kgf)", " Penetration [cm] , load_kgf", "penetration_cm,load kgf"],
+)
 def test_a_curve_is_read_in_its_units(curve, head):
     found = curve("# a comment", head, "", "0, 0", "2,80", "4.0,155.5")
     assert list(found.depth) == [0.0, 0.02, 0.04]
@@ -50,22 +71,28 @@ def test_columns_may_stand_in_any_order(curve):
 HEAD = "penetration (cm),load (kgf)"
 
 
-@pytest.mark.parametrize(("lines", "reason"), [
-    ((), "is empty"),
-    (("1,2", "2,3", "3,4"), "line 1, column 1: '1' is not penetration or load"),
-    (("penetration,load (kgf)",), "line 1, column 1: 'penetration' has no known unit"),
-    (("penetration (inch),load (kgf)",), "column 1: 'penetration .inch.' has no known unit"),
-    (("penetration (cm),penetration (mm)",), "each once"),
-    ((HEAD, "1,10"), "has 1 points"),
-    ((HEAD, "1,10", "2,x", "3,30"), r"line 3, column 2 .load.: 'x' is no finite number"),
-    ((HEAD, "1,10", "nan,20", "3,30"), r"line 3, column 1 .penetration.: 'nan'"),
-    ((HEAD, "1,10", "2;20", "3,30"), "line 3: has 1 fields instead of 2"),
-    ((HEAD, "1,10", "3,30", "2,20"), "line 4, column penetration: 2 cm does not lie below the 3 cm of line 3"),
-    ((HEAD, "-1,10", "1,20", "2,30"), "line 2, column penetration: -1 cm"),
-    ((HEAD, "1,10", "2,20", "9,30"), "line 4, column penetration: 9 cm: allowed is 0 to 8 cm"),
-    ((HEAD, "1,10", "2,-5", "3,30"), "line 3, column load: .* is negative"),
-    ((HEAD, "1,0", "2,0", "3,0"), "no load above zero"),
-])
+@pytest.mark.parametrize(
+    ("lines", "reason"),
+    [
+        ((), "is empty"),
+        (("1,2", "2,3", "3,4"), "line 1, column 1: '1' is not penetration or load"),
+        (("penetration,load (kgf)",), "line 1, column 1: 'penetration' has no known unit"),
+        (("penetration (inch),load (kgf)",), "column 1: 'penetration .inch.' has no known unit"),
+        (("penetration (cm),penetration (mm)",), "each once"),
+        ((HEAD, "1,10"), "has 1 points"),
+        ((HEAD, "1,10", "2,x", "3,30"), r"line 3, column 2 .load.: 'x' is no finite number"),
+        ((HEAD, "1,10", "nan,20", "3,30"), r"line 3, column 1 .penetration.: 'nan'"),
+        ((HEAD, "1,10", "2;20", "3,30"), "line 3: has 1 fields instead of 2"),
+        (
+            (HEAD, "1,10", "3,30", "2,20"),
+            "line 4, column penetration: 2 cm does not lie below the 3 cm of line 3",
+        ),
+        ((HEAD, "-1,10", "1,20", "2,30"), "line 2, column penetration: -1 cm"),
+        ((HEAD, "1,10", "2,20", "9,30"), "line 4, column penetration: 9 cm: allowed is 0 to 8 cm"),
+        ((HEAD, "1,10", "2,-5", "3,30"), "line 3, column load: .* is negative"),
+        ((HEAD, "1,0", "2,0", "3,0"), "no load above zero"),
+    ],
+)
 def test_bad_files_are_refused_by_line_and_column(curve, lines, reason):
     with pytest.raises(InputRefused, match=reason):
         curve(*lines)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from rockshed.components.common.component import ComponentError
 
 from ..rods import HAMMER, ROD, march, named, rod
@@ -24,8 +25,14 @@ BAD = [
     ({"head__force": math.inf}, r"head\.force = inf"),
     ({"ram__mass": -1.0}, r"ram\.mass = -1 kg"),
     ({"gauge__depth": 10.1}, r"gauge\.depth = 10\.1 m is below the toe"),
-    ({"head__port": "waves", "scheme": "smith"}, "a port of waves needs the scheme characteristics"),
-    ({"toe__condition": "port", "toe__port": "waves", "scheme": "repaired"}, "a port of waves needs the scheme characteristics"),
+    (
+        {"head__port": "waves", "scheme": "smith"},
+        "a port of waves needs the scheme characteristics",
+    ),
+    (
+        {"toe__condition": "port", "toe__port": "waves", "scheme": "repaired"},
+        "a port of waves needs the scheme characteristics",
+    ),
     ({"head__port": "waves", "ram__mass": 5.0}, r"ram\.mass = 5 kg takes the place"),
 ]
 
@@ -38,7 +45,10 @@ def test_bad_input_is_refused(parameters, message):
 
 
 def test_all_that_is_wrong_is_said_at_once():
-    made = named(ROD.instance(segments=1), {"toe__quake": 0.0, "toe__resistance": -1.0, "section__area": -1.0})
+    made = named(
+        ROD.instance(segments=1),
+        {"toe__quake": 0.0, "toe__resistance": -1.0, "section__area": -1.0},
+    )
     with pytest.raises(ComponentError) as refusal:
         made.initialise()
     assert len(refusal.value.problems) == 3
@@ -49,20 +59,27 @@ def test_fewer_than_one_segment_is_refused():
         ROD.instance(segments=0)
 
 
-@pytest.mark.parametrize(("partner", "limit"), [({"head__partner__stiffness": 1e8}, "Z/k"), ({"head__partner__mass": 1.0}, "M/Z")])
+@pytest.mark.parametrize(
+    ("partner", "limit"),
+    [({"head__partner__stiffness": 1e8}, "Z/k"), ({"head__partner__mass": 1.0}, "M/Z")],
+)
 def test_a_plain_port_refuses_steps_above_its_limit(partner, limit):
     made = rod(10, **partner)
     impedance = 5.8e-4 * 7850 * 5120
     expected = {"Z/k": impedance / 1e8, "M/Z": 1.0 / impedance}[limit]
     assert made["step_limit"] == made["head.step_limit"] == pytest.approx(expected, rel=1e-12)
     made.step(0.0, expected)
-    with pytest.raises(ComponentError, match=f"exceeds the limit of the ports, step_limit = {expected:.6g} s"):
+    with pytest.raises(
+        ComponentError, match=f"exceeds the limit of the ports, step_limit = {expected:.6g} s"
+    ):
         made.step(expected, 1.001 * expected)
 
 
 def test_a_plain_port_below_the_toe_has_its_own_limit():
     made = rod(10, toe__condition="port", toe__partner__stiffness=1e9)
-    assert made["toe.step_limit"] == made["step_limit"] == pytest.approx(made["toe.impedance"] / 1e9)
+    assert (
+        made["toe.step_limit"] == made["step_limit"] == pytest.approx(made["toe.impedance"] / 1e9)
+    )
 
 
 @pytest.mark.parametrize(("exchange", "share"), [("sequential", 1.0), ("parallel", 0.5)])
@@ -77,13 +94,22 @@ def test_a_wave_port_bears_steps_up_to_the_travel_time(exchange, share):
     step = 0.99 * other["step_limit"]
     if exchange == "parallel":
         other.step(0.0, step)
-    with pytest.raises(ComponentError, match=r"the waves of a next step of .* s are not known yet, step_limit"):
+    with pytest.raises(
+        ComponentError, match=r"the waves of a next step of .* s are not known yet, step_limit"
+    ):
         other.step(step, step)
 
 
 def test_the_nearest_reflection_limits_a_wave_port():
-    made = named(ROD.instance(segments=20), {"head__port": "waves", "exchange": "sequential", "toe__condition": "port",
-                                             "toe__port": "waves"})
+    made = named(
+        ROD.instance(segments=20),
+        {
+            "head__port": "waves",
+            "exchange": "sequential",
+            "toe__condition": "port",
+            "toe__port": "waves",
+        },
+    )
     made["shaft.resistance[8]"] = 1e3
     made.initialise()
     assert made["head.step_limit"] == pytest.approx(8 * made["time_step"])
@@ -91,7 +117,14 @@ def test_the_nearest_reflection_limits_a_wave_port():
 
 
 def test_where_stiffnesses_differ_the_port_of_a_section_ends():
-    made = rod(20, sections=2, section__area=[1e-3, 2e-3], section__length=[2.5, 7.5], head__port="waves", exchange="sequential")
+    made = rod(
+        20,
+        sections=2,
+        section__area=[1e-3, 2e-3],
+        section__length=[2.5, 7.5],
+        head__port="waves",
+        exchange="sequential",
+    )
     assert made["head.step_limit"] == pytest.approx(5 * made["time_step"])
 
 
@@ -142,11 +175,21 @@ def test_a_force_that_is_no_number_stops_the_rod():
         made.step(0.0, made["time_step"])
 
 
-@pytest.mark.parametrize(("parameters", "message"), [
-    ({"mass": 0.0}, r"mass = 0 kg"), ({"efficiency": 1.2}, r"efficiency = 1\.2: allowed is 0 to 1"),
-    ({"cushion__stiffness": -1.0}, r"cushion\.stiffness = -1 N/m"), ({"cushion__restitution": 0.0}, r"cushion\.restitution = 0"),
-    ({"drop_height": math.nan}, r"drop_height = nan"), ({"head__impedance": -1.0}, r"head\.impedance = -1"),
-    ({"port": "kinematics"}, r"a rigid ram \(cushion\.stiffness = 0\) finds its force from the wave")])
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"mass": 0.0}, r"mass = 0 kg"),
+        ({"efficiency": 1.2}, r"efficiency = 1\.2: allowed is 0 to 1"),
+        ({"cushion__stiffness": -1.0}, r"cushion\.stiffness = -1 N/m"),
+        ({"cushion__restitution": 0.0}, r"cushion\.restitution = 0"),
+        ({"drop_height": math.nan}, r"drop_height = nan"),
+        ({"head__impedance": -1.0}, r"head\.impedance = -1"),
+        (
+            {"port": "kinematics"},
+            r"a rigid ram \(cushion\.stiffness = 0\) finds its force from the wave",
+        ),
+    ],
+)
 def test_a_hammer_refuses_bad_input(parameters, message):
     made = named(HAMMER.instance(), parameters)
     with pytest.raises(ComponentError, match=message):

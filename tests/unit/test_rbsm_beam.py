@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError
 from rockshed.components.rbsm_beam import kernel
@@ -64,7 +65,15 @@ def test_internal_steps_are_the_same_however_they_are_called(calls):
         for _ in range(calls):
             kernel.advance(10 // calls, 1e-6, parts.w, parts.x, parts.k)
         kernel.publish(parts.w, parts.x, parts.k)
-    for name in ("position.x", "position.y", "angle", "velocity.x", "velocity.y", "angular_velocity", "support.force.y"):
+    for name in (
+        "position.x",
+        "position.y",
+        "angle",
+        "velocity.x",
+        "velocity.y",
+        "angular_velocity",
+        "support.force.y",
+    ):
         assert np.array_equal(whole[name], parts[name])
     assert parts["energy.work.contact"] == pytest.approx(whole["energy.work.contact"], rel=1e-9)
 
@@ -88,14 +97,21 @@ def test_state_goes_to_another_instance_bit_for_bit():
 
 def test_bad_parameters_are_all_named():
     instance = BEAM.instance(elements=3)
-    instance["span"], instance["density"], instance["gravity"], instance["supports"] = -1.0, math.nan, -9.8, 3.0
+    instance["span"], instance["density"], instance["gravity"], instance["supports"] = (
+        -1.0,
+        math.nan,
+        -9.8,
+        3.0,
+    )
     with pytest.raises(ComponentError) as error:
         instance.initialise()
     for name in ("span", "density", "gravity", "supports"):
         assert any(problem.startswith(f"{name} = ") for problem in error.value.problems)
 
 
-@pytest.mark.parametrize("sizes", [{"elements": 1}, {"elements": 2001}, {"support_count": 3}, {"discs": 4}])
+@pytest.mark.parametrize(
+    "sizes", [{"elements": 1}, {"elements": 2001}, {"support_count": 3}, {"discs": 4}]
+)
 def test_sizes_out_of_range(sizes):
     with pytest.raises(ComponentError, match="RBSMBeam"):
         BEAM.instance(**sizes)
@@ -105,7 +121,10 @@ def test_sizes_out_of_range(sizes):
 def test_loads_beyond_sense_stop_the_beam(force):
     instance = beam()
     instance["force.y[3]"] = force
-    with pytest.raises(ComponentError, match=r"at t = 0\.25 s the beam diverged.*1\.2 m.*internal_step is 1e-06 s.*6\.14346e-06 s"):
+    with pytest.raises(
+        ComponentError,
+        match=r"at t = 0\.25 s the beam diverged.*1\.2 m.*internal_step is 1e-06 s.*6\.14346e-06 s",
+    ):
         instance.step(0.25, 1e-3)
 
 

@@ -2,14 +2,18 @@
 
 import numpy as np
 import pytest
+
 from rockshed.analyses.rockfall.statistics import envelope, percentile, proportion, ranks
 
 
-@pytest.mark.parametrize(("count", "share", "low", "high"), [
-    (10, 0.5, 2, 9),     # tables of the sign test: 95 % from the 2nd to the 9th of 10
-    (20, 0.5, 6, 15),    # 6th to 15th of 20
-    (6, 0.5, 1, 6),      # six are the fewest
-])
+@pytest.mark.parametrize(
+    ("count", "share", "low", "high"),
+    [
+        (10, 0.5, 2, 9),  # tables of the sign test: 95 % from the 2nd to the 9th of 10
+        (20, 0.5, 6, 15),  # 6th to 15th of 20
+        (6, 0.5, 1, 6),  # six are the fewest
+    ],
+)
 def test_ranks_of_the_bounds(count, share, low, high):
     assert ranks(count, share) == (low, high)
 
@@ -39,14 +43,19 @@ def test_a_percentile_is_a_value_of_the_sample_not_exceeded_by_its_share():
 
 
 def test_intervals_of_proportions():
-    assert proportion(0, 200) == (0.0, pytest.approx(1.0 - 0.025**(1 / 200)))
-    assert proportion(200, 200) == (pytest.approx(0.025**(1 / 200)), 1.0)
+    assert proportion(0, 200) == (0.0, pytest.approx(1.0 - 0.025 ** (1 / 200)))
+    assert proportion(200, 200) == (pytest.approx(0.025 ** (1 / 200)), 1.0)
     low, high = proportion(8, 20)
-    assert (low, high) == (pytest.approx(0.191, abs=5e-4), pytest.approx(0.639, abs=5e-4))  # printed in tables of the binomial
+    assert (low, high) == (
+        pytest.approx(0.191, abs=5e-4),
+        pytest.approx(0.639, abs=5e-4),
+    )  # printed in tables of the binomial
 
 
 def test_an_envelope_leaves_out_the_rocks_that_do_not_come_by():
-    peaks = np.array([[1.0, -1.0, -1.0], [3.0, 5.0, -1.0], [2.0, -1.0, -1.0], [4.0, 6.0, -1.0]], np.float32)
+    peaks = np.array(
+        [[1.0, -1.0, -1.0], [3.0, 5.0, -1.0], [2.0, -1.0, -1.0], [4.0, 6.0, -1.0]], np.float32
+    )
     made = envelope(peaks)
     np.testing.assert_array_equal(made["max"], [4.0, 6.0, np.nan])
     np.testing.assert_array_equal(made["p50"], [2.0, 5.0, np.nan])

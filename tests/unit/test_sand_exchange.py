@@ -2,20 +2,38 @@
 
 import numpy as np
 import pytest
+
 from rockshed.components.common.component import ComponentError
 from rockshed.components.sand_cushion import COMPONENT
-
 from tests.sand_discs import SMALL_BOX, cushion, rows, run, stirred
 
-FORCES = ("rock.force.x", "rock.force.y", "rock.torque", "beam.force.x", "beam.force.y", "beam.torque", "transmitted_force")
+FORCES = (
+    "rock.force.x",
+    "rock.force.y",
+    "rock.torque",
+    "beam.force.x",
+    "beam.force.y",
+    "beam.torque",
+    "transmitted_force",
+)
 
 
 def struck(**changes):
     """A small cushion into which the rock sinks at 2 m/s, turning and drifting, while the beam gives way."""
-    parameters = {**SMALL_BOX, "base": "beam_discs", "packing": "hexagonal", "rotation": "free", "rock.radius": 0.02}
+    parameters = {
+        **SMALL_BOX,
+        "base": "beam_discs",
+        "packing": "hexagonal",
+        "rotation": "free",
+        "rock.radius": 0.02,
+    }
     sand = cushion({**parameters, **changes})
-    for name, value in {"rock.position.y": sand["surface_height"] + 0.02, "rock.velocity.x": 0.3, "rock.velocity.y": -2.0,
-                        "rock.angular_velocity": 5.0}.items():
+    for name, value in {
+        "rock.position.y": sand["surface_height"] + 0.02,
+        "rock.velocity.x": 0.3,
+        "rock.velocity.y": -2.0,
+        "rock.angular_velocity": 5.0,
+    }.items():
         sand[name] = value
     sand.evaluate()
     sand["beam.velocity.y"] = np.array((-0.1, -0.2, -0.2, -0.1))
@@ -25,9 +43,13 @@ def struck(**changes):
 
 def move_boundaries(sand, start, time):
     """Rock and beam where their velocity brings them by ``time`` from ``start``."""
-    for position, velocity in (("rock.position.x", "rock.velocity.x"), ("rock.position.y", "rock.velocity.y"),
-                               ("rock.angle", "rock.angular_velocity"), ("beam.position.y", "beam.velocity.y"),
-                               ("beam.angle", "beam.angular_velocity")):
+    for position, velocity in (
+        ("rock.position.x", "rock.velocity.x"),
+        ("rock.position.y", "rock.velocity.y"),
+        ("rock.angle", "rock.angular_velocity"),
+        ("beam.position.y", "beam.velocity.y"),
+        ("beam.angle", "beam.angular_velocity"),
+    ):
         sand[position] = start[position] + sand[velocity] * time
 
 
@@ -38,7 +60,10 @@ def boundary_start(sand):
 
 def test_linear_motion_and_mean_forces_are_the_impulse_of_single_steps():
     dt, parts, exchanges = 1e-5, 10, 5
-    coarse, fine = struck(kinematics="linear", forces="mean", internal_step=dt), struck(internal_step=dt)
+    coarse, fine = (
+        struck(kinematics="linear", forces="mean", internal_step=dt),
+        struck(internal_step=dt),
+    )
     start = boundary_start(fine)
     for exchange in range(exchanges):
         move_boundaries(coarse, start, exchange * parts * dt)
@@ -67,7 +92,11 @@ def test_held_motion_freezes_the_rock_within_a_step():
 
 
 def test_schemes_agree_to_the_bit_with_one_internal_step_per_exchange():
-    variants = [struck(kinematics=kinematics, forces=forces) for kinematics in ("held", "linear") for forces in ("last", "mean")]
+    variants = [
+        struck(kinematics=kinematics, forces=forces)
+        for kinematics in ("held", "linear")
+        for forces in ("last", "mean")
+    ]
     for sand in variants:
         run(sand, 1e-3, 1e-5)
     for sand in variants[1:]:
@@ -87,7 +116,9 @@ def test_a_step_that_is_no_multiple_is_divided_into_equal_parts():
 
 def test_penetration_counts_from_the_surface_at_the_start():
     sand = struck()
-    assert sand["penetration"] == pytest.approx(sand["surface_height"] - (sand["rock.position.y"] - 0.02), rel=1e-12)
+    assert sand["penetration"] == pytest.approx(
+        sand["surface_height"] - (sand["rock.position.y"] - 0.02), rel=1e-12
+    )
     sand["rock.position.y"] -= 0.01
     before = sand["penetration"]
     sand.step(0.0, 1e-5)
@@ -95,7 +126,10 @@ def test_penetration_counts_from_the_surface_at_the_start():
 
 
 def test_same_parameters_same_bits():
-    first, second = struck(packing="random", **{"disc.spread": 0.2}), struck(packing="random", **{"disc.spread": 0.2})
+    first, second = (
+        struck(packing="random", **{"disc.spread": 0.2}),
+        struck(packing="random", **{"disc.spread": 0.2}),
+    )
     run(first, 1e-3, 1e-5)
     run(second, 1e-3, 1e-5)
     assert first.to_bytes() == second.to_bytes()

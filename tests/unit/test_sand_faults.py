@@ -4,16 +4,24 @@ import math
 
 import numpy as np
 import pytest
+
 from rockshed.components.common.component import ComponentError
 from rockshed.components.sand_cushion import COMPONENT
-
 from tests.sand_discs import SMALL_BOX, cushion, discs_at, run, stirred
 
 
 def test_all_bad_values_are_named_at_once():
     with pytest.raises(ComponentError) as refusal:
-        cushion({"disc.radius": -0.005, "modulus": math.nan, "depth": 0.0, "damping": -0.1, "packing": 9.0,
-                 "rock.position.y": math.inf})
+        cushion(
+            {
+                "disc.radius": -0.005,
+                "modulus": math.nan,
+                "depth": 0.0,
+                "damping": -0.1,
+                "packing": 9.0,
+                "rock.position.y": math.inf,
+            }
+        )
     assert len(refusal.value.problems) == 6
     assert "disc.radius = -0.005 m: allowed is 1e-09 m or more" in str(refusal.value)
     assert "modulus = nan: must be a finite number" in str(refusal.value)
@@ -25,14 +33,18 @@ def test_an_unknown_choice_is_answered_with_the_known_ones():
 
 
 def test_cohesion_without_friction_has_no_force():
-    with pytest.raises(ComponentError, match=r"cohesion = 500 Pa needs friction.*friction_angle is 0"):
+    with pytest.raises(
+        ComponentError, match=r"cohesion = 500 Pa needs friction.*friction_angle is 0"
+    ):
         cushion({**SMALL_BOX, "cohesion": 500.0, "friction_angle": 0.0})
 
 
 def test_smooth_contacts_that_yield_are_no_fault():
     sand = cushion({**SMALL_BOX, "unloading_ratio": 3.0, "friction_angle": 0.0})
     run(sand, 1e-3)
-    assert math.isfinite(sand["energy.kinetic"] + sand["energy.plastic"] + sand["transmitted_force"])
+    assert math.isfinite(
+        sand["energy.kinetic"] + sand["energy.plastic"] + sand["transmitted_force"]
+    )
 
 
 @pytest.mark.parametrize("sizes", [{"discs": 0}, {"elements": 0}])
@@ -42,31 +54,54 @@ def test_nothing_is_no_size(sizes):
 
 
 def test_a_rock_inside_the_sand():
-    with pytest.raises(ComponentError, match=r"lies 0\.01997\d* m under the surface at 0\.05997\d* m.*position0\.y"):
+    with pytest.raises(
+        ComponentError, match=r"lies 0\.01997\d* m under the surface at 0\.05997\d* m.*position0\.y"
+    ):
         cushion({**SMALL_BOX, "rock.position.y": 0.06 - 0.02 + 0.0495})
 
 
 def test_a_rock_that_touches_the_sand_is_no_fault():
     surface = cushion(SMALL_BOX)["surface_height"]
-    cushion({**SMALL_BOX, "rock.radius": 0.04, "rock.position.x": 0.055, "rock.position.y": surface + 0.04})
+    cushion(
+        {
+            **SMALL_BOX,
+            "rock.radius": 0.04,
+            "rock.position.x": 0.055,
+            "rock.position.y": surface + 0.04,
+        }
+    )
 
 
-@pytest.mark.parametrize("box", [{"box.left": -0.01, "box.width": 0.1}, {"box.left": 0.15, "box.width": 0.1}], ids=str)
+@pytest.mark.parametrize(
+    "box", [{"box.left": -0.01, "box.width": 0.1}, {"box.left": 0.15, "box.width": 0.1}], ids=str
+)
 @pytest.mark.parametrize("base", ["beam_discs", "beam_surface"])
 def test_a_beam_narrower_than_the_cushion(base, box):
-    with pytest.raises(ComponentError, match=f"beam is narrower.*box.left = {box['box.left']}.*make the beam longer"):
+    with pytest.raises(
+        ComponentError,
+        match=f"beam is narrower.*box.left = {box['box.left']}.*make the beam longer",
+    ):
         cushion({**SMALL_BOX, "base": base, **box})
     cushion({**SMALL_BOX, "base": "floor", **box})
 
 
 def test_beam_discs_out_of_order():
     with pytest.raises(ComponentError, match="from left to right"):
-        cushion({**SMALL_BOX, "base": "beam_discs", "beam.position.x": np.array((0.025, 0.125, 0.075, 0.175))})
+        cushion(
+            {
+                **SMALL_BOX,
+                "base": "beam_discs",
+                "beam.position.x": np.array((0.025, 0.125, 0.075, 0.175)),
+            }
+        )
 
 
 @pytest.mark.parametrize("place", [-1.0, 0.02, 0.08, 0.3])
 def test_a_rock_in_or_behind_a_side_wall(place):
-    with pytest.raises(ComponentError, match=r"side wall.*radius of 0\.0495 m at x = .*box from 0 m on, 0\.1 m wide"):
+    with pytest.raises(
+        ComponentError,
+        match=r"side wall.*radius of 0\.0495 m at x = .*box from 0 m on, 0\.1 m wide",
+    ):
         cushion({**SMALL_BOX, "rock.position.x": place, "rock.radius": 0.0495})
 
 
@@ -77,7 +112,9 @@ def test_discs_wider_than_the_box():
 
 def test_gaps_between_the_beam_discs():
     spread = {"base": "beam_discs", "beam.radius": 0.02}
-    with pytest.raises(ComponentError, match=r"gaps between the beam discs: beam\.radius = 0\.02 m"):
+    with pytest.raises(
+        ComponentError, match=r"gaps between the beam discs: beam\.radius = 0\.02 m"
+    ):
         cushion({**SMALL_BOX, **spread})
     cushion({**SMALL_BOX, **spread, "base": "beam_surface", "box.left": 0.01})
 

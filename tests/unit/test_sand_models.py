@@ -3,6 +3,7 @@
 import math
 
 import pytest
+
 from rockshed.cases import sonoda1993
 from rockshed.cases.registry import case, cases, changes_of, model_changes
 from rockshed.cases.sand_models import MODELS
@@ -17,13 +18,21 @@ def prepared(target, model, *settings):
 
 def test_the_literal_model_is_eq_1_to_the_letter():
     sand = prepared("lab-impact", "literal").system.components["sand"].parameters
-    assert (sand["rotation"], sand["stiffness_factor"], sand["base.shape"]) == ("free", 1.0, "round")
+    assert (sand["rotation"], sand["stiffness_factor"], sand["base.shape"]) == (
+        "free",
+        1.0,
+        "round",
+    )
 
 
-@pytest.mark.parametrize("target", ["lab-impact", "lab-impact-9", "static-test", "rigid-base-pit", "girders-10"])
+@pytest.mark.parametrize(
+    "target", ["lab-impact", "lab-impact-9", "static-test", "rigid-base-pit", "girders-10"]
+)
 def test_one_law_is_one_for_all_cases(target):
     sand = prepared(target, "one-law").system.components["sand"].parameters
-    assert {key: sand[key] for key in MODELS["one-law"].parameters} == dict(MODELS["one-law"].parameters)
+    assert {key: sand[key] for key in MODELS["one-law"].parameters} == dict(
+        MODELS["one-law"].parameters
+    )
     assert (sand["unit_weight_of"], sand["packing"]) == ("layer", "prepared")
 
 
@@ -36,7 +45,9 @@ def test_compaction_and_water_make_the_state_of_the_soil():
 def test_a_prepared_layer_is_as_thick_as_in_the_test_and_the_rock_meets_it_as_fast():
     job = prepared("lab-impact", "one-law")
     discs = job.facts["sizes"]["sand"]["discs"]
-    assert discs * math.pi * 0.5**2 * (1 + 0.25**2 / 3) / (37 * 10) == pytest.approx(0.75, abs=0.002)
+    assert discs * math.pi * 0.5**2 * (1 + 0.25**2 / 3) / (37 * 10) == pytest.approx(
+        0.75, abs=0.002
+    )
     rock = job.system.components["rock"].parameters
     fallen = rock["position0.y"] - 0.0495 - 0.10
     assert rock["velocity0.y"] ** 2 + 2 * 9.80665 * fallen == pytest.approx(8.0**2)
@@ -46,7 +57,10 @@ def test_another_state_of_the_soil_may_be_asked_for():
     job = prepared("lab-impact", "one-law", "sand.solid_fraction=0.72", "sand.cohesion=0")
     sand = job.system.components["sand"].parameters
     assert (sand["solid_fraction"], sand["cohesion"]) == (0.72, 0)
-    assert job.facts["sizes"]["sand"]["discs"] < model_changes(case("lab-impact"), "one-law", {}).sizes["sand.discs"]
+    assert (
+        job.facts["sizes"]["sand"]["discs"]
+        < model_changes(case("lab-impact"), "one-law", {}).sizes["sand.discs"]
+    )
 
 
 def test_what_a_model_sets_is_no_change_of_the_test():

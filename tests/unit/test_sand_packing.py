@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from rockshed.components.common.component import ComponentError
 
+from rockshed.components.common.component import ComponentError
 from tests.sand_discs import RADIUS, SMALL_BOX, cushion, masses, rows
 
 BOX = {**SMALL_BOX, "settling.time": 0.0, "rock.position.y": 10.0}
@@ -72,12 +72,26 @@ def test_settled_discs_lie_in_the_box(packing):
 def test_surface_height_is_that_under_the_rock():
     """Lattice of six discs in a box for ten: nothing lies under a rock at the right end."""
     narrow = {**BOX, "rock.radius": 0.01}
-    assert cushion({**narrow, "rock.position.x": 0.01}, discs=16)["surface_height"] == pytest.approx(0.02, rel=1e-3)
-    assert cushion({**narrow, "rock.position.x": 0.09}, discs=16)["surface_height"] == pytest.approx(0.01, rel=1e-3)
+    assert cushion({**narrow, "rock.position.x": 0.01}, discs=16)[
+        "surface_height"
+    ] == pytest.approx(0.02, rel=1e-3)
+    assert cushion({**narrow, "rock.position.x": 0.09}, discs=16)[
+        "surface_height"
+    ] == pytest.approx(0.01, rel=1e-3)
 
 
-PREPARED = {"packing": "prepared", "disc.spread": 0.25, "rotation": "free", "stiffness_factor": 1.0, "rolling_resistance": 0.3,
-            "settling.time": 0.2, "rock.position.y": 2.0, "base": "floor", "box.left": 0.0, "box.width": 0.2}
+PREPARED = {
+    "packing": "prepared",
+    "disc.spread": 0.25,
+    "rotation": "free",
+    "stiffness_factor": 1.0,
+    "rolling_resistance": 0.3,
+    "settling.time": 0.2,
+    "rock.position.y": 2.0,
+    "base": "floor",
+    "box.left": 0.0,
+    "box.width": 0.2,
+}
 
 
 @pytest.mark.parametrize("share", [0.735, 0.75])
@@ -86,7 +100,9 @@ def test_a_prepared_layer_has_the_solid_fraction_that_was_asked_for(share):
     assert sand["layer.solid_fraction"] == pytest.approx(share, abs=0.006)
     height = 2.0 * (masses(sand) @ rows(sand)[:, 1]) / masses(sand).sum()
     assert sand["layer.height"] == pytest.approx(height)
-    assert math.pi * (rows(sand)[:, 5] ** 2).sum() / (0.2 * height) == pytest.approx(sand["layer.solid_fraction"])
+    assert math.pi * (rows(sand)[:, 5] ** 2).sum() / (0.2 * height) == pytest.approx(
+        sand["layer.solid_fraction"]
+    )
 
 
 def test_a_lattice_has_the_height_of_its_columns():
@@ -95,20 +111,28 @@ def test_a_lattice_has_the_height_of_its_columns():
     assert sand["layer.solid_fraction"] == pytest.approx(math.pi / 4.0)
 
 
-@pytest.mark.parametrize(("share", "why"), [
-    (0.85, "cannot be packed as densely as solid_fraction = 0.85: it reaches 0.7"),
-    (0.6, "cannot lie as loosely as solid_fraction = 0.6: with its friction it falls to 0.7")])
+@pytest.mark.parametrize(
+    ("share", "why"),
+    [
+        (0.85, "cannot be packed as densely as solid_fraction = 0.85: it reaches 0.7"),
+        (0.6, "cannot lie as loosely as solid_fraction = 0.6: with its friction it falls to 0.7"),
+    ],
+)
 def test_a_solid_fraction_out_of_reach_is_refused_with_what_is(share, why):
     with pytest.raises(ComponentError, match=why):
         cushion({**PREPARED, "solid_fraction": share}, discs=200)
 
 
 def test_cohesion_does_not_hold_a_layer_up_while_it_is_prepared():
-    dry, moist = (cushion({**PREPARED, "solid_fraction": 0.74, "cohesion": c}, discs=200) for c in (0.0, 5e3))
+    dry, moist = (
+        cushion({**PREPARED, "solid_fraction": 0.74, "cohesion": c}, discs=200) for c in (0.0, 5e3)
+    )
     assert moist["layer.solid_fraction"] == pytest.approx(dry["layer.solid_fraction"], abs=0.01)
     assert moist["energy.capillary"] < 0.0 == dry["energy.capillary"]
 
 
 def test_the_unit_weight_of_the_layer_is_carried_by_its_discs():
     sand = cushion({**PREPARED, "solid_fraction": 0.74, "unit_weight_of": "layer"}, discs=200)
-    assert masses(sand).sum() == pytest.approx(1800.0 * 0.2 * sand["layer.height"] * sand["depth"], rel=0.01)
+    assert masses(sand).sum() == pytest.approx(
+        1800.0 * 0.2 * sand["layer.height"] * sand["depth"], rel=0.01
+    )

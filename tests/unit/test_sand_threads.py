@@ -7,16 +7,19 @@ import sys
 import llvmlite.binding as llvm
 import numpy as np
 import pytest
+
 from rockshed.components.common.kernels import kernel
 from rockshed.components.common.threads import shared_among_threads
 from rockshed.components.sand_cushion import COMPONENT, forces
 from rockshed.components.sand_cushion.contact_search import forget
 from rockshed.components.sand_cushion.declarations import PART
-
 from tests.sand_discs import SMALL_BOX, cushion, force_rebuild, rows, run, stirred
 
-MODELS = [{"rotation": "locked"}, {"rotation": "free", "rolling_resistance": 0.3},
-          {"rotation": "free", "unloading_ratio": 3.0, "cohesion": 500.0}]
+MODELS = [
+    {"rotation": "locked"},
+    {"rotation": "free", "rolling_resistance": 0.3},
+    {"rotation": "free", "unloading_ratio": 3.0, "cohesion": 500.0},
+]
 
 
 @kernel
@@ -46,7 +49,9 @@ def moving(changes, second_part, threads=1):
     instance = stirred(cushion({**SMALL_BOX, "packing": "hexagonal", **changes}), 0.3)
     instance.state("part")[:] = 0, second_part, instance.sizes["discs"]
     instance["threads"] = threads
-    forget(instance.x, instance.k)  # springs pass from a list to one that is divided in the same way
+    forget(
+        instance.x, instance.k
+    )  # springs pass from a list to one that is divided in the same way
     force_rebuild(instance)
     return instance
 
@@ -59,7 +64,16 @@ def test_the_bits_are_the_same_on_one_thread_and_on_two(changes):
     assert one["energy.sliding"] > 0.0
     np.testing.assert_array_equal(one.x, two.x)
     np.testing.assert_array_equal(one.k, two.k)
-    for name in ("kinetic", "elastic", "normal_dashpot", "tangential_dashpot", "sliding", "rolling", "plastic", "capillary"):
+    for name in (
+        "kinetic",
+        "elastic",
+        "normal_dashpot",
+        "tangential_dashpot",
+        "sliding",
+        "rolling",
+        "plastic",
+        "capillary",
+    ):
         assert one[f"energy.{name}"] == two[f"energy.{name}"]
 
 
@@ -73,8 +87,19 @@ def test_the_division_into_parts_changes_rounding_only(changes):
         run(divided, 1e-5)
     assert rows(divided)[:, :5] == pytest.approx(rows(whole)[:, :5], rel=1e-9, abs=1e-9)
     assert divided.state("angle") == pytest.approx(whole.state("angle"), abs=1e-9)
-    for name in ("kinetic", "elastic", "normal_dashpot", "tangential_dashpot", "sliding", "rolling", "plastic", "capillary"):
-        assert divided[f"energy.{name}"] == pytest.approx(whole[f"energy.{name}"], rel=1e-8, abs=1e-15)
+    for name in (
+        "kinetic",
+        "elastic",
+        "normal_dashpot",
+        "tangential_dashpot",
+        "sliding",
+        "rolling",
+        "plastic",
+        "capillary",
+    ):
+        assert divided[f"energy.{name}"] == pytest.approx(
+            whole[f"energy.{name}"], rel=1e-8, abs=1e-15
+        )
 
 
 def test_a_large_cushion_is_divided_by_itself_and_uses_more_threads():
@@ -82,8 +107,16 @@ def test_a_large_cushion_is_divided_by_itself_and_uses_more_threads():
     states = []
     for threads in (1, 2, 3):
         sand = COMPONENT.instance(discs=discs)
-        for name, value in {"base": "floor", "box.left": 0.0, "box.width": 2.5, "rock.position.x": 1.0, "rock.position.y": 50.0,
-                            "packing": "hexagonal", "threads": threads, "settling.time": 1e-4}.items():
+        for name, value in {
+            "base": "floor",
+            "box.left": 0.0,
+            "box.width": 2.5,
+            "rock.position.x": 1.0,
+            "rock.position.y": 50.0,
+            "packing": "hexagonal",
+            "threads": threads,
+            "settling.time": 1e-4,
+        }.items():
             sand[name] = value
         sand.initialise()
         assert sand.state("part").tolist() == [0, PART, 2 * PART, discs]
@@ -105,14 +138,20 @@ open(sys.argv[2], "wb").write(sand.to_bytes())
 """
 
 
-@pytest.mark.skipif(not llvm.get_host_cpu_features().get("avx512f"), reason="this processor has no AVX-512 to compare with")
+@pytest.mark.skipif(
+    not llvm.get_host_cpu_features().get("avx512f"),
+    reason="this processor has no AVX-512 to compare with",
+)
 @pytest.mark.parametrize("changes", MODELS, ids=str)
 def test_avx2_and_avx512_give_the_same_bits(tmp_path, changes):
     """Compiled for a processor with AVX2 in a process of its own, against this process."""
     sand = moving(changes, 34)
     (tmp_path / "start").write_bytes(sand.to_bytes())
-    subprocess.run([sys.executable, "-c", STEPS, tmp_path / "start", tmp_path / "end"], check=True,
-                   env={**os.environ, "NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": ""})
+    subprocess.run(
+        [sys.executable, "-c", STEPS, tmp_path / "start", tmp_path / "end"],
+        check=True,
+        env={**os.environ, "NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": ""},
+    )
     for _ in range(100):
         forces.advance_discs(1e-5, sand.w, sand.x, sand.k)
     assert (tmp_path / "end").read_bytes() == sand.to_bytes() != (tmp_path / "start").read_bytes()

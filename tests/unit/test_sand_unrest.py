@@ -8,7 +8,10 @@ def test_settled_sand_is_at_rest():
 
 
 def test_a_lattice_with_its_own_overlaps_is_at_rest_without_settling():
-    assert cushion({**SMALL_BOX, "base": "floor", "packing": "square", "settling.time": 0.0})["unrest"] < 1e-9
+    assert (
+        cushion({**SMALL_BOX, "base": "floor", "packing": "square", "settling.time": 0.0})["unrest"]
+        < 1e-9
+    )
 
 
 def test_a_heap_that_has_not_settled_is_not():

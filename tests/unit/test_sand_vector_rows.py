@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from rockshed.components.common.kernels import kernel
 from rockshed.components.sand_cushion.contact_search import pair_of
 from rockshed.components.sand_cushion.declarations import BLOCK
@@ -32,7 +33,12 @@ def pairs(seed):
     random = np.random.default_rng(seed)
     first = np.sort(random.integers(0, BODIES - 1, BLOCK))
     second = random.integers(first + 1, BODIES)
-    return random, first, second, np.array([pair_of.py_func(int(i), int(j)) for i, j in zip(first, second)])
+    return (
+        random,
+        first,
+        second,
+        np.array([pair_of.py_func(int(i), int(j)) for i, j in zip(first, second)]),
+    )
 
 
 @settings(deadline=None)
@@ -46,8 +52,8 @@ def test_columns_are_those_of_the_plain_loop(seed):
     np.testing.assert_array_equal(vector, plain)
     rows = body.reshape(-1, 8)
     assert plain[:BLOCK] == pytest.approx(rows[second, 0] - rows[first, 0])
-    assert plain[5 * BLOCK:6 * BLOCK] == pytest.approx(rows[second, 5] + rows[first, 5])
-    assert plain[6 * BLOCK:] == pytest.approx(rows[second, 7] + rows[first, 7])
+    assert plain[5 * BLOCK : 6 * BLOCK] == pytest.approx(rows[second, 5] + rows[first, 5])
+    assert plain[6 * BLOCK :] == pytest.approx(rows[second, 7] + rows[first, 7])
 
 
 @settings(deadline=None)
@@ -65,4 +71,4 @@ def test_loads_add_up_in_the_order_of_the_plain_loop(seed):
     np.testing.assert_array_equal(locked.reshape(-1, 4)[:, 2:], start.reshape(-1, 4)[:, 2:])
     gained = (plain - start).reshape(-1, 4).sum(axis=0)
     assert gained[:2] == pytest.approx(0.0, abs=1e-12)  # action and reaction
-    assert gained[2] == pytest.approx(2.0 * block[2 * BLOCK:3 * BLOCK].sum())
+    assert gained[2] == pytest.approx(2.0 * block[2 * BLOCK : 3 * BLOCK].sum())

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+
 from rockshed.components.common.counter_random import shuffled
 from rockshed.components.slope_rockfall.declarations import UNIFORM
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, RESTED, STOPPED
-
 from tests.slope_rocks import SLOPE, plane, run_trials
 
 
@@ -44,7 +44,12 @@ def test_a_hypercube_leaves_a_trial_a_function_of_its_number():
 def test_the_mean_of_the_limit_speed_scatters_less_with_a_hypercube():
     def scatter(hypercube):
         rock = example(hypercube=hypercube)
-        return np.std([run_trials(rock, 50, seed=seed)[2][:, OUTCOME.limit_speed].mean() for seed in range(30)])
+        return np.std(
+            [
+                run_trials(rock, 50, seed=seed)[2][:, OUTCOME.limit_speed].mean()
+                for seed in range(30)
+            ]
+        )
 
     assert scatter(50) < 0.1 * scatter(0)
 
@@ -73,13 +78,17 @@ def test_a_barrier_lets_through_what_exceeds_its_capacity_and_the_rock_goes_on_a
     capacity = float(np.median(free[:, 0, PASSAGE.kinetic]))
     _, _, outcomes = run_trials(rock, 500, lines=WALL, barriers=[(1e3, capacity)])
     stopped = outcomes[:, OUTCOME.end] == STOPPED
-    np.testing.assert_array_equal(stopped, (free[:, 0, PASSAGE.kinetic] <= capacity) & (free[:, 0, PASSAGE.count] > 0))
+    np.testing.assert_array_equal(
+        stopped, (free[:, 0, PASSAGE.kinetic] <= capacity) & (free[:, 0, PASSAGE.count] > 0)
+    )
     np.testing.assert_array_equal(outcomes[~stopped, :-1], free_ends[~stopped, :-1])
 
 
 def test_stations_beyond_a_barrier_see_no_stopped_rock():
     rock = plane(0.5, speed=5.0)
-    barred, peaks, outcomes = run_trials(rock, 1, lines=[(20, -100, 20, 100)], barriers=[(1e3, 1e12)], stations=2000, right=100.0)
+    barred, peaks, outcomes = run_trials(
+        rock, 1, lines=[(20, -100, 20, 100)], barriers=[(1e3, 1e12)], stations=2000, right=100.0
+    )
     assert outcomes[0, OUTCOME.end] == STOPPED != RESTED
     x = rock["profile.x"] + np.arange(2000)
     assert np.all(peaks[0, (x >= 0.5) & (x <= 19.0)] > -1.0)

@@ -2,6 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from rockshed.components.slope_rockfall.declarations import NEVER
 from rockshed.components.slope_rockfall.kernel import grid_after, on_grid
 
@@ -19,7 +20,9 @@ def test_it_is_the_event_rounded_up_to_a_picosecond(event):
 
 @AT_LEISURE
 @given(TIMES, TIMES)
-def test_a_step_that_ends_there_has_the_event_behind_it_whatever_the_rounding_of_the_clock(event, start):
+def test_a_step_that_ends_there_has_the_event_behind_it_whatever_the_rounding_of_the_clock(
+    event, start
+):
     published = grid_after(event)
     assert on_grid(start + (published - start)) == published >= event
 

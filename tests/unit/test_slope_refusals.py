@@ -3,8 +3,8 @@
 import math
 
 import pytest
-from rockshed.components.common.component import ComponentError
 
+from rockshed.components.common.component import ComponentError
 from tests.slope_rocks import SLOPE, slope
 
 LEVEL = [(0, 0), (10, 0), (20, 0), (30, 0)]
@@ -23,41 +23,62 @@ def problems(points=LEVEL, **values):
     return error.value.problems
 
 
-@pytest.mark.parametrize(("points", "cell", "reason"), [
-    ([(0, 0), (10, 0), (8, -5), (30, -6)], 2, "folding back"),
-    ([(0, 0), (10, 0), (10, -5), (30, -6)], 2, "right node must lie to the right"),
-    ([(0, 0), (10, 0), (10, 0), (30, -6)], 2, "remove repeated ones"),
-    ([(0, 0), (10, 0), (10.001, -5), (30, -6)], 2, "steeper than 89 degrees"),
-])
+@pytest.mark.parametrize(
+    ("points", "cell", "reason"),
+    [
+        ([(0, 0), (10, 0), (8, -5), (30, -6)], 2, "folding back"),
+        ([(0, 0), (10, 0), (10, -5), (30, -6)], 2, "right node must lie to the right"),
+        ([(0, 0), (10, 0), (10, 0), (30, -6)], 2, "remove repeated ones"),
+        ([(0, 0), (10, 0), (10.001, -5), (30, -6)], 2, "steeper than 89 degrees"),
+    ],
+)
 def test_profiles_that_fold_back_or_are_vertical(points, cell, reason):
-    text, = problems(points)
+    (text,) = problems(points)
     assert text.startswith(f"cell {cell} (end.x[{cell}] = {points[cell][0]:g} m): ")
     assert reason in text
 
 
 def test_every_bad_cell_is_named_with_its_reason():
-    found = problems([(0, 0), (10, 0), (8, -5), (30, -6)], friction=(3, 3.0), roughness=(3, 0.5),
-                     roughness__distribution="lognormal")
-    assert [text.split(":")[0].split(" (")[0] for text in found] == ["cell 1", "cell 2", "cell 2", "cell 3"]
+    found = problems(
+        [(0, 0), (10, 0), (8, -5), (30, -6)],
+        friction=(3, 3.0),
+        roughness=(3, 0.5),
+        roughness__distribution="lognormal",
+    )
+    assert [text.split(":")[0].split(" (")[0] for text in found] == [
+        "cell 1",
+        "cell 2",
+        "cell 2",
+        "cell 3",
+    ]
     assert "mu tan(phi) = 1.73205" in found[-1]
     assert "reduce friction, roughness or its deviation" in found[-1]
 
 
-@pytest.mark.parametrize(("values", "reason"), [
-    ({"hardening": (2, 1.2)}, "hardening[2] = 1.2: allowed is 0 to 1"),
-    ({"hardening": (2, -0.1)}, "hardening[2] = -0.1: allowed is 0 to 1"),
-    ({"strength": (1, math.nan)}, "strength[1] = nan: must be a finite number"),
-    ({"end__x": (3, math.inf)}, "end.x[3] = inf: must be a finite number"),
-    ({"position0__y": math.nan}, "position0.y = nan: must be a finite number"),
-    ({"radius": 0.0}, "radius = 0 m"),
-    ({"friction": (3, -0.1)}, "friction[3] = -0.1"),
-    ({"roughness_deviation": (1, 1.1)}, "roughness[1] = 0, largest 2.156"),
-    ({"trial": 0.5}, "trial = 0.5: must be a whole number"),
-    ({"limit_speed__distribution": "lognormal", "limit_speed__mean": 0.0}, "limit_speed.mean = 0 m/s"),
-    ({"tilt__distribution": "lognormal"}, "only a positive tilt has a lognormal distribution"),
-    ({"receiver__present": 1.0}, "the receiver is empty"),
-    ({"position0__y": 0.3}, "starts below the surface: its lowest point is at -0.2 m along the normal of cell 1"),
-])
+@pytest.mark.parametrize(
+    ("values", "reason"),
+    [
+        ({"hardening": (2, 1.2)}, "hardening[2] = 1.2: allowed is 0 to 1"),
+        ({"hardening": (2, -0.1)}, "hardening[2] = -0.1: allowed is 0 to 1"),
+        ({"strength": (1, math.nan)}, "strength[1] = nan: must be a finite number"),
+        ({"end__x": (3, math.inf)}, "end.x[3] = inf: must be a finite number"),
+        ({"position0__y": math.nan}, "position0.y = nan: must be a finite number"),
+        ({"radius": 0.0}, "radius = 0 m"),
+        ({"friction": (3, -0.1)}, "friction[3] = -0.1"),
+        ({"roughness_deviation": (1, 1.1)}, "roughness[1] = 0, largest 2.156"),
+        ({"trial": 0.5}, "trial = 0.5: must be a whole number"),
+        (
+            {"limit_speed__distribution": "lognormal", "limit_speed__mean": 0.0},
+            "limit_speed.mean = 0 m/s",
+        ),
+        ({"tilt__distribution": "lognormal"}, "only a positive tilt has a lognormal distribution"),
+        ({"receiver__present": 1.0}, "the receiver is empty"),
+        (
+            {"position0__y": 0.3},
+            "starts below the surface: its lowest point is at -0.2 m along the normal of cell 1",
+        ),
+    ],
+)
 def test_values(values, reason):
     assert any(reason in text for text in problems(**values))
 
@@ -86,6 +107,13 @@ def test_the_kernel_itself_names_the_first_bad_cell():
 
 
 def test_a_rock_may_start_in_contact():
-    rock = slope(LEVEL, position0__x=5.0, position0__y=0.5, velocity0__x=1.0, angular_velocity0=-2.0, friction=0.5)
+    rock = slope(
+        LEVEL,
+        position0__x=5.0,
+        position0__y=0.5,
+        velocity0__x=1.0,
+        angular_velocity0=-2.0,
+        friction=0.5,
+    )
     assert rock["height"] == 0.0
     assert rock["mode"] == 2.0

@@ -4,10 +4,10 @@ import threading
 
 import numpy as np
 import pytest
+
 from rockshed.components.catalogue import component
 from rockshed.components.slope_rockfall.declarations import FLIGHT
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, RESTED
-
 from tests.slope_rocks import SLOPE, mode, run_trials
 
 LINES = [(x, -50, x, 200) for x in (60, 90, 120)]
@@ -69,7 +69,9 @@ def test_the_first_trials_are_those_of_a_longer_campaign_in_any_order(instance):
     few_passages, _, few = run_trials(instance, 200, lines=LINES)
     np.testing.assert_array_equal(outcomes[:200], few)
     np.testing.assert_array_equal(passages[:200], few_passages)
-    backwards = np.concatenate([run_trials(instance, 1, first=n)[2] for n in reversed(range(100))])[::-1]
+    backwards = np.concatenate([run_trials(instance, 1, first=n)[2] for n in reversed(range(100))])[
+        ::-1
+    ]
     np.testing.assert_array_equal(backwards, outcomes[:100])
     assert len(np.unique(outcomes[:, OUTCOME.time])) > 4900
 
@@ -77,7 +79,12 @@ def test_the_first_trials_are_those_of_a_longer_campaign_in_any_order(instance):
 def test_threads_do_not_change_a_trial(instance):
     _, _, together = run_trials(instance, 2000)
     parts = {}
-    threads = [threading.Thread(target=lambda n=n: parts.update({n: run_trials(instance, 1000, first=n)[2]})) for n in (0, 1000)]
+    threads = [
+        threading.Thread(
+            target=lambda n=n: parts.update({n: run_trials(instance, 1000, first=n)[2]})
+        )
+        for n in (0, 1000)
+    ]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -86,7 +93,11 @@ def test_threads_do_not_change_a_trial(instance):
 
 
 def test_seeds_and_trials_differ(instance):
-    ends = {run_trials(instance, 1, first=trial, seed=seed)[2][0, OUTCOME.time] for seed in range(20) for trial in range(20)}
+    ends = {
+        run_trials(instance, 1, first=trial, seed=seed)[2][0, OUTCOME.time]
+        for seed in range(20)
+        for trial in range(20)
+    }
     assert len(ends) == 400
 
 
@@ -97,15 +108,30 @@ def test_the_fmu_replays_a_trial_of_the_campaign(instance):
         rock.step(0.0, 200.0)
         assert outcomes[trial, OUTCOME.end] == RESTED
         assert mode(rock) == "rest"
-        assert (rock["position.x"], rock["position.y"]) == tuple(outcomes[trial, [OUTCOME.x, OUTCOME.y]])
+        assert (rock["position.x"], rock["position.y"]) == tuple(
+            outcomes[trial, [OUTCOME.x, OUTCOME.y]]
+        )
         assert rock["impacts"] == outcomes[trial, OUTCOME.impacts]
 
 
 def test_records_agree_with_the_trajectory(instance):
     """Search lines, stations and largest values of one trial against the same trial read at many instants."""
-    passages, peaks, outcomes = run_trials(instance, 1, first=4, left=0.0, right=140.0, lines=LINES, stations=141)
+    passages, peaks, outcomes = run_trials(
+        instance, 1, first=4, left=0.0, right=140.0, lines=LINES, stations=141
+    )
     rock = moving(trial=4)
-    rows, columns = [], ("position.x", "height", "velocity.x", "velocity.y", "angular_velocity", "energy.kinetic", "mode")
+    rows, columns = (
+        [],
+        (
+            "position.x",
+            "height",
+            "velocity.x",
+            "velocity.y",
+            "angular_velocity",
+            "energy.kinetic",
+            "mode",
+        ),
+    )
     for i in range(60_000):
         rock.step(i * 2.5e-4, 2.5e-4)
         rows.append([rock[name] for name in columns])

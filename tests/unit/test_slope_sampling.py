@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rockshed.components.common.counter_random import draw, stream, uniform
-from rockshed.components.slope_rockfall.declarations import LOGNORMAL, NORMAL, TRIANGULAR, UNIFORM
-from rockshed.components.slope_rockfall.sampling import normal_quantile, normal_tail, variate, widest
-from rockshed.components.slope_rockfall.trajectory import OUTCOME
 from scipy import stats
 
+from rockshed.components.common.counter_random import draw, stream, uniform
+from rockshed.components.slope_rockfall.declarations import LOGNORMAL, NORMAL, TRIANGULAR, UNIFORM
+from rockshed.components.slope_rockfall.sampling import (
+    normal_quantile,
+    normal_tail,
+    variate,
+    widest,
+)
+from rockshed.components.slope_rockfall.trajectory import OUTCOME
 from tests.slope_rocks import SLOPE, run_trials
 
 MEAN, DEVIATION, TRUNCATION = 3.0, 0.7, 1.96
@@ -32,25 +37,31 @@ def test_normal_quantile(p):
 @settings(deadline=None)
 @given(st.sampled_from(list(EXACT)), st.floats(0.0, 1.0, exclude_max=True))
 def test_variates_are_quantiles_of_their_distribution(kind, u):
-    assert variate(kind, MEAN, DEVIATION, normal_tail(TRUNCATION), u) == pytest.approx(EXACT[kind].ppf(u), rel=1e-9)
+    assert variate(kind, MEAN, DEVIATION, normal_tail(TRUNCATION), u) == pytest.approx(
+        EXACT[kind].ppf(u), rel=1e-9
+    )
 
 
 @settings(deadline=None)
 @given(st.floats(0.0, 1.0, exclude_max=True))
 def test_lognormal_is_the_exponential_of_the_truncated_normal(u):
-    exponent = stats.truncnorm(-TRUNCATION, TRUNCATION, math.log(MEAN) - SIGMA ** 2 / 2, SIGMA).ppf(u)
-    assert variate(LOGNORMAL, MEAN, DEVIATION, normal_tail(TRUNCATION), u) == pytest.approx(math.exp(exponent), rel=1e-9)
+    exponent = stats.truncnorm(-TRUNCATION, TRUNCATION, math.log(MEAN) - SIGMA**2 / 2, SIGMA).ppf(u)
+    assert variate(LOGNORMAL, MEAN, DEVIATION, normal_tail(TRUNCATION), u) == pytest.approx(
+        math.exp(exponent), rel=1e-9
+    )
 
 
 @pytest.mark.parametrize("kind", [NORMAL, UNIFORM, LOGNORMAL, TRIANGULAR])
 def test_no_variate_exceeds_the_widest(kind):
-    largest = variate(kind, MEAN, DEVIATION, normal_tail(TRUNCATION), 1.0 - 2.0 ** -53)
+    largest = variate(kind, MEAN, DEVIATION, normal_tail(TRUNCATION), 1.0 - 2.0**-53)
     assert largest == pytest.approx(widest(kind, MEAN, DEVIATION, TRUNCATION), rel=1e-6)
     assert variate(kind, MEAN, 0.0, normal_tail(TRUNCATION), 0.3) == MEAN
 
 
 def test_streams_are_uniform_and_independent():
-    numbers = np.array([[draw(np.uint64(stream(1, trial)), i) for i in range(20)] for trial in range(500)])
+    numbers = np.array(
+        [[draw(np.uint64(stream(1, trial)), i) for i in range(20)] for trial in range(500)]
+    )
     assert stats.kstest(numbers.ravel(), "uniform").pvalue > 1e-3
     assert abs(np.corrcoef(numbers[:-1].ravel(), numbers[1:].ravel())[0, 1]) < 0.05
     assert abs(np.corrcoef(numbers[:, :-1].ravel(), numbers[:, 1:].ravel())[0, 1]) < 0.05

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from rockshed.components.falling_rock import COMPONENT as ROCK
 
 
@@ -24,7 +25,10 @@ def test_the_last_digits_of_a_step_do_not_reach_the_results(number):
         assert fall(step).w.tobytes() == exact
 
 
-@pytest.mark.parametrize(("step", "number"), [(0.3e-5, 1), (1.05e-4, 11), (0.95e-4, 10), (1.00001e-4, 11), (0.99999e-4, 10)])
+@pytest.mark.parametrize(
+    ("step", "number"),
+    [(0.3e-5, 1), (1.05e-4, 11), (0.95e-4, 10), (1.00001e-4, 11), (0.99999e-4, 10)],
+)
 def test_any_other_step_is_divided_into_equal_parts(step, number):
     """Velocity first: the position falls by the sum of n velocities, which tells n."""
     rock, g = fall(step), ROCK.instance()["gravity"]

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from jsonschema import validate
+
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
 from rockshed.metrics import headlines as h
@@ -12,8 +13,23 @@ from rockshed.papers import running
 from rockshed.papers.reproduction import DATA, PAGE, chosen, reproduce, studies
 from rockshed.papers.sonoda1993 import girders, rigid_base, section2, table2
 from rockshed.papers.sonoda1993.fig19 import order
-from rockshed.papers.statistics import by_power_law, constant, leave_one_out, mean_absolute_error, power_law
-from rockshed.papers.study import COMPLETE, FAILED, INTERRUPTED, Outcome, Outcomes, Row, Task, row_of_runs
+from rockshed.papers.statistics import (
+    by_power_law,
+    constant,
+    leave_one_out,
+    mean_absolute_error,
+    power_law,
+)
+from rockshed.papers.study import (
+    COMPLETE,
+    FAILED,
+    INTERRUPTED,
+    Outcome,
+    Outcomes,
+    Row,
+    Task,
+    row_of_runs,
+)
 from rockshed.runs.job import Request
 
 NUMBER, TEXT = {"type": ["number", "null"]}, {"type": "string"}
@@ -21,40 +37,84 @@ HASHES = {"type": "object", "additionalProperties": {"type": "string", "pattern"
 
 
 def exactly(**properties):
-    return {"type": "object", "additionalProperties": False, "properties": properties, "required": list(properties)}
+    return {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": properties,
+        "required": list(properties),
+    }
 
 
 def several(items):
     return {"type": "array", "items": items}
 
 
-ROW = exactly(quantity=TEXT, unit=TEXT, paper=NUMBER, experiment=NUMBER, computed=NUMBER, spread=NUMBER,
-              deviation_from_paper=NUMBER, deviation_from_experiment=NUMBER,
-              model=TEXT, verdict={"enum": ["", "holds", "does not"]}, note=TEXT,
-              model_options={"type": "object"}, seeds=several({"type": "integer"}), fmus=HASHES, runs=several(TEXT))
-STUDY = exactly(name=TEXT, title=TEXT, notes=several(TEXT), figures=several(TEXT), rows=several(ROW))
-RUN = exactly(name=TEXT, case=TEXT, settings=several(TEXT), coupling={"type": ["string", "null"]}, options={"type": "object"},
-              seed={"type": ["integer", "null"]}, status={"enum": ["complete", "failed", "interrupted"]}, error=TEXT,
-              wall_time={"type": "number"}, model_options={"type": "object"}, fmus=HASHES)
-SCHEMA = exactly(format={"const": "rockshed reproduction 1"}, paper=TEXT, started=TEXT, quick={"type": "boolean"},
-                 workers={"type": "integer"}, wall_time={"type": "number"}, versions={"type": "object"}, studies=several(STUDY),
-                 runs=several(RUN))
+ROW = exactly(
+    quantity=TEXT,
+    unit=TEXT,
+    paper=NUMBER,
+    experiment=NUMBER,
+    computed=NUMBER,
+    spread=NUMBER,
+    deviation_from_paper=NUMBER,
+    deviation_from_experiment=NUMBER,
+    model=TEXT,
+    verdict={"enum": ["", "holds", "does not"]},
+    note=TEXT,
+    model_options={"type": "object"},
+    seeds=several({"type": "integer"}),
+    fmus=HASHES,
+    runs=several(TEXT),
+)
+STUDY = exactly(
+    name=TEXT, title=TEXT, notes=several(TEXT), figures=several(TEXT), rows=several(ROW)
+)
+RUN = exactly(
+    name=TEXT,
+    case=TEXT,
+    settings=several(TEXT),
+    coupling={"type": ["string", "null"]},
+    options={"type": "object"},
+    seed={"type": ["integer", "null"]},
+    status={"enum": ["complete", "failed", "interrupted"]},
+    error=TEXT,
+    wall_time={"type": "number"},
+    model_options={"type": "object"},
+    fmus=HASHES,
+)
+SCHEMA = exactly(
+    format={"const": "rockshed reproduction 1"},
+    paper=TEXT,
+    started=TEXT,
+    quick={"type": "boolean"},
+    workers={"type": "integer"},
+    wall_time={"type": "number"},
+    versions={"type": "object"},
+    studies=several(STUDY),
+    runs=several(RUN),
+)
 
 
 def task(seed=None):
-    return Task(Request("lab-impact", () if seed is None else (f"sand.seed={seed}",)), "calibrated", seed)
+    return Task(
+        Request("lab-impact", () if seed is None else (f"sand.seed={seed}",)), "calibrated", seed
+    )
 
 
 def outcomes(*values):
     """One outcome for each seed; a text is the reason why there is none."""
-    return Outcomes({task(seed).key: outcome(task(seed).key, seed, value) for seed, value in enumerate(values)})
+    return Outcomes(
+        {task(seed).key: outcome(task(seed).key, seed, value) for seed, value in enumerate(values)}
+    )
 
 
 def outcome(key, seed, value):
     options = {"rotation": "locked", "seed": seed}
     if isinstance(value, str):
         return Outcome(key, FAILED, value, options=options)
-    return Outcome(key, COMPLETE, figures={"force": value}, options=options, fmus={"sand": "ab" * 32})
+    return Outcome(
+        key, COMPLETE, figures={"force": value}, options=options, fmus={"sand": "ab" * 32}
+    )
 
 
 # ------------------------------------------------------------------ rows
@@ -75,7 +135,9 @@ def test_a_single_run_has_no_spread():
 
 
 def test_a_run_that_failed_is_told_and_left_out():
-    row = row_of_runs("P", "N", 1.0, "force", [task(0), task(1)], outcomes("sand at t = 1 s: diverged", 7.0))
+    row = row_of_runs(
+        "P", "N", 1.0, "force", [task(0), task(1)], outcomes("sand at t = 1 s: diverged", 7.0)
+    )
     assert row.computed == 7.0
     assert row.note == "1 of 2 runs did not end (failed: sand at t = 1 s: diverged)"
     assert row.fmus == {"sand": "ab" * 32}
@@ -85,18 +147,28 @@ def test_a_run_that_failed_is_told_and_left_out():
 
 def test_every_study_makes_its_rows_and_figures_when_no_run_ends(tmp_path):
     for study in studies("sonoda1993"):
-        found = Outcomes({t.key: Outcome(t.key, INTERRUPTED, "not run") for t in study.tasks(True)}, quick=True)
+        found = Outcomes(
+            {t.key: Outcome(t.key, INTERRUPTED, "not run") for t in study.tasks(True)}, quick=True
+        )
         rows = study.rows(found)
         assert rows
         assert all(row.note or row.verdict or row.computed is not None for row in rows), study.name
-        assert all(file.read_bytes().startswith(b"\x89PNG") for file in study.draw(found, rows, tmp_path))
+        assert all(
+            file.read_bytes().startswith(b"\x89PNG") for file in study.draw(found, rows, tmp_path)
+        )
 
 
 def test_tasks_that_are_the_same_are_one_run(monkeypatch):
     monkeypatch.setattr(running, "_order", lambda task, note: running._Order(task.key, None, False))
-    monkeypatch.setattr(running, "_carry_out", lambda orders, workers: iter([Outcome(order.key, COMPLETE) for order in orders]))
+    monkeypatch.setattr(
+        running,
+        "_carry_out",
+        lambda orders, workers: iter([Outcome(order.key, COMPLETE) for order in orders]),
+    )
     told = []
-    found = running.run_all([task(1), task(2), task(1)], 1, print, lambda done, total: told.append((done, total)))
+    found = running.run_all(
+        [task(1), task(2), task(1)], 1, print, lambda done, total: told.append((done, total))
+    )
     assert len(found) == 2
     assert told == [(1, 2), (2, 2)]
 
@@ -127,7 +199,9 @@ def test_a_power_law_is_found_again_and_predicts_what_was_left_out():
     x = np.array([1.0, 2.0, 5.0, 9.0])
     y = 3.0 * x**0.25
     assert power_law(x, y) == pytest.approx((3.0, 0.25))
-    assert mean_absolute_error(leave_one_out(list(x), list(y), by_power_law), y) == pytest.approx(0.0, abs=1e-12)
+    assert mean_absolute_error(leave_one_out(list(x), list(y), by_power_law), y) == pytest.approx(
+        0.0, abs=1e-12
+    )
 
 
 def test_a_value_is_predicted_without_itself():
@@ -147,42 +221,83 @@ def test_the_order_of_an_error_is_its_slope_and_needs_three_points():
 def test_forces_through_a_load_cell_come_from_the_same_runs():
     """Made-up runs of a short spike: the load cell lowers it, by the same part in every test."""
     time = np.linspace(0.0, 0.03, 301)
-    spike = 4000.0 * np.exp(-((time - 0.01) / 2e-4) ** 2)
-    found = Outcomes({t.key: Outcome(t.key, COMPLETE, figures={h.PEAK_TRANSMITTED: 4000.0}, options={"modulus": 1.0},
-                                     series={"time": time, "sand.transmitted_force": spike}) for t in table2.tasks(True)}, True)
+    spike = 4000.0 * np.exp(-(((time - 0.01) / 2e-4) ** 2))
+    found = Outcomes(
+        {
+            t.key: Outcome(
+                t.key,
+                COMPLETE,
+                figures={h.PEAK_TRANSMITTED: 4000.0},
+                options={"modulus": 1.0},
+                series={"time": time, "sand.transmitted_force": spike},
+            )
+            for t in table2.tasks(True)
+        },
+        True,
+    )
     rows = {(row.quantity, row.model): row for row in table2.rows(found)}
     seen = rows["peak transmitted force through a load cell of 1 kHz, test 4", "literal"]
     plain = rows["peak transmitted force, test 4", "literal"]
     assert seen.runs == plain.runs
     assert 0.5 * plain.computed < seen.computed < 0.95 * plain.computed
     assert seen.experiment == plain.experiment
-    for quantity in ("mean absolute error{}, tests 1 to 12", "trend exponent of P against k{}, tests 1 to 12"):
-        assert rows[quantity.format(" through a load cell of 1 kHz"), "literal"].computed is not None
-    assert rows["trend exponent of P against k through a load cell of 1 kHz, tests 1 to 12", "literal"].computed == pytest.approx(
-        0.0, abs=1e-9)
+    for quantity in (
+        "mean absolute error{}, tests 1 to 12",
+        "trend exponent of P against k{}, tests 1 to 12",
+    ):
+        assert (
+            rows[quantity.format(" through a load cell of 1 kHz"), "literal"].computed is not None
+        )
+    assert rows[
+        "trend exponent of P against k through a load cell of 1 kHz, tests 1 to 12", "literal"
+    ].computed == pytest.approx(0.0, abs=1e-9)
 
 
 def test_energies_of_the_girders_are_shares_of_the_rocks_wherever_it_started():
     """Made-up: the measured energies, of a rock of 98 kJ, doubled at 12 m; twice as much in the springs; one run lost."""
     shares = {8.0: 0.056, 10.0: 0.069, 12.0: 2 * 0.076}
     energies = {f"girders-{span:g}": share * 98e3 for span, share in shares.items()}
-    made = {task.key: Outcome(task.key, COMPLETE, options={}, figures={
-        h.BEAM_ENERGY_FROM_STRAIN: energies[task.request.target], h.BEAM_ENERGY: 2 * energies[task.request.target],
-        h.SETTLED_RATIO: 1.0, h.SETTLED_TRANSMITTED: 1.0, h.SETTLED_ROCK: 1.0}) for task in girders.tasks(False)}
+    made = {
+        task.key: Outcome(
+            task.key,
+            COMPLETE,
+            options={},
+            figures={
+                h.BEAM_ENERGY_FROM_STRAIN: energies[task.request.target],
+                h.BEAM_ENERGY: 2 * energies[task.request.target],
+                h.SETTLED_RATIO: 1.0,
+                h.SETTLED_TRANSMITTED: 1.0,
+                h.SETTLED_ROCK: 1.0,
+            },
+        )
+        for task in girders.tasks(False)
+    }
     rows = {row.quantity: row for row in girders.rows(Outcomes(made)) if row.model == "literal"}
     energy = rows["girders' energy / rock's by eq. (7), span 12 m"]
     assert (energy.computed, energy.spread) == (pytest.approx(15.2), pytest.approx(0.0, abs=1e-9))
     assert (energy.experiment, energy.paper, len(energy.runs)) == (pytest.approx(7.6), None, 8)
     springs = rows["girders' energy / rock's by eqs (5), (6), span 8 m"]
-    assert (springs.computed, springs.paper, springs.experiment) == (pytest.approx(11.2), pytest.approx(6.3), None)
-    assert rows["largest factor between computed and measured energy, eq. (7)"].computed == pytest.approx(2.0)
-    assert rows["girders' energy by eq. (7), longest / shortest span"].computed == pytest.approx(2 * 7.6 / 5.6)
-    assert rows["girders' energy by eq. (7), longest / shortest span"].experiment == pytest.approx(7.6 / 5.6)
+    assert (springs.computed, springs.paper, springs.experiment) == (
+        pytest.approx(11.2),
+        pytest.approx(6.3),
+        None,
+    )
+    assert rows[
+        "largest factor between computed and measured energy, eq. (7)"
+    ].computed == pytest.approx(2.0)
+    assert rows["girders' energy by eq. (7), longest / shortest span"].computed == pytest.approx(
+        2 * 7.6 / 5.6
+    )
+    assert rows["girders' energy by eq. (7), longest / shortest span"].experiment == pytest.approx(
+        7.6 / 5.6
+    )
 
 
 def test_models_differ_in_what_is_run_and_a_rigid_base_knows_no_girders():
     for quick in (True, False):
-        on_girders, rigid = [[task.key for task in study.tasks(quick)] for study in (girders, rigid_base)]
+        on_girders, rigid = [
+            [task.key for task in study.tasks(quick)] for study in (girders, rigid_base)
+        ]
         assert len(set(on_girders)) == len(on_girders)
         assert len(set(rigid)) == len(rigid)
         assert not [key for key in rigid if "beam." in key]
@@ -201,16 +316,26 @@ def test_compaction_in_the_text_and_in_the_table():
     """The text says 7 and 19 percent; its own table 2 has 1 to 11 and 13 to 49 percent."""
     for sand, low, high in (("A", 1.2, 11.0), ("B", 13.0, 49.0)):
         changes = section2.rises(lambda test: test.peak_force, sand).values()
-        assert (min(changes), max(changes)) == (pytest.approx(low, abs=0.1), pytest.approx(high, abs=0.1))
+        assert (min(changes), max(changes)) == (
+            pytest.approx(low, abs=0.1),
+            pytest.approx(high, abs=0.1),
+        )
     assert claims()["compaction raises P by about 19 % in sand B (box 1)"].verdict == "does not"
     assert claims()["compaction raises P by about 7 % in sand A (box 1)"].verdict == "holds"
 
 
-@pytest.mark.parametrize(("claim", "verdict"), [
-    ("P grows with k", "holds"), ("P is proportional to k", "does not"), ("compaction raises k in every pair of tests", "holds"),
-    ("k of sand B, compacted, is largest at w = 16.2 %", "holds"), ("P of sand A, compacted, is largest at w = 6.98 %", "does not"),
-    ("the size of the box hardly matters for P", "holds"), ("the size of the box hardly matters for k", "does not"),
-])
+@pytest.mark.parametrize(
+    ("claim", "verdict"),
+    [
+        ("P grows with k", "holds"),
+        ("P is proportional to k", "does not"),
+        ("compaction raises k in every pair of tests", "holds"),
+        ("k of sand B, compacted, is largest at w = 16.2 %", "holds"),
+        ("P of sand A, compacted, is largest at w = 6.98 %", "does not"),
+        ("the size of the box hardly matters for P", "holds"),
+        ("the size of the box hardly matters for k", "does not"),
+    ],
+)
 def test_claims(claim, verdict):
     assert claims()[claim].verdict == verdict
 
@@ -226,7 +351,7 @@ def test_files_of_a_study_without_runs(tmp_path):
     assert len(content["studies"][0]["rows"]) == len(made.parts[0].rows)
     page = (tmp_path / "out" / PAGE).read_text()
     assert "P is proportional to k" in page
-    assert "src=\"http" not in page
+    assert 'src="http' not in page
 
 
 def test_deviation_needs_a_reference():

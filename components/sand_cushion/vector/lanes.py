@@ -29,7 +29,11 @@ class Lanes:
 
     def like(self, other: Lanes | float) -> ir.Value:
         """A number in every lane, as wide as this; a vector as it is."""
-        return other.value if isinstance(other, Lanes) else constant([float(other)] * self.value.type.count)
+        return (
+            other.value
+            if isinstance(other, Lanes)
+            else constant([float(other)] * self.value.type.count)
+        )
 
     def __add__(self, other: Lanes | float) -> Lanes:
         return self.made(self.builder.fadd(self.value, self.like(other)))
@@ -62,7 +66,9 @@ class Lanes:
 
 def constant(values: list[Any], kind: ir.Type = REAL) -> ir.Constant:
     """A vector that is known when compiling."""
-    return ir.Constant(ir.VectorType(kind, len(values)), [ir.Constant(kind, value) for value in values])
+    return ir.Constant(
+        ir.VectorType(kind, len(values)), [ir.Constant(kind, value) for value in values]
+    )
 
 
 def spread(builder: ir.IRBuilder, number: ir.Value, width: int) -> Lanes:
@@ -100,18 +106,27 @@ def fma(one: Lanes, other: Lanes, added: Lanes) -> Lanes:
 
 def _intrinsic(name: str, *arguments: Lanes) -> Lanes:
     builder, kind = arguments[0].builder, arguments[0].value.type
-    function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [kind] * len(arguments)),
-                                              f"llvm.{name}.v{kind.count}f64")
+    function = cgutils.get_or_insert_function(
+        builder.module,
+        ir.FunctionType(kind, [kind] * len(arguments)),
+        f"llvm.{name}.v{kind.count}f64",
+    )
     return Lanes(builder, builder.call(function, [argument.value for argument in arguments]))
 
 
 class Access:
     """Loads and stores at places of the numba arrays that an intrinsic got; other arguments as they are."""
 
-    def __init__(self, context: Any, builder: ir.IRBuilder, signature: Any, arguments: list[Any]) -> None:
+    def __init__(
+        self, context: Any, builder: ir.IRBuilder, signature: Any, arguments: list[Any]
+    ) -> None:
         self.builder = builder
-        self._data = [context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
-                      for kind, value in zip(signature.args, arguments)]
+        self._data = [
+            context.make_array(kind)(context, builder, value).data
+            if isinstance(kind, types.Array)
+            else value
+            for kind, value in zip(signature.args, arguments)
+        ]
 
     def __getitem__(self, argument: int) -> Any:
         return self._data[argument]
@@ -144,7 +159,9 @@ class Access:
 
     def put(self, lanes: Lanes, address: ir.Value) -> None:
         """A vector to an address."""
-        self.builder.store(lanes.value, self.builder.bitcast(address, lanes.value.type.as_pointer()), align=8)
+        self.builder.store(
+            lanes.value, self.builder.bitcast(address, lanes.value.type.as_pointer()), align=8
+        )
 
     def running(self, argument: int, place: int, width: int) -> Running:
         """A running value that begins with what an array holds; see :meth:`Running.keep`."""

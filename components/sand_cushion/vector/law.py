@@ -16,7 +16,12 @@ from .lanes import INDEX, Access, Lanes, Running, fma, larger, smaller, spread, 
 
 def _constants(access: Access, dt: Any) -> SimpleNamespace:
     """The constants of the law, and products of them with the step, in all lanes."""
-    law = SimpleNamespace(**{name: spread(access.builder, access.number(3, place), LANES) for name, place in LAW._asdict().items()})
+    law = SimpleNamespace(
+        **{
+            name: spread(access.builder, access.number(3, place), LANES)
+            for name, place in LAW._asdict().items()
+        }
+    )
     law.dt = spread(access.builder, dt, LANES)
     law.advance = law.tangential * law.dt
     law.yielding_force = law.unloading * 0.5 * (1.0 - law.yielding) * (1.0 / law.yielding)
@@ -28,8 +33,13 @@ def _add(total: Running, one: Lanes, other: Lanes) -> None:
     total.become(fma(one, other, total.now))
 
 
-def _lasting(pair: SimpleNamespace, overlap: Lanes, stays_before: Lanes, law: SimpleNamespace,
-             sums: SimpleNamespace) -> tuple[Lanes, Lanes, Lanes]:
+def _lasting(
+    pair: SimpleNamespace,
+    overlap: Lanes,
+    stays_before: Lanes,
+    law: SimpleNamespace,
+    sums: SimpleNamespace,
+) -> tuple[Lanes, Lanes, Lanes]:
     """Contacts that yield or stick together: overlap beyond the one that stays, the one that stays, and the capillary pull."""
     bridge, full = law.bridge * pair.reach, law.pull * pair.reach
     stays = larger(law.yielding * overlap, stays_before)
@@ -38,12 +48,19 @@ def _lasting(pair: SimpleNamespace, overlap: Lanes, stays_before: Lanes, law: Si
     stays = where(overlap > -bridge, stays, 0.0)
     pressed = overlap - stays
     closed = smaller(larger(1.0 + pressed * (1.0 / bridge), 0.0), 1.0)
-    sums.capillary.become(sums.capillary.now - full * (0.5 * bridge * closed * closed + larger(pressed, 0.0)))
+    sums.capillary.become(
+        sums.capillary.now - full * (0.5 * bridge * closed * closed + larger(pressed, 0.0))
+    )
     return pressed, stays, full * closed
 
 
-def _contact(pair: SimpleNamespace, before: Lanes, stays: Lanes | None, law: SimpleNamespace,
-             sums: SimpleNamespace) -> tuple[SimpleNamespace, Lanes, Lanes | None]:
+def _contact(
+    pair: SimpleNamespace,
+    before: Lanes,
+    stays: Lanes | None,
+    law: SimpleNamespace,
+    sums: SimpleNamespace,
+) -> tuple[SimpleNamespace, Lanes, Lanes | None]:
     """Forces of eight pairs, the new spring force, and the overlap that stays where contacts last. One division serves both
     1/distance and 1/rate."""
     distance = sqrt(fma(pair.x, pair.x, pair.y * pair.y))
@@ -70,8 +87,12 @@ def _contact(pair: SimpleNamespace, before: Lanes, stays: Lanes | None, law: Sim
     _add(sums.sliding, tangential, slip - taken)
     _add(sums.released, before - spring, before)
     pressing = normal if pull is None else normal - pull
-    force = SimpleNamespace(x=fma(pressing, nx, tangential * ny), y=fma(pressing, ny, -(tangential * nx)), tangential=tangential,
-                            normal=normal)
+    force = SimpleNamespace(
+        x=fma(pressing, nx, tangential * ny),
+        y=fma(pressing, ny, -(tangential * nx)),
+        tangential=tangential,
+        normal=normal,
+    )
     return force, kept, stays
 
 
@@ -80,20 +101,37 @@ def _block_law(lasting: bool) -> Any:
         """The law for the BLOCK pairs from ``at`` on, whose columns lie in ``block``. It leaves force to the right and upwards (of
         the first on the second), tangential and normal force in the first four columns. Springs (N) and overlaps that stay (m)
         become those after the step, and the energies of TALLY grow."""
+
         def generate(context, builder, signature, arguments):
             access = Access(context, builder, signature, arguments)
             constants = _constants(access, access[4])
-            sums = SimpleNamespace(**{name: access.running(6, place * LANES, LANES) for name, place in TALLY._asdict().items()})
-            with cgutils.for_range_slice(builder, INDEX(0), INDEX(BLOCK), INDEX(LANES)) as (lane, _):
-                pair = SimpleNamespace(**{name: access.load(0, access.place(lane, column * BLOCK), LANES)
-                                          for name, column in COLUMN._asdict().items()})
+            sums = SimpleNamespace(
+                **{
+                    name: access.running(6, place * LANES, LANES)
+                    for name, place in TALLY._asdict().items()
+                }
+            )
+            with cgutils.for_range_slice(builder, INDEX(0), INDEX(BLOCK), INDEX(LANES)) as (
+                lane,
+                _,
+            ):
+                pair = SimpleNamespace(
+                    **{
+                        name: access.load(0, access.place(lane, column * BLOCK), LANES)
+                        for name, column in COLUMN._asdict().items()
+                    }
+                )
                 contact = builder.add(access[5], lane)
                 stays = access.load(2, contact, LANES) if lasting else None
-                force, kept, stays = _contact(pair, access.load(1, contact, LANES), stays, constants, sums)
+                force, kept, stays = _contact(
+                    pair, access.load(1, contact, LANES), stays, constants, sums
+                )
                 access.store(kept, 1, contact)
                 if stays is not None:
                     access.store(stays, 2, contact)
-                for column, quantity in enumerate((force.x, force.y, force.tangential, force.normal)):
+                for column, quantity in enumerate(
+                    (force.x, force.y, force.tangential, force.normal)
+                ):
                     access.store(quantity, 0, access.place(lane, column * BLOCK))
             for total in vars(sums).values():
                 total.keep()

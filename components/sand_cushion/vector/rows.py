@@ -39,7 +39,10 @@ def plain_columns_to_pairs(load, pair, at, block):
     """Add columns 0 (force to the right), 1 (upwards) and 2 (tangential force) of the block to the load rows of the pairs: the
     force acts on j, its reverse on i; the tangential force turns both the same way."""
     for q in range(BLOCK):
-        i, j = (pair[at + q] & 0xFFFFFFFF) * FORCE_ROW // ROW, (pair[at + q] >> 32) * FORCE_ROW // ROW
+        i, j = (
+            (pair[at + q] & 0xFFFFFFFF) * FORCE_ROW // ROW,
+            (pair[at + q] >> 32) * FORCE_ROW // ROW,
+        )
         x, y, turning = block[q], block[BLOCK + q], block[2 * BLOCK + q]
         load[i] -= x
         load[i + 1] -= y
@@ -78,6 +81,7 @@ def _lanes_of_block(builder: ir.IRBuilder) -> Any:
 @intrinsic
 def pairs_to_columns(typing, body, pair, at, block):
     """:func:`plain_pairs_to_columns` as vectors."""
+
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
         sign = Lanes(builder, constant([-1.0] * 4 + [1.0] * 4))
@@ -104,19 +108,30 @@ def _load_row(access: Access, body: ir.Value) -> ir.Value:
 def _columns_to_pairs(turning: bool) -> Any:
     def columns_to_pairs(typing, load, pair, at, block):
         """:func:`plain_columns_to_pairs` as vectors."""
+
         def generate(context, builder, signature, arguments):
             access = Access(context, builder, signature, arguments)
-            nothing, sign = Lanes(builder, constant([0.0] * LANES)), Lanes(builder, constant([-1.0, -1.0, 1.0, 1.0]))
+            nothing, sign = (
+                Lanes(builder, constant([0.0] * LANES)),
+                Lanes(builder, constant([-1.0, -1.0, 1.0, 1.0])),
+            )
             even, odd = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
             width = FORCE_ROW if turning else 2
             with _lanes_of_block(builder) as (lane, _):
-                x, y, turn = (access.load(3, access.place(lane, column * BLOCK), LANES) for column in range(3))
+                x, y, turn = (
+                    access.load(3, access.place(lane, column * BLOCK), LANES) for column in range(3)
+                )
                 forces = (x.shuffled(even, y), x.shuffled(odd, y))
                 turns = (turn.shuffled(even, nothing), turn.shuffled(odd, nothing))
                 for q in range(LANES):
-                    i, j = (_load_row(access, body) for body in _bodies(access, access.place(builder.add(access[2], lane), q)))
+                    i, j = (
+                        _load_row(access, body)
+                        for body in _bodies(access, access.place(builder.add(access[2], lane), q))
+                    )
                     two = q - q % 2
-                    row = forces[q % 2].shuffled([two, two + 1, two + 8, two + 9][:width], turns[q % 2])
+                    row = forces[q % 2].shuffled(
+                        [two, two + 1, two + 8, two + 9][:width], turns[q % 2]
+                    )
                     before = access.loaded(i, width)
                     access.put(fma(row, sign, before) if turning else before - row, i)
                     access.put(row + access.loaded(j, width), j)
@@ -127,7 +142,10 @@ def _columns_to_pairs(turning: bool) -> Any:
     return intrinsic(columns_to_pairs)
 
 
-columns_to_pairs, forces_to_pairs = _columns_to_pairs(turning=True), _columns_to_pairs(turning=False)
+columns_to_pairs, forces_to_pairs = (
+    _columns_to_pairs(turning=True),
+    _columns_to_pairs(turning=False),
+)
 """:func:`plain_columns_to_pairs` as vectors; and the same for discs that do not turn, without what would turn them."""
 
 
@@ -136,6 +154,7 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
     """Semi-implicit Euler for the discs from ``begin`` to before ``end``: velocity first, then position with the new velocity.
     Their forces are forgotten. ``turning``: 2 where discs turn (d(omega r)/dt = torque r / I with I = m r^2 / 2), else 0.
     ``motion`` holds the numbers that KINETIC, FASTEST and POTENTIAL explain; they grow."""
+
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
         zero, dt = constant([0.0] * 4), access[4]
@@ -143,8 +162,10 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
         for lane, rate in enumerate((dt, dt, builder.fmul(access[6], dt))):
             gain = builder.insert_element(gain, rate, WORD(lane))
         gain, fall, way = Lanes(builder, gain), Lanes(builder, fall), spread(builder, dt, 2)
-        kinetic, fastest, potential = (access.running(7, place, width)
-                                       for place, width in ((KINETIC, 4), (FASTEST, 2), (POTENTIAL, 2)))
+        kinetic, fastest, potential = (
+            access.running(7, place, width)
+            for place, width in ((KINETIC, 4), (FASTEST, 2), (POTENTIAL, 2))
+        )
         rows = (builder.mul(access[q], INDEX(ROW)) for q in (2, 3))
         with cgutils.for_range_slice(builder, *rows, INDEX(ROW)) as (at, _):
             velocity, force = access.place(at, 2), builder.lshr(at, INDEX(1))

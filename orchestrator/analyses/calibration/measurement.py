@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.units import cm, kgf, kN, mm, tf
 
 from ...core.errors import InputRefused, Problem
@@ -17,7 +18,11 @@ from ...metrics.load_curve import DEPTH
 
 FORCES: Mapping[str, float] = {"N": 1.0, "kN": kN, "kgf": kgf, "tf": tf}
 LENGTHS: Mapping[str, float] = {"m": 1.0, "cm": cm, "mm": mm}
-STIFFNESSES = {f"{force}/{length}": factor / size for force, factor in FORCES.items() for length, size in LENGTHS.items()}
+STIFFNESSES = {
+    f"{force}/{length}": factor / size
+    for force, factor in FORCES.items()
+    for length, size in LENGTHS.items()
+}
 
 DEEPEST = 8 * cm
 """Largest penetration (m) of a curve: the layer has 10 cm, and the rock must not come near the floor."""
@@ -59,7 +64,15 @@ def stiffness_from(text: str) -> float:
         unit = f"the unit {found.group(2)}" if found.group(2) else "no unit"
         raise InputRefused([Problem("--stiffness", f"{text!r} has {unit}", units)])
     if value <= 0.0:
-        raise InputRefused([Problem("--stiffness", f"{text!r} is not above zero", "give the measured spring constant")])
+        raise InputRefused(
+            [
+                Problem(
+                    "--stiffness",
+                    f"{text!r} is not above zero",
+                    "give the measured spring constant",
+                )
+            ]
+        )
     return value * STIFFNESSES[found.group(2)]
 
 
@@ -72,19 +85,35 @@ def read_curve(file: Path) -> Measurement:
     try:
         text = file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputRefused([Problem(str(file), f"cannot be read: {getattr(error, 'strerror', None) or error}",
-                                    "give a text file with comma-separated values")]) from error
-    lines = [(number, next(csv.reader([line]), [])) for number, line in enumerate(text.splitlines(), 1)
-             if line.strip() and not line.lstrip().startswith("#")]
+        raise InputRefused(
+            [
+                Problem(
+                    str(file),
+                    f"cannot be read: {getattr(error, 'strerror', None) or error}",
+                    "give a text file with comma-separated values",
+                )
+            ]
+        ) from error
+    lines = [
+        (number, next(csv.reader([line]), []))
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
     if not lines:
         raise InputRefused([Problem(str(file), "is empty", _FORM)])
     columns = _header(file, *lines[0])
     problems: list[Problem] = []
-    rows = [row for number, fields in lines[1:] if (row := _row(file, number, fields, columns, problems))]
+    rows = [
+        row
+        for number, fields in lines[1:]
+        if (row := _row(file, number, fields, columns, problems))
+    ]
     problems += _shape(file, rows) if not problems else []
     if problems:
         raise InputRefused(problems)
-    return Measurement(file.name, np.array([row.depth for row in rows]), np.array([row.load for row in rows]))
+    return Measurement(
+        file.name, np.array([row.depth for row in rows]), np.array([row.load for row in rows])
+    )
 
 
 @dataclass(frozen=True)
@@ -99,53 +128,99 @@ def _header(file: Path, line: int, fields: Sequence[str]) -> list[tuple[str, flo
     problems, found = [], []
     for place, field in enumerate(fields, 1):
         matched = re.fullmatch(r"\s*(\w+?)\s*[\[(_ ]\s*([A-Za-z]+)\s*[\])]?\s*", field)
-        name, unit = (matched.group(1).lower(), matched.group(2)) if matched else (field.strip().lower(), "")
+        name, unit = (
+            (matched.group(1).lower(), matched.group(2)) if matched else (field.strip().lower(), "")
+        )
         where = f"{file}, line {line}, column {place}"
         if name not in _COLUMNS:
-            problems.append(Problem(where, f"{field.strip()!r} is not penetration or load with a unit", _FORM))
+            problems.append(
+                Problem(where, f"{field.strip()!r} is not penetration or load with a unit", _FORM)
+            )
         elif unit not in _COLUMNS[name]:
-            problems.append(Problem(where, f"{field.strip()!r} has no known unit",
-                                    f"choose of {', '.join(_COLUMNS[name])}: {_FORM}"))
+            problems.append(
+                Problem(
+                    where,
+                    f"{field.strip()!r} has no known unit",
+                    f"choose of {', '.join(_COLUMNS[name])}: {_FORM}",
+                )
+            )
         else:
             found.append((name, _COLUMNS[name][unit]))
     if not problems and sorted(name for name, _ in found) != sorted(_COLUMNS):
-        problems = [Problem(f"{file}, line {line}", "must have the columns penetration and load, each once", _FORM)]
+        problems = [
+            Problem(
+                f"{file}, line {line}",
+                "must have the columns penetration and load, each once",
+                _FORM,
+            )
+        ]
     if problems:
         raise InputRefused(problems)
     return found
 
 
-def _row(file: Path, line: int, fields: Sequence[str], columns: Sequence[tuple[str, float]],
-         problems: list[Problem]) -> _Row | None:
+def _row(
+    file: Path,
+    line: int,
+    fields: Sequence[str],
+    columns: Sequence[tuple[str, float]],
+    problems: list[Problem],
+) -> _Row | None:
     if len(fields) != len(columns):
-        problems.append(Problem(f"{file}, line {line}", f"has {len(fields)} fields instead of {len(columns)}",
-                                "separate penetration and load by a comma, with a point in the numbers"))
+        problems.append(
+            Problem(
+                f"{file}, line {line}",
+                f"has {len(fields)} fields instead of {len(columns)}",
+                "separate penetration and load by a comma, with a point in the numbers",
+            )
+        )
         return None
     values = {}
     for place, (field, (name, unit)) in enumerate(zip(fields, columns, strict=True), 1):
         value = finite_number(field)
         if value is None:
-            problems.append(Problem(f"{file}, line {line}, column {place} ({name})", f"{field.strip()!r} is no finite number",
-                                    "write a number"))
+            problems.append(
+                Problem(
+                    f"{file}, line {line}, column {place} ({name})",
+                    f"{field.strip()!r} is no finite number",
+                    "write a number",
+                )
+            )
         else:
             values[name] = value * unit
-    return _Row(line, values["penetration"], values["load"]) if len(values) == len(columns) else None
+    return (
+        _Row(line, values["penetration"], values["load"]) if len(values) == len(columns) else None
+    )
 
 
 def _shape(file: Path, rows: Sequence[_Row]) -> Iterator[Problem]:
     """What is wrong with a curve as a whole."""
     if len(rows) < 3:
-        yield Problem(str(file), f"has {len(rows)} points", "give at least three; for a single one use --stiffness")
+        yield Problem(
+            str(file),
+            f"has {len(rows)} points",
+            "give at least three; for a single one use --stiffness",
+        )
     for before, row in pairwise(rows):
         if row.depth <= before.depth:
-            yield Problem(f"{file}, line {row.line}, column penetration", f"{row.depth / cm:g} cm does not lie below the "
-                          f"{before.depth / cm:g} cm of line {before.line}", "give the loading branch only, penetrations rising")
+            yield Problem(
+                f"{file}, line {row.line}, column penetration",
+                f"{row.depth / cm:g} cm does not lie below the "
+                f"{before.depth / cm:g} cm of line {before.line}",
+                "give the loading branch only, penetrations rising",
+            )
     for row in rows:
         if not 0.0 <= row.depth <= DEEPEST:
-            yield Problem(f"{file}, line {row.line}, column penetration", f"{row.depth / cm:g} cm: allowed is 0 to "
-                          f"{DEEPEST / cm:g} cm", "the computed layer is 10 cm thick; leave deeper points out")
+            yield Problem(
+                f"{file}, line {row.line}, column penetration",
+                f"{row.depth / cm:g} cm: allowed is 0 to {DEEPEST / cm:g} cm",
+                "the computed layer is 10 cm thick; leave deeper points out",
+            )
         if row.load < 0.0:
-            yield Problem(f"{file}, line {row.line}, column load", f"{row.load:g} N is negative",
-                          "give the force that pushes the rock down as positive")
+            yield Problem(
+                f"{file}, line {row.line}, column load",
+                f"{row.load:g} N is negative",
+                "give the force that pushes the rock down as positive",
+            )
     if rows and not any(row.load > 0.0 for row in rows):
         yield Problem(str(file), "has no load above zero", "give the measured loads")

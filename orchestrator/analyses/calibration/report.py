@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.table import Table
+
 from rockshed.components.common.units import cm, kgf
 
 from ...cases.sonoda1993 import tests
@@ -25,8 +26,17 @@ BEST = "fit"
 """Both rotation models are tried."""
 DATA, TABLE, CURVE, FIGURE = "calibration.json", "calibration.csv", "curve.csv", "calibration.png"
 _E_BAR = kgf / cm**2
-_HEADINGS = ("measurement", "rotation", "k (kgf/cm)", "E_bar (kgf/cm²)", "±", "exponent", "error of the curve", "printed",
-             "to printed")
+_HEADINGS = (
+    "measurement",
+    "rotation",
+    "k (kgf/cm)",
+    "E_bar (kgf/cm²)",
+    "±",
+    "exponent",
+    "error of the curve",
+    "printed",
+    "to printed",
+)
 
 
 @dataclass(frozen=True)
@@ -52,7 +62,9 @@ class Found:
         return [(calibration, fit) for calibration in self.calibrations for fit in calibration.fits]
 
 
-def asked_for(target: str | None, stiffness: str | None, rotation: str, settings: Sequence[str]) -> Asked:
+def asked_for(
+    target: str | None, stiffness: str | None, rotation: str, settings: Sequence[str]
+) -> Asked:
     """The measurements that a command names: a curve, a spring constant, or the paper's tests.
 
     Raises:
@@ -60,23 +72,53 @@ def asked_for(target: str | None, stiffness: str | None, rotation: str, settings
     """
     problems = []
     if (target is None) == (stiffness is None):
-        problems.append(Problem("calibrate", "takes either a file or --stiffness" + (", not both" if target else ""),
-                                f"rockshed calibrate CURVE.csv, --stiffness '39.1 kgf/cm', or {PAPER} for table 4"))
+        problems.append(
+            Problem(
+                "calibrate",
+                "takes either a file or --stiffness" + (", not both" if target else ""),
+                f"rockshed calibrate CURVE.csv, --stiffness '39.1 kgf/cm', or {PAPER} for table 4",
+            )
+        )
     if rotation not in (*ROTATIONS, BEST):
-        problems.append(Problem("--rotation", f"{rotation!r} is unknown", f"choose one of {', '.join((*ROTATIONS, BEST))}"))
+        problems.append(
+            Problem(
+                "--rotation",
+                f"{rotation!r} is unknown",
+                f"choose one of {', '.join((*ROTATIONS, BEST))}",
+            )
+        )
     if rotation == BEST and (stiffness is not None or target == PAPER):
-        problems.append(Problem("--rotation fit", "needs a curve: any model has a given spring constant with some E_bar",
-                                "give a load-penetration curve, or choose free or locked"))
-    if rotation == BEST and any(text.partition("=")[0].strip() == "sand.rotation" for text in settings):
-        problems.append(Problem("--set sand.rotation", "is what --rotation fit chooses", "leave one of them out"))
+        problems.append(
+            Problem(
+                "--rotation fit",
+                "needs a curve: any model has a given spring constant with some E_bar",
+                "give a load-penetration curve, or choose free or locked",
+            )
+        )
+    if rotation == BEST and any(
+        text.partition("=")[0].strip() == "sand.rotation" for text in settings
+    ):
+        problems.append(
+            Problem(
+                "--set sand.rotation", "is what --rotation fit chooses", "leave one of them out"
+            )
+        )
     if problems:
         raise InputRefused(problems)
     if stiffness is not None:
-        return Asked([of_stiffness(stiffness_from(stiffness), f"k = {stiffness}")], rotation, settings)
+        return Asked(
+            [of_stiffness(stiffness_from(stiffness), f"k = {stiffness}")], rotation, settings
+        )
     if target == PAPER:
-        of_table = {f"test {test.number}": test for test in tests().values() if test.modulus_in_table_4}
-        return Asked([of_stiffness(test.static_stiffness, name) for name, test in of_table.items()], rotation, settings,
-                     {name: test.modulus for name, test in of_table.items()})
+        of_table = {
+            f"test {test.number}": test for test in tests().values() if test.modulus_in_table_4
+        }
+        return Asked(
+            [of_stiffness(test.static_stiffness, name) for name, test in of_table.items()],
+            rotation,
+            settings,
+            {name: test.modulus for name, test in of_table.items()},
+        )
     return Asked([read_curve(Path(str(target)))], rotation, settings)
 
 
@@ -87,8 +129,14 @@ def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Done) 
         As :func:`rockshed.analyses.calibration.run.calibrate`.
     """
     models = list(ROTATIONS) if asked.rotation == BEST else [asked.rotation]
-    made, lost = by_misfit({model: partial(calibrate, asked.measurements, model, asked.settings, seeds, workers, note, done)
-                            for model in models})
+    made, lost = by_misfit(
+        {
+            model: partial(
+                calibrate, asked.measurements, model, asked.settings, seeds, workers, note, done
+            )
+            for model in models
+        }
+    )
     return Found(asked, made, lost)
 
 
@@ -97,14 +145,25 @@ def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Done) 
 
 def cells(found: Found) -> list[list[str]]:
     """The rows of the table, in the units of the paper."""
-    return [_cells(calibration, fit, found.asked.printed.get(fit.measured.name)) for calibration, fit in found.fits()]
+    return [
+        _cells(calibration, fit, found.asked.printed.get(fit.measured.name))
+        for calibration, fit in found.fits()
+    ]
 
 
 def _cells(calibration: Calibration, fit: Fit, printed: float | None) -> list[str]:
     stiffness = float(fit.measured.load[-1] / fit.measured.depth[-1]) / kgf * cm
-    return [fit.measured.name, calibration.rotation, f"{stiffness:.1f}", f"{fit.modulus / _E_BAR:.1f}",
-            f"{fit.uncertainty / _E_BAR:.1f}", f"{fit.exponent:.2f}", f"{100 * fit.misfit:.1f} %" if fit.measured.is_curve else "",
-            f"{printed / _E_BAR:.1f}" if printed else "", f"{100 * (fit.modulus / printed - 1):+.0f} %" if printed else ""]
+    return [
+        fit.measured.name,
+        calibration.rotation,
+        f"{stiffness:.1f}",
+        f"{fit.modulus / _E_BAR:.1f}",
+        f"{fit.uncertainty / _E_BAR:.1f}",
+        f"{fit.exponent:.2f}",
+        f"{100 * fit.misfit:.1f} %" if fit.measured.is_curve else "",
+        f"{printed / _E_BAR:.1f}" if printed else "",
+        f"{100 * (fit.modulus / printed - 1):+.0f} %" if printed else "",
+    ]
 
 
 def table(found: Found) -> Table:
@@ -120,28 +179,53 @@ def table(found: Found) -> Table:
 def notes(found: Found) -> list[str]:
     """What a reader has to know of the figures."""
     best = found.calibrations[0]
-    said = [f"rotation {best.rotation}: {', '.join(best.settings)}; {len(best.pushes)} static tests, "
-            f"{len({push.seed for push in best.pushes})} samples",
-            "±: standard deviation of the E_bar that single samples ask for" + (
-                ", and error of the curve, together" if best.fits[0].measured.is_curve else "")]
+    said = [
+        f"rotation {best.rotation}: {', '.join(best.settings)}; {len(best.pushes)} static tests, "
+        f"{len({push.seed for push in best.pushes})} samples",
+        "±: standard deviation of the E_bar that single samples ask for"
+        + (", and error of the curve, together" if best.fits[0].measured.is_curve else ""),
+    ]
     if found.asked.rotation == BEST:
         said.append(f"rotation {best.rotation} fits best, by the error of the curve")
-    return said + [f"rotation {name} not possible: {problem.what}" for name, reason in found.lost.items()
-                   for problem in reason.problems]
+    return said + [
+        f"rotation {name} not possible: {problem.what}"
+        for name, reason in found.lost.items()
+        for problem in reason.problems
+    ]
 
 
 def as_data(found: Found) -> dict[str, Any]:
     """For programs, in SI."""
-    return {"calibrations": [{
-        "rotation": calibration.rotation, "settings": list(calibration.settings),
-        "tests": [{"e_bar": push.modulus, "seed": push.seed} for push in calibration.pushes],
-        "results": [{"measurement": fit.measured.name, "e_bar": fit.modulus, "uncertainty": fit.uncertainty,
-                     "spread_of_samples": fit.spread, "error_of_the_curve": fit.misfit if fit.measured.is_curve else None,
-                     "exponent": fit.exponent, "printed": found.asked.printed.get(fit.measured.name),
-                     "penetration": fit.measured.depth.tolist(), "measured_load": fit.measured.load.tolist(),
-                     "computed_load": fit.load.tolist(), "computed_load_spread": fit.load_spread.tolist()}
-                    for fit in calibration.fits]} for calibration in found.calibrations],
-        "unit_of_e_bar": "Pa", "remarks": notes(found)}
+    return {
+        "calibrations": [
+            {
+                "rotation": calibration.rotation,
+                "settings": list(calibration.settings),
+                "tests": [
+                    {"e_bar": push.modulus, "seed": push.seed} for push in calibration.pushes
+                ],
+                "results": [
+                    {
+                        "measurement": fit.measured.name,
+                        "e_bar": fit.modulus,
+                        "uncertainty": fit.uncertainty,
+                        "spread_of_samples": fit.spread,
+                        "error_of_the_curve": fit.misfit if fit.measured.is_curve else None,
+                        "exponent": fit.exponent,
+                        "printed": found.asked.printed.get(fit.measured.name),
+                        "penetration": fit.measured.depth.tolist(),
+                        "measured_load": fit.measured.load.tolist(),
+                        "computed_load": fit.load.tolist(),
+                        "computed_load_spread": fit.load_spread.tolist(),
+                    }
+                    for fit in calibration.fits
+                ],
+            }
+            for calibration in found.calibrations
+        ],
+        "unit_of_e_bar": "Pa",
+        "remarks": notes(found),
+    }
 
 
 def write(found: Found, folder: Path) -> list[Path]:
@@ -158,9 +242,17 @@ def write(found: Found, folder: Path) -> list[Path]:
     best = found.calibrations[0].fits[0]
     files = [folder / DATA, folder / TABLE, folder / FIGURE]
     if best.measured.is_curve:
-        columns = (best.measured.depth / cm, best.measured.load / kgf, best.load / kgf, best.load_spread / kgf)
-        _write_csv(folder / CURVE, ("penetration (cm)", "load (kgf)", "computed load (kgf)", "spread (kgf)"),
-                   [[f"{value:.5g}" for value in row] for row in zip(*columns, strict=True)])
+        columns = (
+            best.measured.depth / cm,
+            best.measured.load / kgf,
+            best.load / kgf,
+            best.load_spread / kgf,
+        )
+        _write_csv(
+            folder / CURVE,
+            ("penetration (cm)", "load (kgf)", "computed load (kgf)", "spread (kgf)"),
+            [[f"{value:.5g}" for value in row] for row in zip(*columns, strict=True)],
+        )
         files.append(folder / CURVE)
     draw(found.calibrations, found.asked.printed, notes(found), folder / FIGURE)
     return files

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.units import cm, kgf
 
 from ...cases.sonoda1993 import STATIC_RATIO
@@ -110,21 +111,42 @@ def fit(measured: Measurement, pushes: Sequence[Push]) -> Fit:
     Raises:
         Unreachable: the load does not rise with E_bar.
     """
-    moduli, strengths = np.array([push.modulus for push in pushes]), np.array([strength(measured, push.curve) for push in pushes])
+    moduli, strengths = (
+        np.array([push.modulus for push in pushes]),
+        np.array([strength(measured, push.curve) for push in pushes]),
+    )
     exponent = _exponent(moduli, strengths)
     if not exponent > _FLAT:
         raise _unreachable(measured, pushes)
     wanted = np.log(moduli) - np.log(strengths) / exponent
     modulus = float(np.exp(wanted.mean()))
-    loads = np.array([push.curve.at(measured.depth) * (modulus / push.modulus) ** exponent for push in pushes])
+    loads = np.array(
+        [push.curve.at(measured.depth) * (modulus / push.modulus) ** exponent for push in pushes]
+    )
     load = loads.mean(axis=0)
-    misfit = float(np.sqrt(np.sum((load - measured.load) ** 2) / np.sum(measured.load**2))) if measured.is_curve else 0.0
-    return Fit(measured, modulus, modulus * float(np.std(wanted, ddof=2)), misfit, exponent, load, loads.std(axis=0, ddof=1))
+    misfit = (
+        float(np.sqrt(np.sum((load - measured.load) ** 2) / np.sum(measured.load**2)))
+        if measured.is_curve
+        else 0.0
+    )
+    return Fit(
+        measured,
+        modulus,
+        modulus * float(np.std(wanted, ddof=2)),
+        misfit,
+        exponent,
+        load,
+        loads.std(axis=0, ddof=1),
+    )
 
 
 def _exponent(moduli: NDArray[np.float64], strengths: NDArray[np.float64]) -> float:
     """Slope of the logarithms; none where a sample carries nothing."""
-    return float(np.polyfit(np.log(moduli), np.log(strengths), 1)[0]) if (strengths > 0.0).all() else math.nan
+    return (
+        float(np.polyfit(np.log(moduli), np.log(strengths), 1)[0])
+        if (strengths > 0.0).all()
+        else math.nan
+    )
 
 
 def _unreachable(measured: Measurement, pushes: Sequence[Push]) -> Unreachable:
@@ -133,10 +155,16 @@ def _unreachable(measured: Measurement, pushes: Sequence[Push]) -> Unreachable:
     reached = [float(push.curve.at(depth)) / depth / kgf * cm for push in pushes]
     moduli = [push.modulus / kgf * cm**2 for push in pushes]
     wanted = float(measured.load[-1]) / depth / kgf * cm
-    return Unreachable([Problem(
-        measured.name, f"a spring constant of {wanted:.3g} kgf/cm at {depth / cm:g} cm is out of reach: the sand has "
-        f"{min(reached):.3g} to {max(reached):.3g} kgf/cm for E_bar from {min(moduli):.3g} to {max(moduli):.3g} kgf/cm2",
-        "another model of the sand (--rotation, --set sand.packing=...), or look at the measurement")])
+    return Unreachable(
+        [
+            Problem(
+                measured.name,
+                f"a spring constant of {wanted:.3g} kgf/cm at {depth / cm:g} cm is out of reach: the sand has "
+                f"{min(reached):.3g} to {max(reached):.3g} kgf/cm for E_bar from {min(moduli):.3g} to {max(moduli):.3g} kgf/cm2",
+                "another model of the sand (--rotation, --set sand.packing=...), or look at the measurement",
+            )
+        ]
+    )
 
 
 # ------------------------------------------------------------------ runs
@@ -157,13 +185,31 @@ class _Bench:
     def task(self, modulus: float, seed: int) -> Task:
         """The run of a sample."""
         step = _STABLE * self.root / math.sqrt(modulus)
-        return Task(Request(NAME, (*self.settings, f"sand.modulus={modulus:.6g}", f"sand.seed={seed}",
-                                   f"sand.internal_step={step:.3g}", f"rock.position0.y={rock_height(self.surface):.6g}"),
-                            options={"stop_time": round(self.depth / SPEED, 2)}), seed=seed)
+        return Task(
+            Request(
+                NAME,
+                (
+                    *self.settings,
+                    f"sand.modulus={modulus:.6g}",
+                    f"sand.seed={seed}",
+                    f"sand.internal_step={step:.3g}",
+                    f"rock.position0.y={rock_height(self.surface):.6g}",
+                ),
+                options={"stop_time": round(self.depth / SPEED, 2)},
+            ),
+            seed=seed,
+        )
 
 
-def calibrate(measurements: Sequence[Measurement], rotation: str = "locked", settings: Sequence[str] = (), seeds: int = 5,
-              workers: int | None = None, note: Note = lambda text: None, done: Done = lambda count, total: None) -> Calibration:
+def calibrate(
+    measurements: Sequence[Measurement],
+    rotation: str = "locked",
+    settings: Sequence[str] = (),
+    seeds: int = 5,
+    workers: int | None = None,
+    note: Note = lambda text: None,
+    done: Done = lambda count, total: None,
+) -> Calibration:
     """Find E_bar for each measurement.
 
     rotation: one of :data:`ROTATIONS`. settings: further changes of the case, ``component.parameter=value``. seeds: samples, at
@@ -174,20 +220,28 @@ def calibrate(measurements: Sequence[Measurement], rotation: str = "locked", set
         RunFailed: a run could not go on.
         KeyboardInterrupt: Ctrl-C, also from a run that took it for itself.
     """
-    if problems := [Problem(f"--set {text}", "is chosen by the calibration", "leave it out") for text in settings
-                    if text.partition("=")[0].strip() in _SOUGHT]:
+    if problems := [
+        Problem(f"--set {text}", "is chosen by the calibration", "leave it out")
+        for text in settings
+        if text.partition("=")[0].strip() in _SOUGHT
+    ]:
         raise InputRefused(problems)
     chosen = (f"sand.lattice_shift={LATTICE_SHIFT:g}", *ROTATIONS[rotation], *settings)
     bench = _bench(chosen, max(float(measured.depth[-1]) for measured in measurements), note)
-    ordered = sorted(measurements, key=lambda measured: float(measured.load[-1] / measured.depth[-1]))
+    ordered = sorted(
+        measurements, key=lambda measured: float(measured.load[-1] / measured.depth[-1])
+    )
     low = _near(ordered[0], bench)
     high = low if len(ordered) == 1 else _near(ordered[-1], bench)
     for _ in range(_ROUNDS):
         moduli = _around(low, high)
         tasks = [bench.task(modulus, seed) for modulus in moduli for seed in range(1, seeds + 1)]
         outcomes = run_all(tasks, workers, note, done)
-        pushes = [Push(modulus, seed, _curve(outcomes[bench.task(modulus, seed).key]))
-                  for modulus in moduli for seed in range(1, seeds + 1)]
+        pushes = [
+            Push(modulus, seed, _curve(outcomes[bench.task(modulus, seed).key]))
+            for modulus in moduli
+            for seed in range(1, seeds + 1)
+        ]
         fits = [fit(measured, pushes) for measured in measurements]
         found = [result.modulus for result in fits]
         if min(found) >= moduli[0] and max(found) <= moduli[-1]:
@@ -205,12 +259,27 @@ def _around(low: float, high: float) -> list[float]:
 def _bench(settings: Sequence[str], deepest: float, note: Note) -> _Bench:
     """Look how high the sand stands and which step is stable: a run of one exchange, the rock far above."""
     modulus = 20.0 * kgf / cm**2
-    probe = Task(Request(NAME, (*settings, f"sand.modulus={modulus!r}", f"sand.internal_step={_PROBE_STEP!r}",
-                                f"rock.position0.y={_HIGH!r}"), options={"stop_time": 1e-3}), allow_unstable=True)
+    probe = Task(
+        Request(
+            NAME,
+            (
+                *settings,
+                f"sand.modulus={modulus!r}",
+                f"sand.internal_step={_PROBE_STEP!r}",
+                f"rock.position0.y={_HIGH!r}",
+            ),
+            options={"stop_time": 1e-3},
+        ),
+        allow_unstable=True,
+    )
     outcome = _ended(run_here(probe, note))
     margin = _MARGIN if outcome.options["packing"] == "random" else 0.0
-    return _Bench(settings, float(outcome.series["sand.surface_height"][0]) + margin, deepest + 2.0 * margin + 0.15 * cm,
-                  float(outcome.series["sand.stable_step"][0]) * math.sqrt(modulus))
+    return _Bench(
+        settings,
+        float(outcome.series["sand.surface_height"][0]) + margin,
+        deepest + 2.0 * margin + 0.15 * cm,
+        float(outcome.series["sand.stable_step"][0]) * math.sqrt(modulus),
+    )
 
 
 def _near(measured: Measurement, bench: _Bench) -> float:
@@ -219,14 +288,19 @@ def _near(measured: Measurement, bench: _Bench) -> float:
     Raises:
         Unreachable: there is none.
     """
-    modulus = min(max(float(measured.load[-1] / measured.depth[-1]) / STATIC_RATIO / cm, LOWEST), HIGHEST)
+    modulus = min(
+        max(float(measured.load[-1] / measured.depth[-1]) / STATIC_RATIO / cm, LOWEST), HIGHEST
+    )
     tried: list[Push] = []
     for _ in range(_TRIALS):
         tried.append(Push(modulus, 1, _curve(_ended(run_here(bench.task(modulus, 1))))))
         relation = strength(measured, tried[-1].curve)
         if 1.0 / _NEAR < relation < _NEAR:
             return modulus
-        stride = min(max(1.0 / relation if relation > 0.0 else math.inf, 1.0 / _LONGEST_STRIDE), _LONGEST_STRIDE)
+        stride = min(
+            max(1.0 / relation if relation > 0.0 else math.inf, 1.0 / _LONGEST_STRIDE),
+            _LONGEST_STRIDE,
+        )
         following = min(max(modulus * stride, LOWEST), HIGHEST)
         if following == modulus:
             break
@@ -255,7 +329,9 @@ def _ended(outcome: Outcome) -> Outcome:
     return outcome
 
 
-def by_misfit(candidates: Mapping[str, Callable[[], Calibration]]) -> tuple[list[Calibration], dict[str, Unreachable]]:
+def by_misfit(
+    candidates: Mapping[str, Callable[[], Calibration]],
+) -> tuple[list[Calibration], dict[str, Unreachable]]:
     """Calibrations of several models, by their names, to one curve: the best fit first; and why others have none.
 
     Raises:

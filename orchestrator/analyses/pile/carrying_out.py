@@ -26,8 +26,12 @@ class Finished:
     pictures: Sequence[Path]
 
 
-def carry_out(made: Prepared, folder: Path, counting: Callable[[str], AbstractContextManager[Done]],
-              with_pictures: bool = True) -> Finished:
+def carry_out(
+    made: Prepared,
+    folder: Path,
+    counting: Callable[[str], AbstractContextManager[Done]],
+    with_pictures: bool = True,
+) -> Finished:
     """Compute everything and write it into ``folder``. counting: opens a progress bar with this text.
 
     Raises:
@@ -50,4 +54,11 @@ def carry_out(made: Prepared, folder: Path, counting: Callable[[str], AbstractCo
             with counting("drawing"):
                 pictures = draw_all(made, blows, graph, place.running / FIGURES)
         place.swap()
-    return Finished(folder, blows, graph, wall_time, figures, [folder / file.relative_to(place.running) for file in pictures])
+    return Finished(
+        folder,
+        blows,
+        graph,
+        wall_time,
+        figures,
+        [folder / file.relative_to(place.running) for file in pictures],
+    )

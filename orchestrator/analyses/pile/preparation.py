@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
 
@@ -71,9 +72,11 @@ class Prepared:
     @cached_property
     def depths(self) -> NDArray[np.float64]:
         """Depth (m) of the ends of the segments, the head's first."""
-        return np.interp(np.linspace(0.0, self.travel_time, self.site.segments + 1),
-                         [0.0, *accumulate(section.length / _speed(section) for section in self.site.rod)],
-                         [0.0, *accumulate(section.length for section in self.site.rod)])
+        return np.interp(
+            np.linspace(0.0, self.travel_time, self.site.segments + 1),
+            [0.0, *accumulate(section.length / _speed(section) for section in self.site.rod)],
+            [0.0, *accumulate(section.length for section in self.site.rod)],
+        )
 
     def hammer(self) -> Instance:
         """A hammer that begins its blow."""
@@ -85,7 +88,9 @@ class Prepared:
 
     def rod(self, resistance: float | None = None) -> Instance:
         """The rod at rest, initialised. resistance: of the whole soil (N), which is scaled to it."""
-        made = component("PileRod").instance(segments=self.site.segments, sections=len(self.site.rod))
+        made = component("PileRod").instance(
+            segments=self.site.segments, sections=len(self.site.rod)
+        )
         for name, value, _ in _rod_values(self.site):
             made[name] = value
         scale = 1.0 if resistance is None else resistance / self.resistance
@@ -97,15 +102,23 @@ class Prepared:
 
     def soil(self) -> dict[str, NDArray[np.float64]]:
         """What the segments' shaft has, by name of the rod's parameter: layers by the length that they share with a segment."""
-        found = {"shaft.resistance": np.zeros(self.site.segments), "shaft.quake": np.full(self.site.segments, 2.5e-3),
-                 "shaft.damping": np.full(self.site.segments, 0.16)}
+        found = {
+            "shaft.resistance": np.zeros(self.site.segments),
+            "shaft.quake": np.full(self.site.segments, 2.5e-3),
+            "shaft.damping": np.full(self.site.segments, 0.16),
+        }
         largest = np.zeros(self.site.segments)
         for layer in self.site.shaft:
-            shared = np.minimum(self.depths[1:], layer.bottom) - np.maximum(self.depths[:-1], layer.top)
+            shared = np.minimum(self.depths[1:], layer.bottom) - np.maximum(
+                self.depths[:-1], layer.top
+            )
             part = layer.resistance * np.maximum(shared, 0.0) / (layer.bottom - layer.top)
             found["shaft.resistance"] += part
             leading = part > largest
-            found["shaft.quake"][leading], found["shaft.damping"][leading] = layer.quake, layer.damping
+            found["shaft.quake"][leading], found["shaft.damping"][leading] = (
+                layer.quake,
+                layer.damping,
+            )
             largest[leading] = part[leading]
         return found
 
@@ -118,19 +131,36 @@ def prepare(file: Path, blows: int | None = None) -> Prepared:
     """
     data, where = read_toml(file)
     problems: list[Problem] = []
-    site = formed(PileSite, {**data, **({} if blows is None else {"blows": blows})}, where, problems)
+    site = formed(
+        PileSite, {**data, **({} if blows is None else {"blows": blows})}, where, problems
+    )
     if site is None:
         raise InputRefused(first(problems))
-    problems += [*_value_problems(site, where), *_depth_problems(site, where), *_weight_problems(site, where)]
+    problems += [
+        *_value_problems(site, where),
+        *_depth_problems(site, where),
+        *_weight_problems(site, where),
+    ]
     made = Prepared(file, site)
     rows = site.blows * made.time / made.step
     if rows > MOST_ROWS:
-        problems.append(Problem(where.of(("time",)), f"{site.blows} blows of {made.time:g} s in steps of {made.step:.3g} s are "
-                                f"{rows:.2g} rows, and at most {MOST_ROWS:.2g} are kept",
-                                "shorten time, or give fewer blows or segments"))
+        problems.append(
+            Problem(
+                where.of(("time",)),
+                f"{site.blows} blows of {made.time:g} s in steps of {made.step:.3g} s are "
+                f"{rows:.2g} rows, and at most {MOST_ROWS:.2g} are kept",
+                "shorten time, or give fewer blows or segments",
+            )
+        )
     if made.time < (least := LEAST_TRAVELS * made.travel_time):
-        problems.append(Problem(where.of(("time",)), f"{made.time:g} s is too short for a blow: a wave needs "
-                                f"{made.travel_time:.3g} s from head to toe", f"give at least {least:.2g} s"))
+        problems.append(
+            Problem(
+                where.of(("time",)),
+                f"{made.time:g} s is too short for a blow: a wave needs "
+                f"{made.travel_time:.3g} s from head to toe",
+                f"give at least {least:.2g} s",
+            )
+        )
     if not problems:
         try:
             made.rod()
@@ -187,25 +217,47 @@ def _depth_problems(site: PileSite, where: Places) -> Iterator[Problem]:
     length = sum(section.length for section in site.rod)
     for i, layer in enumerate(site.shaft):
         if layer.bottom <= layer.top:
-            yield Problem(where.of(("shaft", i)), f"the layer goes from {layer.top:g} m to {layer.bottom:g} m",
-                          "let it end below its beginning")
+            yield Problem(
+                where.of(("shaft", i)),
+                f"the layer goes from {layer.top:g} m to {layer.bottom:g} m",
+                "let it end below its beginning",
+            )
         elif layer.bottom > length * (1.0 + 1e-9):
-            yield Problem(where.of(("shaft", i, "to")), f"{layer.bottom:g} m is below the toe, at {length:g} m",
-                          "end the layer there, or lengthen the rod")
+            yield Problem(
+                where.of(("shaft", i, "to")),
+                f"{layer.bottom:g} m is below the toe, at {length:g} m",
+                "end the layer there, or lengthen the rod",
+            )
     if site.gauge > length:
-        yield Problem(where.of(("gauge",)), f"the gauge at {site.gauge:g} m is below the toe", f"give at most {length:g} m")
+        yield Problem(
+            where.of(("gauge",)),
+            f"the gauge at {site.gauge:g} m is below the toe",
+            f"give at most {length:g} m",
+        )
 
 
 def _weight_problems(site: PileSite, where: Places) -> Iterator[Problem]:
     """Soil that does not carry rod and ram at rest."""
     gravity = site.gravity
     mass = sum(section.length * section.area * section.density for section in site.rod)
-    weight, least = gravity * mass + 9.80665 * site.hammer.mass, site.toe.resistance + _total(site.shaft)
-    for resistance, key in [(least, ("toe", "resistance")), *(
-            (value, ("bearing", "resistances", i)) for i, value in enumerate(site.bearing.resistances if site.bearing else []))]:
+    weight, least = (
+        gravity * mass + 9.80665 * site.hammer.mass,
+        site.toe.resistance + _total(site.shaft),
+    )
+    for resistance, key in [
+        (least, ("toe", "resistance")),
+        *(
+            (value, ("bearing", "resistances", i))
+            for i, value in enumerate(site.bearing.resistances if site.bearing else [])
+        ),
+    ]:
         if resistance <= weight:
-            yield Problem(where.of(key), f"the soil bears {resistance:g} N, and rod and ram weigh {weight:.4g} N: they sink "
-                          "without a blow", "give it more resistance")
+            yield Problem(
+                where.of(key),
+                f"the soil bears {resistance:g} N, and rod and ram weigh {weight:.4g} N: they sink "
+                "without a blow",
+                "give it more resistance",
+            )
 
 
 def _total(layers: Sequence[Shaft]) -> float:

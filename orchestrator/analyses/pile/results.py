@@ -25,18 +25,28 @@ from .blows import TRACES, Blow, blow_figures
 from .preparation import Prepared
 
 _PACKAGES = ("rockshed", "numpy", "numba", "pyarrow")
-_WORDS = {"head.contact_force": "force at the head, compression positive",
-          "head.zv": "impedance times velocity of the head, downwards", "toe.contact_force": "force of the soil on the toe",
-          "gauge.force": "force at the gauge",
-          "gauge.zv": "impedance times velocity at the gauge", "head.position": "displacement of the head, downwards",
-          "toe.position": "displacement of the toe, downwards", "toe.set": "part of it that stays"}
+_WORDS = {
+    "head.contact_force": "force at the head, compression positive",
+    "head.zv": "impedance times velocity of the head, downwards",
+    "toe.contact_force": "force of the soil on the toe",
+    "gauge.force": "force at the gauge",
+    "gauge.zv": "impedance times velocity at the gauge",
+    "head.position": "displacement of the head, downwards",
+    "toe.position": "displacement of the toe, downwards",
+    "toe.set": "part of it that stays",
+}
 
 
 def figures(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow]) -> list[Figure]:
     """The summary: every blow, and the whole."""
-    found = [Figure("blows", len(blows)), Figure("rated_energy", made.rated_energy, "J"),
-             Figure("impact_energy", blows[0].impact_energy, "J"), Figure("resistance", made.resistance, "N"),
-             Figure("travel_time", made.travel_time, "s"), Figure("penetration", sum(blow.set for blow in blows), "m")]
+    found = [
+        Figure("blows", len(blows)),
+        Figure("rated_energy", made.rated_energy, "J"),
+        Figure("impact_energy", blows[0].impact_energy, "J"),
+        Figure("resistance", made.resistance, "N"),
+        Figure("travel_time", made.travel_time, "s"),
+        Figure("penetration", sum(blow.set for blow in blows), "m"),
+    ]
     for number, blow in enumerate(blows):
         found += _figures(f"blow.{number + 1}", made, blow)
     for blow in graph:
@@ -50,7 +60,9 @@ def _figures(prefix: str, made: Prepared, blow: Blow) -> Iterator[Figure]:
             yield Figure(f"{prefix}.{name}", value, unit)
 
 
-def write(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow], folder: Path, wall_time: float) -> list[Figure]:
+def write(
+    made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow], folder: Path, wall_time: float
+) -> list[Figure]:
     """All files except the pictures; ``run.json`` comes last. Returns the summary."""
     import pyarrow.csv
     import pyarrow.parquet
@@ -63,11 +75,25 @@ def write(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow], folder: 
         pyarrow.csv.write_csv(content, folder / f"{name}.csv")
     found = figures(made, blows, graph)
     write_json(folder / SUMMARY, [figure.as_entry() for figure in found])
-    write_json(folder / RUN, {
-        "status": "complete", "kind": "pile", "name": made.name, "ended": datetime.now(UTC).isoformat(timespec="seconds"),
-        "site_file": str(made.file), "site": made.site.model_dump(mode="json", by_alias=True), "exchange_step": made.step,
-        "time": made.time, "wall_time": wall_time, "platform": platform.platform(),
-        "versions": {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}})
+    write_json(
+        folder / RUN,
+        {
+            "status": "complete",
+            "kind": "pile",
+            "name": made.name,
+            "ended": datetime.now(UTC).isoformat(timespec="seconds"),
+            "site_file": str(made.file),
+            "site": made.site.model_dump(mode="json", by_alias=True),
+            "exchange_step": made.step,
+            "time": made.time,
+            "wall_time": wall_time,
+            "platform": platform.platform(),
+            "versions": {
+                "python": platform.python_version(),
+                **{package: version(package) for package in _PACKAGES},
+            },
+        },
+    )
     return found
 
 
@@ -76,26 +102,52 @@ def _traces(blows: Sequence[Blow]) -> Any:
         return np.concatenate([blow.traces[name] for blow in blows])
 
     numbers = np.repeat(np.arange(len(blows)) + 1, [len(blow.traces["time"]) for blow in blows])
-    columns = [result_column("time", joined("time"), "s", "time since the first stroke"),
-               result_column("blow", numbers, "1", "number of the blow")]
-    return result_table(columns + [result_column(name, joined(name), unit, _WORDS[name]) for name, unit in TRACES.items()])
+    columns = [
+        result_column("time", joined("time"), "s", "time since the first stroke"),
+        result_column("blow", numbers, "1", "number of the blow"),
+    ]
+    return result_table(
+        columns
+        + [result_column(name, joined(name), unit, _WORDS[name]) for name, unit in TRACES.items()]
+    )
 
 
 def _envelopes(made: Prepared, blows: Sequence[Blow]) -> Any:
-    columns = [result_column("top", made.depths[:-1], "m", "depth of the segment's upper end"),
-               result_column("bottom", made.depths[1:], "m", "depth of its lower end")]
+    columns = [
+        result_column("top", made.depths[:-1], "m", "depth of the segment's upper end"),
+        result_column("bottom", made.depths[1:], "m", "depth of its lower end"),
+    ]
     for i, blow in enumerate(blows, 1):
-        columns += [result_column(f"blow.{i}.compression", blow.compression, "Pa", "largest compressive stress"),
-                    result_column(f"blow.{i}.tension", blow.tension, "Pa", "largest tensile stress, positive"),
-                    result_column(f"blow.{i}.residual_force", blow.residual, "N", "force that is left, compression positive")]
+        columns += [
+            result_column(
+                f"blow.{i}.compression", blow.compression, "Pa", "largest compressive stress"
+            ),
+            result_column(
+                f"blow.{i}.tension", blow.tension, "Pa", "largest tensile stress, positive"
+            ),
+            result_column(
+                f"blow.{i}.residual_force",
+                blow.residual,
+                "N",
+                "force that is left, compression positive",
+            ),
+        ]
     return result_table(columns)
 
 
 def _bearing(made: Prepared, graph: Sequence[Blow]) -> Any:
     listed = [dict((name, value) for name, value, _ in blow_figures(made, blow)) for blow in graph]
     units = {name: unit for name, _, unit in blow_figures(made, graph[0])}
-    columns: list[Column] = [result_column("resistance", [blow.resistance for blow in graph], "N",
-                                            "ultimate resistance of shaft and toe")]
-    columns += [result_column(name, [row[name] for row in listed], unit, name.replace("_", " "))
-                for name, unit in units.items()]
+    columns: list[Column] = [
+        result_column(
+            "resistance",
+            [blow.resistance for blow in graph],
+            "N",
+            "ultimate resistance of shaft and toe",
+        )
+    ]
+    columns += [
+        result_column(name, [row[name] for row in listed], unit, name.replace("_", " "))
+        for name, unit in units.items()
+    ]
     return result_table(columns)

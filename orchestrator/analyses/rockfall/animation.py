@@ -45,28 +45,47 @@ def kind_of(wanted: str | None, note: Callable[[str], None]) -> str:
         note('animations become GIF files; pip install "rockshed[movie]" for MP4')
         return "gif"
     if wanted not in KINDS:
-        raise InputRefused([Problem("--animation", f"{wanted!r} is unknown", f"choose one of {', '.join(KINDS)}")])
+        raise InputRefused(
+            [Problem("--animation", f"{wanted!r} is unknown", f"choose one of {', '.join(KINDS)}")]
+        )
     if wanted == "mp4" and not can_mp4():
-        raise InputRefused([Problem("--animation mp4", "needs the packages imageio and imageio-ffmpeg",
-                                    'install them: pip install "rockshed[movie]", or take --animation gif')])
+        raise InputRefused(
+            [
+                Problem(
+                    "--animation mp4",
+                    "needs the packages imageio and imageio-ffmpeg",
+                    'install them: pip install "rockshed[movie]", or take --animation gif',
+                )
+            ]
+        )
     return wanted
 
 
-def write_animation(file: Path, figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist],
-                    done: Done = lambda i, n: None) -> None:
+def write_animation(
+    file: Path,
+    figure: Figure,
+    frames: int,
+    draw: Draw,
+    moving: Sequence[Artist],
+    done: Done = lambda i, n: None,
+) -> None:
     """Frames 0 ... frames - 1 of a figure as an MP4 or GIF file, as its name ends.
 
     moving: what ``draw`` changes, in the order in which it is drawn; everything else stands still and is drawn once.
     """
     beside = file.with_name(f".{file.name}")
     try:
-        (_write_mp4 if file.suffix == ".mp4" else _write_gif)(beside, _pictures(figure, frames, draw, moving, done))
+        (_write_mp4 if file.suffix == ".mp4" else _write_gif)(
+            beside, _pictures(figure, frames, draw, moving, done)
+        )
         os.replace(beside, file)
     finally:
         beside.unlink(missing_ok=True)
 
 
-def _pictures(figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist], done: Done) -> Iterator[Picture]:
+def _pictures(
+    figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist], done: Done
+) -> Iterator[Picture]:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     figure.set_layout_engine("none")
@@ -86,11 +105,18 @@ def _pictures(figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist],
 def _write_mp4(file: Path, pictures: Iterator[Picture]) -> None:
     import imageio
 
-    writer: Any = imageio.get_writer(file, format="FFMPEG", fps=FRAMES_PER_SECOND, codec="libx264", macro_block_size=2,
-                                     ffmpeg_log_level="error", output_params=["-preset", "veryfast"])
+    writer: Any = imageio.get_writer(
+        file,
+        format="FFMPEG",
+        fps=FRAMES_PER_SECOND,
+        codec="libx264",
+        macro_block_size=2,
+        ffmpeg_log_level="error",
+        output_params=["-preset", "veryfast"],
+    )
     with writer as movie:
         for picture in pictures:
-            movie.append_data(picture[:picture.shape[0] // 2 * 2, :picture.shape[1] // 2 * 2])
+            movie.append_data(picture[: picture.shape[0] // 2 * 2, : picture.shape[1] // 2 * 2])
 
 
 def _write_gif(file: Path, pictures: Iterator[Picture]) -> None:
@@ -102,4 +128,11 @@ def _write_gif(file: Path, pictures: Iterator[Picture]) -> None:
         image = image.resize((round(_GIF_SIZE * image.width), round(_GIF_SIZE * image.height)))
         palette = small[0] if small else image.quantize(_GIF_COLOURS)
         small.append(image.quantize(palette=palette, dither=Image.Dither.NONE))
-    small[0].save(file, format="GIF", save_all=True, append_images=small[1:], duration=1000 // FRAMES_PER_SECOND, loop=0)
+    small[0].save(
+        file,
+        format="GIF",
+        save_all=True,
+        append_images=small[1:],
+        duration=1000 // FRAMES_PER_SECOND,
+        loop=0,
+    )

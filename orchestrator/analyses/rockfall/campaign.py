@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.common.component import Instance
 from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, trials
@@ -51,14 +52,38 @@ class Campaign:
     @property
     def bytes_per_trial(self) -> int:
         """Memory (bytes) for the records of a trial."""
-        return 8 * len(OUTCOME) + 8 * len(PASSAGE) * len(self.lines) + 4 * len(PEAK) * len(self.stations)
+        return (
+            8 * len(OUTCOME)
+            + 8 * len(PASSAGE) * len(self.lines)
+            + 4 * len(PEAK) * len(self.stations)
+        )
 
 
-def campaign(instance: Instance, seed: int, count: int, left: float, right: float, lines: Floats, barriers: Floats,
-             stations: Floats, names: Sequence[str]) -> Campaign:
+def campaign(
+    instance: Instance,
+    seed: int,
+    count: int,
+    left: float,
+    right: float,
+    lines: Floats,
+    barriers: Floats,
+    stations: Floats,
+    names: Sequence[str],
+) -> Campaign:
     """A campaign with the parameters of an initialised instance."""
-    return Campaign(seed, count, instance.w.copy(), instance.x.copy(), instance.k.copy(), left, right, lines, barriers, stations,
-                    tuple(names))
+    return Campaign(
+        seed,
+        count,
+        instance.w.copy(),
+        instance.x.copy(),
+        instance.k.copy(),
+        left,
+        right,
+        lines,
+        barriers,
+        stations,
+        tuple(names),
+    )
 
 
 @dataclass(frozen=True)
@@ -75,8 +100,11 @@ class Records:
 
 def empty_records(given: Campaign, count: int) -> Records:
     """Records of so many trials, not yet filled."""
-    return Records(np.empty((count, len(given.lines), len(PASSAGE))), np.empty((count, len(given.stations), len(PEAK)), np.float32),
-                   np.empty((count, len(OUTCOME))))
+    return Records(
+        np.empty((count, len(given.lines), len(PASSAGE))),
+        np.empty((count, len(given.stations), len(PEAK)), np.float32),
+        np.empty((count, len(OUTCOME))),
+    )
 
 
 def compute(given: Campaign, first: int, count: int) -> Records:
@@ -84,8 +112,23 @@ def compute(given: Campaign, first: int, count: int) -> Records:
     made = empty_records(given, count)
     peaks = np.empty(made.peaks.shape)
     distance = float(given.stations[1] - given.stations[0])
-    trials(given.seed, first, given.left, given.right, given.lines, given.barriers, float(given.stations[0]), distance, given.w,
-           given.x, given.k, np.zeros(len(BODY)), made.passages, peaks, made.outcomes)
+    trials(
+        given.seed,
+        first,
+        given.left,
+        given.right,
+        given.lines,
+        given.barriers,
+        float(given.stations[0]),
+        distance,
+        given.w,
+        given.x,
+        given.k,
+        np.zeros(len(BODY)),
+        made.passages,
+        peaks,
+        made.outcomes,
+    )
     made.peaks[:] = peaks
     return made
 
@@ -94,7 +137,11 @@ def fill(made: Records, first: int, block: Records) -> int:
     """Put the records of a block of trials, the first of which is number ``first``, where they belong; returns their number."""
     count = len(block.outcomes)
     rows = slice(first, first + count)
-    made.passages[rows], made.peaks[rows], made.outcomes[rows] = block.passages, block.peaks, block.outcomes
+    made.passages[rows], made.peaks[rows], made.outcomes[rows] = (
+        block.passages,
+        block.peaks,
+        block.outcomes,
+    )
     return count
 
 
@@ -116,8 +163,10 @@ def run(given: Campaign, workers: int, done: Done = lambda count, total: None) -
     """All trials of a campaign, on so many threads."""
     made = empty_records(given, given.trials)
     with ThreadPoolExecutor(workers) as pool:
-        waiting = [pool.submit(_compute_into, given, start, min(BLOCK, given.trials - start), made)
-                   for start in range(0, given.trials, BLOCK)]
+        waiting = [
+            pool.submit(_compute_into, given, start, min(BLOCK, given.trials - start), made)
+            for start in range(0, given.trials, BLOCK)
+        ]
         try:
             finished = 0
             for block in as_completed(waiting):

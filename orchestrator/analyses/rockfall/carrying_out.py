@@ -27,9 +27,15 @@ class Finished:
     pictures: Sequence[Path]
 
 
-def carry_out(made: Prepared, folder: Path, crew: AbstractContextManager[Crew],
-              counting: Callable[[str], AbstractContextManager[Done]], with_pictures: bool = True, replays: Sequence[int] = (),
-              animation: str = "gif") -> Finished:
+def carry_out(
+    made: Prepared,
+    folder: Path,
+    crew: AbstractContextManager[Crew],
+    counting: Callable[[str], AbstractContextManager[Done]],
+    with_pictures: bool = True,
+    replays: Sequence[int] = (),
+    animation: str = "gif",
+) -> Finished:
     """Compute all trials and write everything into ``folder``.
 
     crew: who computes the trials; it is there as long as that takes. counting: opens a progress bar with this text. replays: trials

@@ -44,21 +44,38 @@ def dask_workers(scheduler: str, workers: int | None) -> Iterator[Crew]:
         InputRefused: an address that is none, a scheduler that does not answer or has no workers, or no Dask here.
     """
     _check(scheduler, workers)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters of it is said in our own words
+    logging.getLogger("distributed").setLevel(
+        logging.CRITICAL
+    )  # what matters of it is said in our own words
     with _local(workers) if scheduler == LOCAL else _running(scheduler) as client:
         count = sum(client.nthreads().values())
-        yield Crew(lambda given, done: _run(client, given, done), {"workers": count, "scheduler": scheduler})
+        yield Crew(
+            lambda given, done: _run(client, given, done),
+            {"workers": count, "scheduler": scheduler},
+        )
 
 
 def _check(scheduler: str, workers: int | None) -> None:
     problems = []
     option = f"--scheduler {scheduler}"
     if find_spec("distributed") is None:
-        problems.append(Problem(option, "needs the package distributed", 'install it: pip install "rockshed[cluster]"'))
+        problems.append(
+            Problem(
+                option,
+                "needs the package distributed",
+                'install it: pip install "rockshed[cluster]"',
+            )
+        )
     if scheduler != LOCAL and "://" not in scheduler:
-        problems.append(Problem(option, "is no address", f"write {LOCAL}, or tcp://HOST:PORT of a running scheduler"))
+        problems.append(
+            Problem(
+                option, "is no address", f"write {LOCAL}, or tcp://HOST:PORT of a running scheduler"
+            )
+        )
     if scheduler != LOCAL and workers is not None:
-        problems.append(Problem("--workers", "a running scheduler has its own workers", "leave it out"))
+        problems.append(
+            Problem("--workers", "a running scheduler has its own workers", "leave it out")
+        )
     if problems:
         raise InputRefused(problems)
 
@@ -70,8 +87,16 @@ def _local(workers: int | None) -> "Iterator[Client]":
 
     with TemporaryDirectory(prefix="rockshed-dask-") as folder:
         with _deaf_to_ctrl_c():
-            cluster = LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1", memory_limit=0,
-                                   dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL, local_directory=folder)
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                memory_limit=0,
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                local_directory=folder,
+            )
         with cluster, Client(cluster, direct_to_workers=True) as client:
             yield client
 
@@ -102,24 +127,42 @@ def _running(address: str) -> "Iterator[Client]":
     try:
         client = Client(address, timeout=CONNECT_TIMEOUT)
     except Exception as error:  # what something else than a scheduler answers may end in anything
-        raise InputRefused([Problem(where, f"no scheduler answers there within {CONNECT_TIMEOUT:g} s ({_first_line(error)})",
-                                    "start it with `dask scheduler`, correct the address, or take --scheduler local")]) from error
+        raise InputRefused(
+            [
+                Problem(
+                    where,
+                    f"no scheduler answers there within {CONNECT_TIMEOUT:g} s ({_first_line(error)})",
+                    "start it with `dask scheduler`, correct the address, or take --scheduler local",
+                )
+            ]
+        ) from error
     with client:
         try:
             client.wait_for_workers(1, timeout=CONNECT_TIMEOUT)
         except TimeoutError as error:
-            raise InputRefused([Problem(where, "the scheduler has no workers", f"start some: `dask worker {address}`")]) from error
+            raise InputRefused(
+                [
+                    Problem(
+                        where,
+                        "the scheduler has no workers",
+                        f"start some: `dask worker {address}`",
+                    )
+                ]
+            ) from error
         yield client
 
 
 def _first_line(error: Exception) -> str:
     """What went wrong, as far as it says something to a person."""
-    if isinstance(error, MemoryError):  # it has taken what something else answers for the length of a message
+    if isinstance(
+        error, MemoryError
+    ):  # it has taken what something else answers for the length of a message
         return "what answers is no Dask scheduler"
     return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 # --- the campaign ---
+
 
 def _run(client: "Client", given: Campaign, done: Done) -> Records:
     """All trials of a campaign."""
@@ -129,8 +172,18 @@ def _run(client: "Client", given: Campaign, done: Done) -> Records:
     # a task that gives the campaign, and no scattered data: where all workers that have it die, it is made again
     common = client.submit(_itself, given, pure=False)
     size = _block_size(given, sum(client.nthreads().values()))
-    first = {client.submit(_block, common, start, min(size, given.trials - start), source_stamp(_COMPONENT), pure=False,
-                           retries=RETRIES): start for start in range(0, given.trials, size)}
+    first = {
+        client.submit(
+            _block,
+            common,
+            start,
+            min(size, given.trials - start),
+            source_stamp(_COMPONENT),
+            pure=False,
+            retries=RETRIES,
+        ): start
+        for start in range(0, given.trials, size)
+    }
     finished = 0
     for block in as_completed(list(first)):
         finished += fill(made, first.pop(block), _result(block))
@@ -167,7 +220,9 @@ def _result(block: Any) -> Records:
     try:
         found: Records = block.result()
     except KilledWorker as error:
-        raise CampaignFailed("workers died again and again while they computed the same block") from error
+        raise CampaignFailed(
+            "workers died again and again while they computed the same block"
+        ) from error
     except Exception as error:
         raise CampaignFailed(f"a worker failed: {type(error).__name__}: {error}") from error
     return found

@@ -18,9 +18,20 @@ PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
 
 
-def rockfall(screen: Screen, results: Path, file: Path, trials: int | None, preset: str | None, seed: int | None,
-             replays: Sequence[int], animation: str | None, folder: Path | None, workers: int | None, scheduler: str | None,
-             with_pictures: bool) -> None:
+def rockfall(
+    screen: Screen,
+    results: Path,
+    file: Path,
+    trials: int | None,
+    preset: str | None,
+    seed: int | None,
+    replays: Sequence[int],
+    animation: str | None,
+    folder: Path | None,
+    workers: int | None,
+    scheduler: str | None,
+    with_pictures: bool,
+) -> None:
     """Carry out a campaign and show its table or JSON. results: folder of the runs that name no other.
 
     Raises:
@@ -36,24 +47,39 @@ def rockfall(screen: Screen, results: Path, file: Path, trials: int | None, pres
     kind = _kind(screen, animation) if replays else "gif"
     crew = _crew(scheduler, workers)
     made = prepare(file, count, seed)
-    done = carry_out(made, folder or results / made.name, crew, screen.counting, with_pictures, replays, kind)
+    done = carry_out(
+        made, folder or results / made.name, crew, screen.counting, with_pictures, replays, kind
+    )
     if screen.as_json:
-        screen.dump({"status": "complete", "folder": str(done.folder), "figures": [figure.as_entry() for figure in done.figures],
-                     "pictures": [str(file) for file in done.pictures]})
+        screen.dump(
+            {
+                "status": "complete",
+                "folder": str(done.folder),
+                "figures": [figure.as_entry() for figure in done.figures],
+                "pictures": [str(file) for file in done.pictures],
+            }
+        )
         return
     screen.show(*tables(done), "")
     for text in lines(made, done):
         screen.say(text)
-    screen.say(f"results in {done.folder}" + (f", pictures in {done.pictures[0].parent}" if done.pictures else ""))
+    screen.say(
+        f"results in {done.folder}"
+        + (f", pictures in {done.pictures[0].parent}" if done.pictures else "")
+    )
 
 
 def _count(trials: int | None, preset: str | None) -> int | None:
     if preset is None:
         return trials
     if preset not in PRESETS:
-        raise InputRefused([Problem("--preset", f"{preset!r} is unknown", nearest(preset, PRESETS))])
+        raise InputRefused(
+            [Problem("--preset", f"{preset!r} is unknown", nearest(preset, PRESETS))]
+        )
     if trials is not None:
-        raise InputRefused([Problem("--preset", "and --trials are two numbers of trials", "give one of them")])
+        raise InputRefused(
+            [Problem("--preset", "and --trials are two numbers of trials", "give one of them")]
+        )
     return PRESETS[preset]
 
 

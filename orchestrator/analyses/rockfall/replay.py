@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.slope_rockfall.trajectory import OUTCOME
 
 from ...core.errors import InputRefused, Problem
@@ -12,8 +13,16 @@ from .preparation import Prepared
 from .results import ENDS
 
 MODES = ("in flight", "rolling", "sliding", "spinning", "at rest", "handed over")
-_OUTPUTS = {"x": "position.x", "y": "position.y", "angle": "angle", "vx": "velocity.x", "vy": "velocity.y", "mode": "mode",
-            "height": "height", "energy": "energy.kinetic"}
+_OUTPUTS = {
+    "x": "position.x",
+    "y": "position.y",
+    "angle": "angle",
+    "vx": "velocity.x",
+    "vy": "velocity.y",
+    "mode": "mode",
+    "height": "height",
+    "energy": "energy.kinetic",
+}
 
 
 @dataclass(frozen=True)
@@ -45,8 +54,15 @@ def check(made: Prepared, number: int) -> None:
         InputRefused: there is no trial of this number.
     """
     if not 0 <= number < made.campaign.trials:
-        raise InputRefused([Problem(f"--replay {number}", "the campaign has no such trial",
-                                    f"choose one from 0 to {made.campaign.trials - 1}")])
+        raise InputRefused(
+            [
+                Problem(
+                    f"--replay {number}",
+                    "the campaign has no such trial",
+                    f"choose one from 0 to {made.campaign.trials - 1}",
+                )
+            ]
+        )
 
 
 def replay(made: Prepared, number: int, interval: float) -> Replay:
@@ -64,4 +80,6 @@ def replay(made: Prepared, number: int, interval: float) -> Replay:
     for i in range(1, len(times)):
         rock.step(times[i - 1], times[i] - times[i - 1])
         rows[i] = rock.w[places]
-    return Replay(number, ENDS[int(outcome[OUTCOME.end])], times, **dict(zip(_OUTPUTS, rows.T, strict=True)))
+    return Replay(
+        number, ENDS[int(outcome[OUTCOME.end])], times, **dict(zip(_OUTPUTS, rows.T, strict=True))
+    )

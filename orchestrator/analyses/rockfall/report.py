@@ -22,22 +22,34 @@ def tables(done: Finished) -> Iterator[str | Table]:
             for quantity in QUANTITIES:
                 values = passing.values[quantity.name] / quantity.scale
                 spread = _number(values.std(ddof=1)) if len(values) > 1 else ""
-                made.add_row(quantity.name.replace("_", " "), quantity.shown, _number(values.mean()), spread,
-                             *(_cell(found, quantity) for found in passing.percentiles(quantity.name)))
+                made.add_row(
+                    quantity.name.replace("_", " "),
+                    quantity.shown,
+                    _number(values.mean()),
+                    spread,
+                    *(_cell(found, quantity) for found in passing.percentiles(quantity.name)),
+                )
             yield made
 
 
 def _words(passing: Passing, trials: int) -> str:
     if passing.barrier is not None:
         kept = passing.barrier
-        return (f"barrier: {passing.count} of {trials} rocks arrive, {kept['stopped']} are stopped, {kept['overtopped']} overtop, "
-                f"{kept['broken_through']} break through")
-    return (f"{passing.count} of {trials} rocks pass, {100.0 * passing.share:.4g} % [{100.0 * passing.low:.4g}, "
-            f"{100.0 * passing.high:.4g}]")
+        return (
+            f"barrier: {passing.count} of {trials} rocks arrive, {kept['stopped']} are stopped, {kept['overtopped']} overtop, "
+            f"{kept['broken_through']} break through"
+        )
+    return (
+        f"{passing.count} of {trials} rocks pass, {100.0 * passing.share:.4g} % [{100.0 * passing.low:.4g}, "
+        f"{100.0 * passing.high:.4g}]"
+    )
 
 
 def _cell(found: Percentile, quantity: Quantity) -> str:
-    value, low, high = ("?" if v is None else _number(v / quantity.scale) for v in (found.value, found.low, found.high))
+    value, low, high = (
+        "?" if v is None else _number(v / quantity.scale)
+        for v in (found.value, found.low, found.high)
+    )
     return escape(f"{value} [{low}, {high}]")
 
 
@@ -48,12 +60,17 @@ def _number(value: float) -> str:
 
 def lines(made: Prepared, done: Finished) -> Iterator[str]:
     """What else there is to say, a sentence each."""
-    ends = {figure.name.removeprefix("end.").replace("_", " "): figure.value for figure in done.figures
-            if figure.name.startswith("end.")}
+    ends = {
+        figure.name.removeprefix("end.").replace("_", " "): figure.value
+        for figure in done.figures
+        if figure.name.startswith("end.")
+    }
     listed = ", ".join(f"{number} {words}" for words, number in ends.items() if number)
     yield f"{done.trials} trials in {done.wall_time:.2f} s, seed {made.campaign.seed}: {listed}"
     if done.passings:
-        yield (f"Percentiles are of the rocks that pass, at their first passage. [low, high]: {100.0 * CONFIDENCE:.0f} % "
-               "confidence interval, from order statistics (?: the sample is too small for a bound).")
+        yield (
+            f"Percentiles are of the rocks that pass, at their first passage. [low, high]: {100.0 * CONFIDENCE:.0f} % "
+            "confidence interval, from order statistics (?: the sample is too small for a bound)."
+        )
     if made.site.hypercube:
         yield "The intervals are those of independent trials; a Latin hypercube is usually more precise."

@@ -33,13 +33,19 @@ def ranks(count: int, share: float, confidence: float = CONFIDENCE) -> tuple[int
     return int(binom.ppf(tail, count, share)), int(binom.isf(tail, count, share)) + 1
 
 
-def percentile(ordered: NDArray[np.floating], share: float, confidence: float = CONFIDENCE) -> Percentile:
+def percentile(
+    ordered: NDArray[np.floating], share: float, confidence: float = CONFIDENCE
+) -> Percentile:
     """Of values in ascending order: the smallest that is not exceeded by at least this share of them."""
     count = len(ordered)
     low, high = ranks(count, share, confidence)
     value = ordered[max(0, math.ceil(count * share - 1e-9) - 1)]
-    return Percentile(share, float(value), float(ordered[low - 1]) if low >= 1 else None,
-                      float(ordered[high - 1]) if high <= count else None)
+    return Percentile(
+        share,
+        float(value),
+        float(ordered[low - 1]) if low >= 1 else None,
+        float(ordered[high - 1]) if high <= count else None,
+    )
 
 
 def proportion(hits: int, count: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
@@ -64,5 +70,7 @@ def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
         if len(here):
             made["max"][i] = here[-1]
             for share in SHARES:
-                made[f"p{100 * share:.0f}"][i] = here[max(0, math.ceil(len(here) * share - 1e-9) - 1)]
+                made[f"p{100 * share:.0f}"][i] = here[
+                    max(0, math.ceil(len(here) * share - 1e-9) - 1)
+                ]
     return made

@@ -17,7 +17,10 @@ COMPONENT = Component(
     evaluate=kernel.evaluate,
     step=kernel.step,
     folder=Path(__file__).parent,
-    sizes={"inputs": Size(50, 1, 1000, "number of inputs"), "outputs": Size(150, 1, 1000, "number of outputs")},
+    sizes={
+        "inputs": Size(50, 1, 1000, "number of inputs"),
+        "outputs": Size(150, 1, 1000, "number of outputs"),
+    },
     default_step=1e-3,
     default_stop_time=1.0,
 )

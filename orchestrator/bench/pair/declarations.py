@@ -2,4 +2,9 @@
 
 from ..common.ports import Layout, inp, out
 
-LAYOUT = Layout((inp("u", "what it is given", size="inputs"), out("y", "half of one of the inputs and one", size="outputs")))
+LAYOUT = Layout(
+    (
+        inp("u", "what it is given", size="inputs"),
+        out("y", "half of one of the inputs and one", size="outputs"),
+    )
+)

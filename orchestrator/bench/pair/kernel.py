@@ -19,7 +19,7 @@ def evaluate(w, x, k):
     """The outputs, from the inputs."""
     given, shown = view(w, k, A.u), view(w, k, A.y)
     for begin in range(0, shown.size, given.size):
-        part = shown[begin:begin + given.size]
+        part = shown[begin : begin + given.size]
         for i in range(part.size):
             part[i] = 0.5 * given[i] + 1.0
     return OK

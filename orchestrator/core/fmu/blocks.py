@@ -32,12 +32,19 @@ class Block:
 def make_blocks(ends: Sequence[End], begin: int = 0) -> dict[str, list[Block]]:
     """Blocks of each component for ports that lie in this order in a row of numbers, from ``begin`` on."""
     blocks: dict[str, list[Block]] = {}
-    for (component, kind), group in groupby(enumerate(ends, begin), lambda item: (item[1].component, item[1].port.kind)):
+    for (component, kind), group in groupby(
+        enumerate(ends, begin), lambda item: (item[1].component, item[1].port.kind)
+    ):
         members = list(group)
         references = np.array([end.port.reference for _, end in members], np.uint32)
-        ends_of_runs = [0, *(np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1), len(references)]
+        ends_of_runs = [
+            0,
+            *(np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1),
+            len(references),
+        ]
         long = [run for run in pairwise(ends_of_runs) if run[1] - run[0] >= _WORTH_A_CALL]
         cuts = sorted({0, len(references), *(cut for run in long for cut in run)})
         blocks.setdefault(component, []).extend(
-            Block(kind, references[a:b].copy(), members[a][0]) for a, b in pairwise(cuts))
+            Block(kind, references[a:b].copy(), members[a][0]) for a, b in pairwise(cuts)
+        )
     return blocks

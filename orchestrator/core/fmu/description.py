@@ -26,8 +26,11 @@ class Unit:
         """Whether a value means the same in both units; None where that cannot be known."""
         if self.base is None or other.base is None:
             return True if self.name == other.name else None
-        return (self.base == other.base and self.offset == other.offset
-                and abs(self.factor - other.factor) <= UNIT_TOLERANCE * abs(self.factor))
+        return (
+            self.base == other.base
+            and self.offset == other.offset
+            and abs(self.factor - other.factor) <= UNIT_TOLERANCE * abs(self.factor)
+        )
 
 
 @dataclass(frozen=True)

@@ -33,11 +33,27 @@ from fmpy.fmi2 import (
     free,
 )
 from fmpy.logging import addLoggerProxy
-from fmpy.model_description import ModelDescription, ModelVariable, ValidationError, read_model_description
+from fmpy.model_description import (
+    ModelDescription,
+    ModelVariable,
+    ValidationError,
+    read_model_description,
+)
 
 from ..errors import InputRefused, Problem
 from .description import Description, Port, Unit
-from .slave import BOOLEAN, ERROR, FATAL, INTEGER, OK, REAL, STATUS_NAMES, Addresses, References, Values
+from .slave import (
+    BOOLEAN,
+    ERROR,
+    FATAL,
+    INTEGER,
+    OK,
+    REAL,
+    STATUS_NAMES,
+    Addresses,
+    References,
+    Values,
+)
 
 _DESCRIPTION_FILE = "modelDescription.xml"
 DRIVEN, READABLE = ("2.0",), ("2.0", "3.0")
@@ -70,8 +86,12 @@ class FmuFile:
         except zipfile.BadZipFile as error:
             raise self._refusal("is not an FMU: not a zip archive", "export it again") from error
         if xml is None:
-            raise self._refusal(f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again")
-        self._check_binary(names, fmpy.platform_tuple if _version(xml).startswith("3") else fmpy.platform)
+            raise self._refusal(
+                f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again"
+            )
+        self._check_binary(
+            names, fmpy.platform_tuple if _version(xml).startswith("3") else fmpy.platform
+        )
         return xml
 
     def content(self, name: str) -> bytes | None:
@@ -80,10 +100,18 @@ class FmuFile:
             return archive.read(name) if name in archive.namelist() else None
 
     def _check_binary(self, names: list[str], platform: str) -> None:
-        platforms = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and not name.endswith("/")})
+        platforms = sorted(
+            {
+                name.split("/")[1]
+                for name in names
+                if name.startswith("binaries/") and not name.endswith("/")
+            }
+        )
         if platform not in platforms:
-            raise self._refusal(f"has no binary for this machine ({platform}); it has {', '.join(platforms) or 'none'}",
-                                f"export it for {platform}")
+            raise self._refusal(
+                f"has no binary for this machine ({platform}); it has {', '.join(platforms) or 'none'}",
+                f"export it for {platform}",
+            )
 
     def _refusal(self, what: str, remedy: str) -> InputRefused:
         return InputRefused([Problem(str(self.path), what, remedy)])
@@ -118,10 +146,16 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation
-    return Description(model.modelName, model.guid, interface.modelIdentifier, model.generationTool or "",
-                       interface.canBeInstantiatedOnlyOncePerProcess,
-                       interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
-                       {port.name: port for v in model.modelVariables for port in _ports(v, units)}, warnings)
+    return Description(
+        model.modelName,
+        model.guid,
+        interface.modelIdentifier,
+        model.generationTool or "",
+        interface.canBeInstantiatedOnlyOncePerProcess,
+        interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
+        {port.name: port for v in model.modelVariables for port in _ports(v, units)},
+        warnings,
+    )
 
 
 def _check_kind(xml: bytes, versions: tuple[str, ...]) -> None:
@@ -155,11 +189,22 @@ def _unit(unit: Any) -> Unit:
     if unit.baseUnit is None:
         return Unit(unit.name)
     exponents = {symbol: int(getattr(unit.baseUnit, symbol)) for symbol in _BASE_UNITS}
-    return Unit(unit.name, {symbol: n for symbol, n in exponents.items() if n}, unit.baseUnit.factor, unit.baseUnit.offset)
+    return Unit(
+        unit.name,
+        {symbol: n for symbol, n in exponents.items() if n},
+        unit.baseUnit.factor,
+        unit.baseUnit.offset,
+    )
 
 
-_KINDS_OF_FMI_3 = {"Float32": REAL, "Float64": REAL, "Enumeration": INTEGER, **dict.fromkeys(
-    (f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)), INTEGER)}
+_KINDS_OF_FMI_3 = {
+    "Float32": REAL,
+    "Float64": REAL,
+    "Enumeration": INTEGER,
+    **dict.fromkeys(
+        (f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)), INTEGER
+    ),
+}
 
 
 def _ports(variable: ModelVariable, units: dict[str, Unit]) -> Iterator[Port]:
@@ -170,7 +215,9 @@ def _ports(variable: ModelVariable, units: dict[str, Unit]) -> Iterator[Port]:
         yield port
         return
     starts = (port.start or "").split()
-    for number, place in enumerate(itertools.product(*(range(1, length + 1) for length in lengths))):
+    for number, place in enumerate(
+        itertools.product(*(range(1, length + 1) for length in lengths))
+    ):
         start = starts[number] if number < len(starts) else starts[0] if len(starts) == 1 else None
         yield replace(port, name=f"{port.name}[{','.join(map(str, place))}]", start=start)
 
@@ -178,16 +225,29 @@ def _ports(variable: ModelVariable, units: dict[str, Unit]) -> Iterator[Port]:
 def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
     def attribute(name: str) -> Any:
         own = getattr(variable, name, None)
-        return own if own is not None or variable.declaredType is None else getattr(variable.declaredType, name)
+        return (
+            own
+            if own is not None or variable.declaredType is None
+            else getattr(variable.declaredType, name)
+        )
 
     def bound(name: str) -> float | None:
         return None if attribute(name) is None else float(attribute(name))
 
     unit = attribute("unit")
     items = variable.declaredType.items if variable.declaredType is not None else []
-    return Port(variable.name, variable.valueReference, _KINDS_OF_FMI_3.get(variable.type, variable.type),
-                variable.causality, None if unit is None else units.get(unit, Unit(unit)), bound("min"), bound("max"),
-                {item.name: int(item.value) for item in items}, variable.start, variable.description or "")
+    return Port(
+        variable.name,
+        variable.valueReference,
+        _KINDS_OF_FMI_3.get(variable.type, variable.type),
+        variable.causality,
+        None if unit is None else units.get(unit, Unit(unit)),
+        bound("min"),
+        bound("max"),
+        {item.name: int(item.value) for item in items},
+        variable.start,
+        variable.description or "",
+    )
 
 
 _slaves: "weakref.WeakValueDictionary[int, FmuSlave]" = weakref.WeakValueDictionary()
@@ -232,8 +292,12 @@ def _release_python(library: ctypes.CDLL) -> None:
         release()
 
 
-_MOVE = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
-_STEP = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
+_MOVE = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p
+)
+_STEP = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int
+)
 
 
 class FmuSlave:
@@ -249,16 +313,32 @@ class FmuSlave:
         _slaves[key] = self
         try:
             fmpy.extract(file.path, self._folder.name)
-            with contextlib.chdir(os.getcwd()):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
-                self._fmu = FMU2Slave(name, guid=description.guid, modelIdentifier=description.identifier,
-                                      unzipDirectory=self._folder.name)
+            with contextlib.chdir(
+                os.getcwd()
+            ):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
+                self._fmu = FMU2Slave(
+                    name,
+                    guid=description.guid,
+                    modelIdentifier=description.identifier,
+                    unzipDirectory=self._folder.name,
+                )
             self._release = weakref.finalize(self, _release_python, self._fmu.dll)
-            self._instantiate(_callbacks(key, description.generation_tool), _made_by_pythonfmu(description.generation_tool))
+            self._instantiate(
+                _callbacks(key, description.generation_tool),
+                _made_by_pythonfmu(description.generation_tool),
+            )
         except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
             self._unload()
             said = "; ".join(text for _, text in self.messages)
-            raise InputRefused([Problem(name, f"no instance of {file.path} can be made: {error} {said}".rstrip(),
-                                        "see whether the FMU runs in another tool")]) from error
+            raise InputRefused(
+                [
+                    Problem(
+                        name,
+                        f"no instance of {file.path} can be made: {error} {said}".rstrip(),
+                        "see whether the FMU runs in another tool",
+                    )
+                ]
+            ) from error
         self.addresses: Addresses | None = self._find_addresses()
         self._step = _STEP(self.addresses.do_step)
         self._setters = {kind: _MOVE(address) for kind, address in self.addresses.set.items()}
@@ -271,10 +351,19 @@ class FmuSlave:
         if by_pythonfmu:
             location = unquote(location)
             if "%20" in location:  # the binary would read a space
-                raise ValueError(f"the temporary folder {self._folder.name} has %20 in its name: set TMPDIR to another one")
+                raise ValueError(
+                    f"the temporary folder {self._folder.name} has %20 in its name: set TMPDIR to another one"
+                )
         self._fmu.callbacks = callbacks
         self._fmu.component = self._fmu.fmi2Instantiate(
-            self.name.encode(), fmi2CoSimulation, self._fmu.guid.encode(), location.encode(), ctypes.byref(callbacks), 0, 1)
+            self.name.encode(),
+            fmi2CoSimulation,
+            self._fmu.guid.encode(),
+            location.encode(),
+            ctypes.byref(callbacks),
+            0,
+            1,
+        )
         if self._fmu.component is None:
             raise ValueError("fmi2Instantiate returned no instance")
 
@@ -282,22 +371,37 @@ class FmuSlave:
         def address(function: str) -> int:
             return int(ctypes.cast(getattr(self._fmu.dll, function), ctypes.c_void_p).value or 0)
 
-        return Addresses(int(self._fmu.component),
-                         {kind: address(f"fmi2Set{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
-                         {kind: address(f"fmi2Get{kind}") for kind in (REAL, INTEGER, BOOLEAN)}, address("fmi2DoStep"))
+        return Addresses(
+            int(self._fmu.component),
+            {kind: address(f"fmi2Set{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
+            {kind: address(f"fmi2Get{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
+            address("fmi2DoStep"),
+        )
 
     def set(self, references: References, values: Values, kind: str = REAL) -> int:
         """Set variables of one kind."""
         if kind != REAL:
             values = values.astype(np.int32)
-        return int(self._setters[kind](self._fmu.component, references.ctypes.data, references.size, values.ctypes.data))
+        return int(
+            self._setters[kind](
+                self._fmu.component, references.ctypes.data, references.size, values.ctypes.data
+            )
+        )
 
     def get(self, references: References, out: Values, kind: str = REAL) -> int:
         """Read variables of one kind into ``out``."""
         if kind == REAL:
-            return int(self._getters[kind](self._fmu.component, references.ctypes.data, references.size, out.ctypes.data))
+            return int(
+                self._getters[kind](
+                    self._fmu.component, references.ctypes.data, references.size, out.ctypes.data
+                )
+            )
         whole = np.zeros(references.size, np.int32)
-        status = int(self._getters[kind](self._fmu.component, references.ctypes.data, references.size, whole.ctypes.data))
+        status = int(
+            self._getters[kind](
+                self._fmu.component, references.ctypes.data, references.size, whole.ctypes.data
+            )
+        )
         out[:] = whole
         return status
 
@@ -381,7 +485,9 @@ class FmuSlave:
             self._release()
             self._fmu.freeLibrary()
         self._folder.cleanup()
-        sys.path[:] = [path for path in sys.path if not path.startswith(self._folder.name)]  # where an FMU's Python code was
+        sys.path[:] = [
+            path for path in sys.path if not path.startswith(self._folder.name)
+        ]  # where an FMU's Python code was
 
     def _status(self, call: Callable[..., Any], *arguments: Any) -> int:
         """Status of a call of fmpy, which raises an exception for a bad one; the exception is noted where the FMU is silent."""
@@ -390,5 +496,7 @@ class FmuSlave:
             return int(call(*arguments) or OK)
         except FMICallException as error:
             if len(self.messages) == count:
-                self.messages.append((error.status, f"{error.function} returned {STATUS_NAMES[error.status]}"))
+                self.messages.append(
+                    (error.status, f"{error.function} returned {STATUS_NAMES[error.status]}")
+                )
             return int(error.status)

@@ -18,7 +18,9 @@ Told = Callable[[str], None]
 """Called with the name of a component before it is called."""
 
 
-def instantiate(plan: Plan, sources: Mapping[str, Source], told: Told = lambda name: None) -> dict[str, Slave]:
+def instantiate(
+    plan: Plan, sources: Mapping[str, Source], told: Told = lambda name: None
+) -> dict[str, Slave]:
     """One slave for each component.
 
     Raises:
@@ -44,24 +46,48 @@ def free(slaves: Iterable[Slave]) -> None:
         slave.free()
 
 
-def initialise(plan: Plan, slaves: Mapping[str, Slave], state: State, allow_unstable: bool = False,
-               told: Told = lambda name: None) -> list[str]:
+def initialise(
+    plan: Plan,
+    slaves: Mapping[str, Slave],
+    state: State,
+    allow_unstable: bool = False,
+    told: Told = lambda name: None,
+) -> list[str]:
     """Set parameters, pass outputs on to inputs in the initialisation mode and after it, check the steps. Returns warnings.
 
     Raises:
         InputRefused: a slave refuses its parameters or inputs, or would be unstable.
     """
     timing = plan.timing
-    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)), told)
+    _phase(
+        slaves,
+        lambda slave: _begin(
+            slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)
+        ),
+        told,
+    )
     before = _settle(state, slaves, told)
     _phase(slaves, lambda slave: slave.exit_initialisation(), told)
     unsettled = _settle(state, slaves, told) or before
     if bad := [end for name in plan.order if (end := state.not_finite(name)) is not None]:
-        raise InputRefused([Problem(e.name, "is no finite number after the initialisation", "check the parameters") for e in bad])
-    warnings = [f"{name}: {without_name(name, text)}" for name, slave in slaves.items()
-                for status, text in slave.messages if status == WARNING]
+        raise InputRefused(
+            [
+                Problem(
+                    e.name, "is no finite number after the initialisation", "check the parameters"
+                )
+                for e in bad
+            ]
+        )
+    warnings = [
+        f"{name}: {without_name(name, text)}"
+        for name, slave in slaves.items()
+        for status, text in slave.messages
+        if status == WARNING
+    ]
     if unsettled:
-        warnings.append(f"outputs at the start still change after {_ROUNDS} rounds of exchange, {unsettled} among them")
+        warnings.append(
+            f"outputs at the start still change after {_ROUNDS} rounds of exchange, {unsettled} among them"
+        )
     unstable = [p for name in plan.order for p in _stability(plan, slaves[name])]
     if unstable and not allow_unstable:
         raise InputRefused(unstable)
@@ -74,7 +100,10 @@ def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, s
         if isinstance(value, str):
             worst = max(worst, slave.set_text(port.reference, value))
         else:
-            worst = max(worst, slave.set(np.array([port.reference], np.uint32), np.array([value]), port.kind))
+            worst = max(
+                worst,
+                slave.set(np.array([port.reference], np.uint32), np.array([value]), port.kind),
+            )
     return max(worst, slave.setup_experiment(start, stop), slave.enter_initialisation())
 
 
@@ -93,7 +122,11 @@ def _refusals(slave: Slave, status: int) -> list[Problem]:
     reasons = [text for severity, text in slave.messages if severity >= ERROR]
     if status <= WARNING and not reasons:
         return []
-    texts = reasons or [text for _, text in slave.messages] or [f"returned {STATUS_NAMES[status]} without a message"]
+    texts = (
+        reasons
+        or [text for _, text in slave.messages]
+        or [f"returned {STATUS_NAMES[status]} without a message"]
+    )
     return [Problem(slave.name, without_name(slave.name, text)) for text in dict.fromkeys(texts)]
 
 
@@ -130,25 +163,43 @@ def _settle(state: State, slaves: Mapping[str, Slave], told: Told) -> str:
 
 def _forget_warnings(slave: Slave, since: int) -> None:
     """Take back the warnings among the messages from number ``since`` on."""
-    slave.messages[since:] = [message for message in slave.messages[since:] if message[0] != WARNING]
+    slave.messages[since:] = [
+        message for message in slave.messages[since:] if message[0] != WARNING
+    ]
 
 
 def _stability(plan: Plan, slave: Slave) -> list[Problem]:
     """Whether the component's steps exceed the largest ones that it publishes."""
     ports, communication = plan.descriptions[slave.name].ports, plan.system.step(slave.name)
     found = []
-    if "step_limit" in ports and communication > (limit := _value(slave, ports["step_limit"])) * (1.0 + 1e-9):
-        found.append(Problem(slave.name, f"the communication step of {communication:.6g} s exceeds step_limit = {limit:.6g} s, the "
-                             "longest that its ports bear", "reduce the exchange step, or use a port of waves"))
+    if "step_limit" in ports and communication > (limit := _value(slave, ports["step_limit"])) * (
+        1.0 + 1e-9
+    ):
+        found.append(
+            Problem(
+                slave.name,
+                f"the communication step of {communication:.6g} s exceeds step_limit = {limit:.6g} s, the "
+                "longest that its ports bear",
+                "reduce the exchange step, or use a port of waves",
+            )
+        )
     if "stable_step" not in ports or "internal_step" not in ports:
         return found
     stable, internal = _value(slave, ports["stable_step"]), _value(slave, ports["internal_step"])
-    longest = _value(slave, ports["time_step"]) if "time_step" in ports else min(internal, communication)
+    longest = (
+        _value(slave, ports["time_step"]) if "time_step" in ports else min(internal, communication)
+    )
     if longest <= stable:
         return found
-    return [*found, Problem(f"{slave.name}.internal_step", f"steps of {longest:.6g} s (internal_step {internal:.6g} s, "
-                    f"communication step {communication:.6g} s) exceed stable_step = {stable:.6g} s",
-                    f"set {slave.name}.internal_step to less than {stable:.3g} s, or allow instability")]
+    return [
+        *found,
+        Problem(
+            f"{slave.name}.internal_step",
+            f"steps of {longest:.6g} s (internal_step {internal:.6g} s, "
+            f"communication step {communication:.6g} s) exceed stable_step = {stable:.6g} s",
+            f"set {slave.name}.internal_step to less than {stable:.3g} s, or allow instability",
+        ),
+    ]
 
 
 def _value(slave: Slave, port: Port) -> float:

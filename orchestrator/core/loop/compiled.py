@@ -38,23 +38,32 @@ def _pointer(builder: Any, value: Any) -> Any:
 @_intrinsic
 def _call_move(_context, function, instance, references, count, values):  # type: ignore[no-untyped-def]
     """``int function(void* instance, const unsigned* references, size_t count, void* values)`` at an address."""
+
     def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         pointer = ir.IntType(8).as_pointer()
         kind = ir.FunctionType(ir.IntType(32), [pointer, pointer, ir.IntType(64), pointer])
         f, c, r, n, v = arguments
-        return builder.call(builder.inttoptr(f, kind.as_pointer()),
-                            [_pointer(builder, c), _pointer(builder, r), n, _pointer(builder, v)])
+        return builder.call(
+            builder.inttoptr(f, kind.as_pointer()),
+            [_pointer(builder, c), _pointer(builder, r), n, _pointer(builder, v)],
+        )
+
     return types.int32(*[types.int64] * 5), generate
 
 
 @_intrinsic
 def _call_step(_context, function, instance, time, step):  # type: ignore[no-untyped-def]
     """``int function(void* instance, double time, double step, int)`` at an address; no earlier state will be asked for."""
+
     def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         real, integer = ir.DoubleType(), ir.IntType(32)
         kind = ir.FunctionType(integer, [ir.IntType(8).as_pointer(), real, real, integer])
         f, c, t, h = arguments
-        return builder.call(builder.inttoptr(f, kind.as_pointer()), [_pointer(builder, c), t, h, ir.Constant(integer, 1)])
+        return builder.call(
+            builder.inttoptr(f, kind.as_pointer()),
+            [_pointer(builder, c), t, h, ir.Constant(integer, 1)],
+        )
+
     return types.int32(types.int64, types.int64, types.float64, types.float64), generate
 
 
@@ -73,7 +82,9 @@ def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
         channel["last_position"] = position
         if channel["seen"] >= 0:
             seen, force = inputs[channel["seen"]], outputs[channel["force"]]
-            channel["given_back"] -= 0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
+            channel["given_back"] -= (
+                0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
+            )
             channel["last_seen"] = seen
             channel["last_force"] = force
 
@@ -113,7 +124,7 @@ def _lost(values):  # type: ignore[no-untyped-def]
 def _give(tables, move):  # type: ignore[no-untyped-def]
     """Set connected inputs of a component to the newest values. Returns the status."""
     begin, number = move["begin"], move["number"]
-    inputs, source = tables.inputs[begin:begin + number], tables.source[begin:begin + number]
+    inputs, source = tables.inputs[begin : begin + number], tables.source[begin : begin + number]
     for i in range(number):
         inputs[i] = tables.outputs[source[i]]
     address = tables.inputs.ctypes.data + 8 * begin
@@ -133,7 +144,7 @@ def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
     if move["whole"]:
         for i in range(number):
             values[begin + i] = float(tables.integers[i])
-    if status <= _WARNING and _lost(values[begin:begin + number]) > 0:
+    if status <= _WARNING and _lost(values[begin : begin + number]) > 0:
         return NOT_FINITE
     return status
 
@@ -143,10 +154,18 @@ def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
     """Carry out an operation of a period that began at the tick ``origin``. Returns the first bad status, or OK."""
     if operation["action"] == _STEP:
         time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
-        return _call_step(operation["do_step"], operation["instance"], time, float(operation["length"]) / _TICKS_PER_SECOND)
+        return _call_step(
+            operation["do_step"],
+            operation["instance"],
+            time,
+            float(operation["length"]) / _TICKS_PER_SECOND,
+        )
     for m in range(operation["first_move"], operation["end_move"]):
-        status = _give(tables, tables.moves[m]) if operation["action"] == _SET else _take(
-            tables, tables.moves[m], tables.outputs, 0)
+        status = (
+            _give(tables, tables.moves[m])
+            if operation["action"] == _SET
+            else _take(tables, tables.moves[m], tables.outputs, 0)
+        )
         if _is_bad(status):
             return status
     return 0
@@ -202,7 +221,11 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     address of :func:`rockshed.core.loop.tables.head`, ``first``, ``count``, and the address of three numbers for the result.
     """
     arrays = [types.Array(from_dtype(kind), 1, "C") for kind in KINDS.values()]
-    signature = (types.NamedTuple([*[types.int64] * len(NUMBERS), *arrays], Tables), types.int64, types.int64)
+    signature = (
+        types.NamedTuple([*[types.int64] * len(NUMBERS), *arrays], Tables),
+        types.int64,
+        types.int64,
+    )
     advance.compile(signature)
     compiled = advance.overloads[signature]
     whole = llvm.parse_assembly(compiled.library.get_llvm_str())
@@ -211,10 +234,14 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     for function in whole.functions:
         if not function.is_declaration and function.name not in (ENTRY, CRASHED):
             function.linkage = "internal"
-            function.add_function_attribute("alwaysinline")  # a call would pass all tables on, field by field
+            function.add_function_attribute(
+                "alwaysinline"
+            )  # a call would pass all tables on, field by field
     builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options(speed_level=3))
     builder.getModulePassManager().run(whole, builder)
-    foreign = [f.name for f in whole.functions if f.is_declaration and not f.name.startswith("llvm.")]
+    foreign = [
+        f.name for f in whole.functions if f.is_declaration and not f.name.startswith("llvm.")
+    ]
     assert not foreign, f"the loop needs {', '.join(foreign)}"
     code = target.emit_object(whole)
     assert isinstance(code, bytes)
@@ -225,7 +252,11 @@ def _entry(compiled: Any) -> ir.Module:
     """The C function, which calls the compiled one by numba's own convention. Nothing in it raises, so the status says nothing."""
     module, integer = ir.Module(), ir.IntType(64)
     descriptor, convention = compiled.fndesc, compiled.target_context.call_conv
-    callee = ir.Function(module, convention.get_function_type(descriptor.restype, descriptor.argtypes), descriptor.llvm_func_name)
+    callee = ir.Function(
+        module,
+        convention.get_function_type(descriptor.restype, descriptor.argtypes),
+        descriptor.llvm_func_name,
+    )
     entry = ir.Function(module, ir.FunctionType(integer, [integer] * 4), ENTRY)
     builder = ir.IRBuilder(entry.append_basic_block())
     head, first, count, outcome = entry.args
@@ -234,14 +265,26 @@ def _entry(compiled: Any) -> ir.Module:
     def number(address: Any, place: int) -> Any:
         return builder.gep(builder.inttoptr(address, integer.as_pointer()), [integer(place)])
 
-    arguments = [builder.alloca(kinds[0].pointee), builder.alloca(kinds[1].pointee),
-                 *(builder.load(number(head, place)) for place in range(len(NUMBERS)))]
+    arguments = [
+        builder.alloca(kinds[0].pointee),
+        builder.alloca(kinds[1].pointee),
+        *(builder.load(number(head, place)) for place in range(len(NUMBERS))),
+    ]
     for place, kind in enumerate(KINDS.values()):
-        address, length = (builder.load(number(head, len(NUMBERS) + 2 * place + i)) for i in range(2))
-        fields = kinds[len(arguments):]
+        address, length = (
+            builder.load(number(head, len(NUMBERS) + 2 * place + i)) for i in range(2)
+        )
+        fields = kinds[len(arguments) :]
         size = integer(kind.itemsize)
-        arguments += [fields[0](None), fields[1](None), length, size, builder.inttoptr(address, fields[4]), length,
-                      size]  # owner, parent, number of elements, bytes of one, data, shape, strides
+        arguments += [
+            fields[0](None),
+            fields[1](None),
+            length,
+            size,
+            builder.inttoptr(address, fields[4]),
+            length,
+            size,
+        ]  # owner, parent, number of elements, bytes of one, data, shape, strides
     builder.call(callee, [*arguments, first, count])
     found = builder.load(arguments[0])
     for place in range(3):
@@ -257,11 +300,22 @@ def _handler() -> ir.Module:
     table.initializer = ir.Constant(table.value_type, [0] * REPORTER_LENGTH)
     handler = ir.Function(module, ir.FunctionType(ir.VoidType(), [short]), CRASHED)
     builder = ir.IRBuilder(handler.append_basic_block())
-    execve, *arguments, digits, leave = (builder.load(builder.gep(table, [short(0), short(i)])) for i in range(REPORTER_LENGTH))
-    for place, digit in enumerate((builder.sdiv(handler.args[0], short(10)), builder.srem(handler.args[0], short(10)))):
+    execve, *arguments, digits, leave = (
+        builder.load(builder.gep(table, [short(0), short(i)])) for i in range(REPORTER_LENGTH)
+    )
+    for place, digit in enumerate(
+        (builder.sdiv(handler.args[0], short(10)), builder.srem(handler.args[0], short(10)))
+    ):
         text = builder.inttoptr(digits, ir.IntType(8).as_pointer())
-        builder.store(builder.trunc(builder.add(digit, short(ord("0"))), ir.IntType(8)), builder.gep(text, [short(place)]))
-    builder.call(builder.inttoptr(execve, ir.FunctionType(short, [integer] * 3).as_pointer()), arguments)
-    builder.call(builder.inttoptr(leave, ir.FunctionType(ir.VoidType(), [short]).as_pointer()), [short(1)])
+        builder.store(
+            builder.trunc(builder.add(digit, short(ord("0"))), ir.IntType(8)),
+            builder.gep(text, [short(place)]),
+        )
+    builder.call(
+        builder.inttoptr(execve, ir.FunctionType(short, [integer] * 3).as_pointer()), arguments
+    )
+    builder.call(
+        builder.inttoptr(leave, ir.FunctionType(ir.VoidType(), [short]).as_pointer()), [short(1)]
+    )
     builder.ret_void()
     return module

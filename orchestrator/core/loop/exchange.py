@@ -13,7 +13,18 @@ from ..system.clock import to_seconds
 from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
 from .machine_code import advance
-from .tables import CHANNEL, MOVE, NOT_FINITE, NUMBERS, OPERATION, WATCHED, Integers, Records, Tables, head
+from .tables import (
+    CHANNEL,
+    MOVE,
+    NOT_FINITE,
+    NUMBERS,
+    OPERATION,
+    WATCHED,
+    Integers,
+    Records,
+    Tables,
+    head,
+)
 
 
 class Fault(NamedTuple):
@@ -28,7 +39,9 @@ def make_channels(plan: Plan) -> Records:
     """The channels of all bonds, before the first entry."""
     channels = np.zeros(sum(bond.force.size for bond in plan.bonds), CHANNEL)
     for name in ("given", "seen", "force", "position"):
-        channels[name] = np.concatenate([getattr(bond, name) for bond in plan.bonds] or [np.zeros(0, np.int64)])
+        channels[name] = np.concatenate(
+            [getattr(bond, name) for bond in plan.bonds] or [np.zeros(0, np.int64)]
+        )
     return channels
 
 
@@ -54,20 +67,34 @@ class State:
     @cached_property
     def needs(self) -> dict[str, set[int]]:
         """Places of the outputs that feed each component's inputs."""
-        return {name: {int(place) for block in self.setters.get(name, []) for place in self.plan.source[block.places]}
-                for name in self.plan.order}
+        return {
+            name: {
+                int(place)
+                for block in self.setters.get(name, [])
+                for place in self.plan.source[block.places]
+            }
+            for name in self.plan.order
+        }
 
     @cached_property
     def shows(self) -> dict[str, set[int]]:
         """Places of each component's outputs."""
-        return {name: {place for block in self.getters.get(name, []) for place in range(block.places.start, block.places.stop)}
-                for name in self.plan.order}
+        return {
+            name: {
+                place
+                for block in self.getters.get(name, [])
+                for place in range(block.places.start, block.places.stop)
+            }
+            for name in self.plan.order
+        }
 
     @cached_property
     def operations(self) -> list[Operation]:
         """All operations of a period, and behind them those that read what is recorded."""
-        return [*(operation for exchange in self.plan.schedule.operations for operation in exchange),
-                *(Operation(Action.RECORD, name) for name in self.snapshots.blocks)]
+        return [
+            *(operation for exchange in self.plan.schedule.operations for operation in exchange),
+            *(Operation(Action.RECORD, name) for name in self.snapshots.blocks),
+        ]
 
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values. Returns the worst status."""
@@ -79,8 +106,13 @@ class State:
 
     def take(self, slave: Slave) -> int:
         """Get all exchanged outputs of a slave. Returns the worst status."""
-        return max((slave.get(block.references, self.outputs[block.places], block.kind)
-                    for block in self.getters.get(slave.name, [])), default=0)
+        return max(
+            (
+                slave.get(block.references, self.outputs[block.places], block.kind)
+                for block in self.getters.get(slave.name, [])
+            ),
+            default=0,
+        )
 
     def not_finite(self, component: str) -> End | None:
         """The first exchanged output of a component that is no finite number."""
@@ -96,7 +128,10 @@ class State:
         channels = self.channels
         shown = channels["seen"] >= 0
         channels["last_seen"][shown] = self.inputs[channels["seen"][shown]]
-        channels["last_force"], channels["last_position"] = self.outputs[channels["force"]], self.outputs[channels["position"]]
+        channels["last_force"], channels["last_position"] = (
+            self.outputs[channels["force"]],
+            self.outputs[channels["position"]],
+        )
         for name in ("low", "high", "last"):
             self.watched[name] = self.outputs[self.watched["place"]]
 
@@ -108,7 +143,9 @@ class State:
         channels["last_position"] = position
         shown = channels["seen"] >= 0
         seen, force = inputs[channels["seen"][shown]], outputs[channels["force"][shown]]
-        channels["given_back"][shown] -= 0.5 * (force + channels["last_force"][shown]) * (seen - channels["last_seen"][shown])
+        channels["given_back"][shown] -= (
+            0.5 * (force + channels["last_force"][shown]) * (seen - channels["last_seen"][shown])
+        )
         channels["last_seen"][shown], channels["last_force"][shown] = seen, force
 
     def watch(self, exchange: int) -> None:
@@ -124,8 +161,11 @@ class State:
         """Take a snapshot into a row. Returns the component that does not give finite values, and its status."""
         snapshots = self.snapshots
         row = snapshots.rows[number]
-        row[:snapshots.exchanged] = self.outputs
-        row[snapshots.taken], row[snapshots.given_back] = self.channels["taken"], self.channels["given_back"]
+        row[: snapshots.exchanged] = self.outputs
+        row[snapshots.taken], row[snapshots.given_back] = (
+            self.channels["taken"],
+            self.channels["given_back"],
+        )
         for turn, (name, blocks) in enumerate(snapshots.blocks.items()):
             self.journal[1] = len(self.operations) - len(snapshots.blocks) + turn
             for block in blocks:
@@ -158,7 +198,9 @@ class PlainDriver:
         state, schedule, timing = self._state, self._state.plan.schedule, self._state.plan.timing
         for n in range(first, first + count):
             origin = timing.start + n // schedule.period * schedule.period * schedule.exchange
-            for number, operation in enumerate(schedule.operations[n % schedule.period], self._first[n % schedule.period]):
+            for number, operation in enumerate(
+                schedule.operations[n % schedule.period], self._first[n % schedule.period]
+            ):
                 state.journal[:] = n, number
                 status = self._operate(operation, origin)
                 if status > WARNING or status == NOT_FINITE:
@@ -167,7 +209,9 @@ class PlainDriver:
             state.post()
             state.watch(n + 1)
             if (n + 1) % state.snapshots.every == 0:
-                lost = state.record(self._slaves, len(state.snapshots.waiting) + len(state.snapshots.due(first, n)))
+                lost = state.record(
+                    self._slaves, len(state.snapshots.waiting) + len(state.snapshots.due(first, n))
+                )
                 if lost is not None:
                     return Fault(n, Operation(Action.RECORD, lost[0]), lost[1])
         return None
@@ -179,7 +223,9 @@ class PlainDriver:
         if operation.action is Action.STEP:
             return slave.step(to_seconds(origin + operation.begin), to_seconds(operation.length))
         status = self._state.take(slave)
-        return status if status > WARNING or self._state.not_finite(slave.name) is None else NOT_FINITE
+        return (
+            status if status > WARNING or self._state.not_finite(slave.name) is None else NOT_FINITE
+        )
 
 
 class CompiledDriver:
@@ -190,11 +236,23 @@ class CompiledDriver:
         self._operations = state.operations
         operations, moves = _calls(self._operations, state, slaves)
         self._tables = Tables(
-            plan.timing.start, plan.schedule.exchange, snapshots.every, snapshots.rows.shape[1], 0,
+            plan.timing.start,
+            plan.schedule.exchange,
+            snapshots.every,
+            snapshots.rows.shape[1],
+            0,
             np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
-            operations, moves, state.inputs, state.outputs, plan.source.astype(np.uint64),
-            np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32), state.channels, state.watched, snapshots.rows.ravel(),
-            state.journal)
+            operations,
+            moves,
+            state.inputs,
+            state.outputs,
+            plan.source.astype(np.uint64),
+            np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32),
+            state.channels,
+            state.watched,
+            snapshots.rows.ravel(),
+            state.journal,
+        )
         self._waiting, self._head, self._loop = snapshots.waiting, head(self._tables), advance()
 
     def advance(self, first: int, count: int) -> Fault | None:
@@ -204,20 +262,44 @@ class CompiledDriver:
         return Fault(first + done, self._operations[number], status) if status else None
 
 
-def _calls(planned: Sequence[Operation], state: State, slaves: Mapping[str, Slave]) -> tuple[Records, Records]:
+def _calls(
+    planned: Sequence[Operation], state: State, slaves: Mapping[str, Slave]
+) -> tuple[Records, Records]:
     """The tables of operations and of moves. The arrays of references that the moves point to belong to ``state``."""
     operations, moves = [], list[tuple[int, ...]]()
-    blocks = {Action.SET: state.setters, Action.GET: state.getters, Action.RECORD: state.snapshots.blocks}
+    blocks = {
+        Action.SET: state.setters,
+        Action.GET: state.getters,
+        Action.RECORD: state.snapshots.blocks,
+    }
     for operation in planned:
         addresses = slaves[operation.component].addresses
         assert addresses is not None
         first = len(moves)
         if operation.action is not Action.STEP:
             functions = addresses.set if operation.action is Action.SET else addresses.get
-            moves += [(functions[block.kind], addresses.instance, block.references.ctypes.data, block.references.size, block.begin,
-                       block.kind != REAL) for block in blocks[operation.action].get(operation.component, [])]
-        operations.append((operation.action, addresses.instance, addresses.do_step, operation.begin, operation.length, first,
-                           len(moves)))
+            moves += [
+                (
+                    functions[block.kind],
+                    addresses.instance,
+                    block.references.ctypes.data,
+                    block.references.size,
+                    block.begin,
+                    block.kind != REAL,
+                )
+                for block in blocks[operation.action].get(operation.component, [])
+            ]
+        operations.append(
+            (
+                operation.action,
+                addresses.instance,
+                addresses.do_step,
+                operation.begin,
+                operation.length,
+                first,
+                len(moves),
+            )
+        )
     return np.array(operations, OPERATION), np.array(moves, MOVE)
 
 

@@ -36,15 +36,32 @@ class Journal:
 
     def __init__(self, folder: Path, components: Sequence[str]) -> None:
         self._folder, self._components = folder, list(components)
-        self.entries: Integers = np.memmap(folder / FILE, np.int64, "w+", shape=(2,)) if _REPORTS else np.zeros(2, np.int64)
+        self.entries: Integers = (
+            np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
+            if _REPORTS
+            else np.zeros(2, np.int64)
+        )
         self.entries[:] = _NOTHING
         self.legend([], 0, 0, 1)
 
-    def legend(self, operations: Sequence[Operation], start: int, exchange: int, period: int) -> None:
+    def legend(
+        self, operations: Sequence[Operation], start: int, exchange: int, period: int
+    ) -> None:
         """Write down what the numbers of operations mean. start, exchange: ticks. period: number of exchanges."""
-        (self._folder / LEGEND).write_text(json.dumps({
-            "components": self._components, "start": start, "exchange": exchange, "period": period,
-            "operations": [[o.component, int(o.action), o.begin, o.length] for o in operations]}), encoding="utf-8")
+        (self._folder / LEGEND).write_text(
+            json.dumps(
+                {
+                    "components": self._components,
+                    "start": start,
+                    "exchange": exchange,
+                    "period": period,
+                    "operations": [
+                        [o.component, int(o.action), o.begin, o.length] for o in operations
+                    ],
+                }
+            ),
+            encoding="utf-8",
+        )
 
     def prepares(self, component: str) -> None:
         """Note that a component is being made or initialised."""
@@ -67,16 +84,23 @@ def last_entry(folder: Path, number_of_signal: int) -> str:
         return f"the run has {how}"
     number, exchange = int(entries[OPERATION]), int(entries[EXCHANGE])
     if number < _NOTHING:
-        return f"{legend['components'][_NOTHING - 1 - number]}: its code {how} while it was made ready"
+        return (
+            f"{legend['components'][_NOTHING - 1 - number]}: its code {how} while it was made ready"
+        )
     if number == _NOTHING:
         return f"the run has {how}"
     component, action, begin, length = legend["operations"][number]
     period = exchange // legend["period"] * legend["period"]
-    at = {Action.STEP: legend["start"] + period * legend["exchange"] + begin,
-          Action.RECORD: legend["start"] + (exchange + 1) * legend["exchange"]}.get(
-              Action(action), legend["start"] + exchange * legend["exchange"])
-    what = {Action.SET: "when its inputs were set", Action.STEP: f"in the step by {to_seconds(length):.6g} s",
-            Action.GET: "when its outputs were read", Action.RECORD: "when its outputs were read"}[Action(action)]
+    at = {
+        Action.STEP: legend["start"] + period * legend["exchange"] + begin,
+        Action.RECORD: legend["start"] + (exchange + 1) * legend["exchange"],
+    }.get(Action(action), legend["start"] + exchange * legend["exchange"])
+    what = {
+        Action.SET: "when its inputs were set",
+        Action.STEP: f"in the step by {to_seconds(length):.6g} s",
+        Action.GET: "when its outputs were read",
+        Action.RECORD: "when its outputs were read",
+    }[Action(action)]
     return f"{component} at t = {to_seconds(at):.9g} s: its code {how} {what}"
 
 
@@ -89,7 +113,10 @@ def reported(command: Sequence[str]) -> Iterator[None]:
         return
     handler, libc = crash_handler(command), ctypes.CDLL(None)
     libc.signal.restype, libc.signal.argtypes = ctypes.c_void_p, [ctypes.c_int, ctypes.c_void_p]
-    before = [(number, libc.signal(number, handler)) for number in (getattr(signal, name) for name in _CRASHES)]
+    before = [
+        (number, libc.signal(number, handler))
+        for number in (getattr(signal, name) for name in _CRASHES)
+    ]
     try:
         yield
     finally:

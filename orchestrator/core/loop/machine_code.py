@@ -21,7 +21,14 @@ Advance = Callable[[Integers, int, int], tuple[int, int, int]]
 """The function :func:`rockshed.core.loop.compiled.advance`, but for its tables, which are given by their :func:`~.tables.head`."""
 
 _CORE = Path(__file__).parents[1]
-_SOURCES = ("system/clock.py", "loop/compiled.py", "loop/machine_code.py", "system/schedule.py", "fmu/slave.py", "loop/tables.py")
+_SOURCES = (
+    "system/clock.py",
+    "loop/compiled.py",
+    "loop/machine_code.py",
+    "system/schedule.py",
+    "fmu/slave.py",
+    "loop/tables.py",
+)
 """Files that the machine code follows from."""
 
 
@@ -31,7 +38,8 @@ def _engine() -> Any:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     target = llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=_features(), opt=3, codemodel="jitdefault")
+        cpu=llvm.get_host_cpu_name(), features=_features(), opt=3, codemodel="jitdefault"
+    )
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target)
     engine.add_object_file(llvm.ObjectFileRef.from_data(_code(target)))
     engine.finalize_object()
@@ -42,7 +50,9 @@ def _engine() -> Any:
 def advance() -> Advance:
     """The loop, ready to be called. The global interpreter lock is kept during the call."""
     integer = ctypes.c_int64
-    function = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)(_engine().get_function_address(ENTRY))
+    function = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)(
+        _engine().get_function_address(ENTRY)
+    )
 
     def call(head: Integers, first: int, count: int) -> tuple[int, int, int]:
         outcome = (integer * 3)()
@@ -57,11 +67,24 @@ def crash_handler(command: Sequence[str]) -> int:
     more. There is one in a process: the newest command counts."""
     libc, digits = ctypes.CDLL(None), ctypes.create_string_buffer(b"00")
     texts = [ctypes.create_string_buffer(os.fsencode(part)) for part in command]
-    arguments = (ctypes.c_void_p * (len(command) + 2))(*map(ctypes.addressof, [*texts, digits]), None)
-    table = (ctypes.c_int64 * REPORTER_LENGTH).from_address(_engine().get_global_value_address(REPORTER))
-    execve, leave = (ctypes.cast(function, ctypes.c_void_p).value or 0 for function in (libc.execve, libc._exit))
+    arguments = (ctypes.c_void_p * (len(command) + 2))(
+        *map(ctypes.addressof, [*texts, digits]), None
+    )
+    table = (ctypes.c_int64 * REPORTER_LENGTH).from_address(
+        _engine().get_global_value_address(REPORTER)
+    )
+    execve, leave = (
+        ctypes.cast(function, ctypes.c_void_p).value or 0 for function in (libc.execve, libc._exit)
+    )
     environment = ctypes.c_void_p.in_dll(libc, "environ").value or 0
-    table[:] = [execve, arguments[0] or 0, ctypes.addressof(arguments), environment, ctypes.addressof(digits), leave]
+    table[:] = [
+        execve,
+        arguments[0] or 0,
+        ctypes.addressof(arguments),
+        environment,
+        ctypes.addressof(digits),
+        leave,
+    ]
     _held[:] = [libc, digits, texts, arguments]
     return int(_engine().get_function_address(CRASHED))
 
@@ -96,7 +119,9 @@ def is_kept() -> bool:
 
 
 def _folder() -> Path:
-    root = os.environ.get(CACHE_VARIABLE) or os.path.join(os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed")
+    root = os.environ.get(CACHE_VARIABLE) or os.path.join(
+        os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed"
+    )
     return Path(os.path.expanduser(root))
 
 
@@ -106,6 +131,15 @@ def _stamp() -> str:
     digest = hashlib.sha256()
     for name in _SOURCES:
         digest.update((_CORE / name).read_bytes() + b"\0")
-    digest.update(repr([version("numba"), version("llvmlite"), llvm.get_default_triple(), llvm.get_host_cpu_name(),
-                        _features()]).encode())
+    digest.update(
+        repr(
+            [
+                version("numba"),
+                version("llvmlite"),
+                llvm.get_default_triple(),
+                llvm.get_host_cpu_name(),
+                _features(),
+            ]
+        ).encode()
+    )
     return digest.hexdigest()[:24]

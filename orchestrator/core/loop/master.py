@@ -42,7 +42,12 @@ class Interruption:
             self._before: Any = signal.signal(signal.SIGINT, self._request)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         if self._in_main:
             signal.signal(signal.SIGINT, self._before)
 
@@ -58,8 +63,21 @@ class Master:
     processor (s). recording_time: time (s) from snapshots to files, and for states.
     """
 
-    def __init__(self, plan: Plan, slaves: Mapping[str, Slave], state: State, driver: Driver, recorder: Recorder) -> None:
-        self._plan, self._slaves, self._state, self._driver, self._recorder = plan, slaves, state, driver, recorder
+    def __init__(
+        self,
+        plan: Plan,
+        slaves: Mapping[str, Slave],
+        state: State,
+        driver: Driver,
+        recorder: Recorder,
+    ) -> None:
+        self._plan, self._slaves, self._state, self._driver, self._recorder = (
+            plan,
+            slaves,
+            state,
+            driver,
+            recorder,
+        )
         self._snapshots = state.snapshots
         self.exchanges, self._at_once = 0, 1
         self.wall_time, self.cpu_time, self.recording_time = 0.0, 0.0, 0.0
@@ -98,7 +116,9 @@ class Master:
         self._state.journal[:] = self.exchanges - 1, -1
         lost = self._state.record(self._slaves, len(self._snapshots.waiting))
         if lost is not None:
-            raise self._failure(Fault(self.exchanges - 1, Operation(Action.RECORD, lost[0]), lost[1]))
+            raise self._failure(
+                Fault(self.exchanges - 1, Operation(Action.RECORD, lost[0]), lost[1])
+            )
         self._snapshots.waiting.append(self.exchanges)
         self._recorder.look()
 
@@ -116,7 +136,14 @@ class Master:
             raise self._failure(fault)
         self._snapshots.waiting.extend(self._snapshots.due(first, self.exchanges))
         self._recorder.look()
-        self._at_once = max(1, min(_MOST_AT_ONCE, _GROWTH * self._at_once, int(count * _SECONDS_AT_ONCE / max(took, 1e-9))))
+        self._at_once = max(
+            1,
+            min(
+                _MOST_AT_ONCE,
+                _GROWTH * self._at_once,
+                int(count * _SECONDS_AT_ONCE / max(took, 1e-9)),
+            ),
+        )
 
     def _failure(self, fault: Fault) -> RunFailed:
         """What went wrong, with the slave's own words."""
@@ -125,22 +152,42 @@ class Master:
         if fault.status == FATAL:
             self._slaves[name].messages.append((FATAL, "cannot be used any more"))
         if operation.action is Action.RECORD:
-            return RunFailed(name, timing.seconds(fault.exchange + 1), self._not_recorded(name) if fault.status == NOT_FINITE
-                             else f"does not give its values ({STATUS_NAMES[fault.status]}): {said}")
-        period = timing.start + fault.exchange // schedule.period * schedule.period * schedule.exchange
+            return RunFailed(
+                name,
+                timing.seconds(fault.exchange + 1),
+                self._not_recorded(name)
+                if fault.status == NOT_FINITE
+                else f"does not give its values ({STATUS_NAMES[fault.status]}): {said}",
+            )
+        period = (
+            timing.start + fault.exchange // schedule.period * schedule.period * schedule.exchange
+        )
         if fault.status == NOT_FINITE:
             end = self._state.not_finite(name)
             assert end is not None
-            return RunFailed(name, timing.seconds(fault.exchange + 1), f"{end.name} is no finite number: the computation diverges; "
-                             "reduce the exchange step or the steps of the components connected with it")
-        what = {Action.SET: "the inputs are refused", Action.GET: "the outputs are refused",
-                Action.STEP: f"the step by {to_seconds(operation.length):.6g} s failed"}[operation.action]
-        at = to_seconds(period + operation.begin) if operation.action is Action.STEP else timing.seconds(fault.exchange)
+            return RunFailed(
+                name,
+                timing.seconds(fault.exchange + 1),
+                f"{end.name} is no finite number: the computation diverges; "
+                "reduce the exchange step or the steps of the components connected with it",
+            )
+        what = {
+            Action.SET: "the inputs are refused",
+            Action.GET: "the outputs are refused",
+            Action.STEP: f"the step by {to_seconds(operation.length):.6g} s failed",
+        }[operation.action]
+        at = (
+            to_seconds(period + operation.begin)
+            if operation.action is Action.STEP
+            else timing.seconds(fault.exchange)
+        )
         return RunFailed(name, at, f"{what} ({STATUS_NAMES[fault.status]}): {said}")
 
     def _not_recorded(self, name: str) -> str:
         snapshots = self._snapshots
         row = snapshots.rows[len(snapshots.waiting)]
         place = snapshots.lost(row, name)
-        return (f"{snapshots.ends[place].name} = {row[place]} is no finite number; reduce the steps, or leave the "
-                "variable out of the record if it may be so")
+        return (
+            f"{snapshots.ends[place].name} = {row[place]} is no finite number; reduce the steps, or leave the "
+            "variable out of the record if it may be so"
+        )

@@ -14,7 +14,10 @@ NOT_FINITE = -1
 
 
 def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
-    return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in reals.split()])
+    return np.dtype(
+        [(name, np.int64) for name in integers.split()]
+        + [(name, np.float64) for name in reals.split()]
+    )
 
 
 OPERATION = _record("action instance do_step begin length first_move end_move")
@@ -25,7 +28,9 @@ MOVE = _record("function instance references number begin whole")
 """A bulk call that moves ``number`` values from place ``begin`` of a bus on. function, instance, references: addresses. whole: the
 values travel as 32-bit integers."""
 
-CHANNEL = _record("given seen force position", "last_seen last_force last_position taken given_back")
+CHANNEL = _record(
+    "given seen force position", "last_seen last_force last_position taken given_back"
+)
 """A force of a power bond. Places as in :class:`rockshed.core.system.plan.Bond`. taken, given_back: work (J) on the taker, and on the
 giver by what it was shown."""
 
@@ -67,9 +72,19 @@ class Tables(NamedTuple):
 NUMBERS = ("start", "exchange", "every", "width", "row")
 """The numbers among the :class:`Tables`, which come first."""
 
-KINDS = {"first": np.dtype(np.int64), "operations": OPERATION, "moves": MOVE, "inputs": np.dtype(np.float64),
-         "outputs": np.dtype(np.float64), "source": np.dtype(np.uint64), "integers": np.dtype(np.int32), "channels": CHANNEL,
-         "watched": WATCHED, "snapshots": np.dtype(np.float64), "journal": np.dtype(np.int64)}
+KINDS = {
+    "first": np.dtype(np.int64),
+    "operations": OPERATION,
+    "moves": MOVE,
+    "inputs": np.dtype(np.float64),
+    "outputs": np.dtype(np.float64),
+    "source": np.dtype(np.uint64),
+    "integers": np.dtype(np.int32),
+    "channels": CHANNEL,
+    "watched": WATCHED,
+    "snapshots": np.dtype(np.float64),
+    "journal": np.dtype(np.int64),
+}
 """Types of the arrays among the :class:`Tables`, in their order."""
 
 ENTRY, CRASHED, REPORTER = "rockshed_advance", "rockshed_crashed", "rockshed_reporter"

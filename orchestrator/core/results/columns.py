@@ -19,4 +19,6 @@ def result_table(columns: Sequence[Column]) -> Any:
     """The columns as an Arrow table."""
     import pyarrow as pa
 
-    return pa.table([array for array, _ in columns], schema=pa.schema([field for _, field in columns]))
+    return pa.table(
+        [array for array, _ in columns], schema=pa.schema([field for _, field in columns])
+    )

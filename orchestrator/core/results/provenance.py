@@ -15,27 +15,41 @@ from ..system.values import written
 _PACKAGES = ("rockshed", "numpy", "numba", "llvmlite", "fmpy", "pythonfmu", "pyarrow", "h5py")
 
 
-def describe_run(plan: Plan, sources: Mapping[str, Source], slaves: Mapping[str, Slave]) -> dict[str, Any]:
+def describe_run(
+    plan: Plan, sources: Mapping[str, Source], slaves: Mapping[str, Slave]
+) -> dict[str, Any]:
     """Everything that is known of a run before its first step, as plain data."""
     return {
         "name": plan.system.name,
         "started": datetime.now(UTC).isoformat(),
         "components": {name: _component(plan, sources[name], slaves[name]) for name in plan.order},
         "system": plan.system.model_dump(mode="json"),
-        "versions": {"python": platform.python_version(), **{package: _version(package) for package in _PACKAGES}},
+        "versions": {
+            "python": platform.python_version(),
+            **{package: _version(package) for package in _PACKAGES},
+        },
         "platform": platform.platform(),
     }
 
 
 def _component(plan: Plan, source: Source, slave: Slave) -> dict[str, Any]:
     description = plan.descriptions[slave.name]
-    return {**source.origin, "model": description.model, "guid": description.guid, "generation_tool": description.generation_tool,
-            "parameters": _parameters(plan, slave)}
+    return {
+        **source.origin,
+        "model": description.model,
+        "guid": description.guid,
+        "generation_tool": description.generation_tool,
+        "parameters": _parameters(plan, slave),
+    }
 
 
 def _parameters(plan: Plan, slave: Slave) -> dict[str, Any]:
     """The values of all parameters as the slave has them; of strings, those that were set."""
-    found: dict[str, Any] = {port.name: {"value": value} for port, value in plan.starts[slave.name] if isinstance(value, str)}
+    found: dict[str, Any] = {
+        port.name: {"value": value}
+        for port, value in plan.starts[slave.name]
+        if isinstance(value, str)
+    }
     value = np.zeros(1)
     for port in plan.descriptions[slave.name].named("parameter"):
         if port.is_number:

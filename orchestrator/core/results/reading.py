@@ -55,7 +55,11 @@ class Run:
     def states(self, component: str) -> Iterator[tuple[float, bytes]]:
         """Time (s) and serialized state of a component, in the order in which they were recorded."""
         if (self.folder / STATES_STREAM).is_file():
-            yield from ((at, state) for owner, at, state in streamed_frames(self.folder) if owner == component)
+            yield from (
+                (at, state)
+                for owner, at, state in streamed_frames(self.folder)
+                if owner == component
+            )
         elif (self.folder / STATES).is_file():
             yield from _stored_states(self.folder / STATES, component)
 
@@ -78,19 +82,40 @@ def read_run(folder: Path) -> Run:
     places = (folder, running_folder(folder.absolute()))
     found = next((place for place in places if (place / RUN).is_file()), None)
     if found is None:
-        raise InputRefused([Problem(str(folder), f"is no folder of a run: there is no {RUN}", "give the folder of a run")])
+        raise InputRefused(
+            [
+                Problem(
+                    str(folder),
+                    f"is no folder of a run: there is no {RUN}",
+                    "give the folder of a run",
+                )
+            ]
+        )
     with _undamaged(found / RUN):
         provenance = json.loads((found / RUN).read_text(encoding="utf-8"))
         if not isinstance(provenance, dict) or "status" not in provenance:
             raise ValueError("it does not describe a run")
     if not (found / COLUMNS).is_file() and "kind" in provenance:
-        raise InputRefused([Problem(str(folder), f"is a {provenance['kind']} campaign, which has no time series",
-                                    "give the folder of a run; the campaign's pictures are in its folder figures")])
+        raise InputRefused(
+            [
+                Problem(
+                    str(folder),
+                    f"is a {provenance['kind']} campaign, which has no time series",
+                    "give the folder of a run; the campaign's pictures are in its folder figures",
+                )
+            ]
+        )
     with _undamaged(found / COLUMNS):
         columns = read_columns(found / COLUMNS)
     with _undamaged(found / SUMMARY):
-        summary = [Figure.from_entry(entry) for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
-                   ] if (found / SUMMARY).is_file() else []
+        summary = (
+            [
+                Figure.from_entry(entry)
+                for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
+            ]
+            if (found / SUMMARY).is_file()
+            else []
+        )
     return Run(found, provenance, summary, columns, _read_series(found, columns))
 
 
@@ -101,7 +126,13 @@ def _undamaged(path: Path) -> Iterator[None]:
         yield
     except (ValueError, TypeError, KeyError, AttributeError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise InputRefused([Problem(str(path), f"cannot be read: {reason}", "the results are damaged; run it again")]) from error
+        raise InputRefused(
+            [
+                Problem(
+                    str(path), f"cannot be read: {reason}", "the results are damaged; run it again"
+                )
+            ]
+        ) from error
 
 
 def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[np.float64]]:
@@ -109,7 +140,10 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     import pyarrow.parquet
 
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
-        with _undamaged(folder / PARQUET), pyarrow.parquet.ParquetFile(folder / PARQUET) as file:  # read_table imports more
+        with (
+            _undamaged(folder / PARQUET),
+            pyarrow.parquet.ParquetFile(folder / PARQUET) as file,
+        ):  # read_table imports more
             table = file.read(columns=[column.name for column in columns])
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
@@ -121,4 +155,6 @@ def add_figures(folder: Path, figures: Sequence[Figure]) -> None:
     """Add figures to the summary of a finished run; one with a name that is there already replaces it."""
     path = folder / SUMMARY
     present = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}
-    write_json(path, list({**present, **{figure.name: figure.as_entry() for figure in figures}}.values()))
+    write_json(
+        path, list({**present, **{figure.name: figure.as_entry() for figure in figures}}.values())
+    )

@@ -31,8 +31,21 @@ class Sink(Protocol):
 class Recorder:
     """Makes rows of snapshots, and frames of states."""
 
-    def __init__(self, plan: Plan, slaves: Mapping[str, Slave], snapshots: Snapshots, accounts: Accounts, sink: Sink) -> None:
-        self._plan, self._slaves, self._snapshots, self._accounts, self._sink = plan, slaves, snapshots, accounts, sink
+    def __init__(
+        self,
+        plan: Plan,
+        slaves: Mapping[str, Slave],
+        snapshots: Snapshots,
+        accounts: Accounts,
+        sink: Sink,
+    ) -> None:
+        self._plan, self._slaves, self._snapshots, self._accounts, self._sink = (
+            plan,
+            slaves,
+            snapshots,
+            accounts,
+            sink,
+        )
         self._places = np.array([snapshots.place[end.name] for end in plan.recorded], np.int64)
         self._framed = [name for name in plan.order if plan.system.components[name].record_states]
         self._flushed_at = time.monotonic()
@@ -40,7 +53,10 @@ class Recorder:
     @property
     def columns(self) -> list[Column]:
         """The columns of a row."""
-        recorded = [Column(end.name, end.port.unit_name, end.port.description) for end in self._plan.recorded]
+        recorded = [
+            Column(end.name, end.port.unit_name, end.port.description)
+            for end in self._plan.recorded
+        ]
         return recorded + self._accounts.described
 
     def look(self) -> None:
@@ -52,9 +68,14 @@ class Recorder:
         """Pass on the snapshots that wait."""
         waiting = self._snapshots.waiting
         if waiting:
-            found = self._snapshots.rows[:len(waiting)]
+            found = self._snapshots.rows[: len(waiting)]
             times = np.array([self._plan.timing.seconds(exchange) for exchange in waiting])
-            self._sink.rows(times, np.concatenate((found[:, self._places], self._accounts.values(found, times)), axis=1))
+            self._sink.rows(
+                times,
+                np.concatenate(
+                    (found[:, self._places], self._accounts.values(found, times)), axis=1
+                ),
+            )
             waiting.clear()
         self._flushed_at = time.monotonic()
 
@@ -83,4 +104,6 @@ class Recorder:
 
 def last_words(slave: Slave) -> str:
     """What a slave logged last; nothing if it never did."""
-    return without_name(slave.name, slave.messages[-1][1]) if slave.messages else "without a message"
+    return (
+        without_name(slave.name, slave.messages[-1][1]) if slave.messages else "without a message"
+    )

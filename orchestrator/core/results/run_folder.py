@@ -74,8 +74,10 @@ class Figure:
         Raises:
             KeyError, TypeError: it is no entry of a summary.
         """
-        references = {who: Beside(found["value"], found["deviation"], found.get("note", ""))
-                      for who, found in entry.get("references", {}).items()}
+        references = {
+            who: Beside(found["value"], found["deviation"], found.get("note", ""))
+            for who, found in entry.get("references", {}).items()
+        }
         return cls(entry["name"], entry["value"], entry.get("unit", "1"), references)
 
 
@@ -92,7 +94,11 @@ class RunFolder:
         self.folder = folder.absolute()
         self.running = running_folder(self.folder)
         self._old = self.folder.parent / f".{self.folder.name}.old"
-        self._made = [parent for parent in (self.folder.parent, *self.folder.parent.parents) if not parent.exists()]
+        self._made = [
+            parent
+            for parent in (self.folder.parent, *self.folder.parent.parents)
+            if not parent.exists()
+        ]
         self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
         self.columns: list[Column] = []
         self._rows: _Stream | None = None
@@ -100,7 +106,9 @@ class RunFolder:
 
     def __enter__(self) -> "RunFolder":
         if self.folder.exists() and not _is_run_or_empty(self.folder):
-            raise self._refusal("is no folder of a run, and would be overwritten", "choose another folder")
+            raise self._refusal(
+                "is no folder of a run, and would be overwritten", "choose another folder"
+            )
         try:
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self._lock.acquire(timeout=0)
@@ -111,13 +119,22 @@ class RunFolder:
             if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
                 self._clean()
                 raise self._refusal("cannot be written", "choose another folder") from None
-            raise self._refusal("another run is writing there", "wait for its end or choose another folder") from None
+            raise self._refusal(
+                "another run is writing there", "wait for its end or choose another folder"
+            ) from None
         except OSError as error:
             self._clean()
-            raise self._refusal(f"cannot be written: {error.strerror or error}", "choose another folder") from error
+            raise self._refusal(
+                f"cannot be written: {error.strerror or error}", "choose another folder"
+            ) from error
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         if self._rows is None:
             shutil.rmtree(self.running, ignore_errors=True)
         self._clean()
@@ -146,8 +163,10 @@ class RunFolder:
         self.write_provenance({"status": "running", **provenance})
         self._write_columns()
         self._rows = _Stream(self.running / ROWS_STREAM, schema(self.columns))
-        self._states = _Stream(self.running / STATES_STREAM,
-                               pa.schema([("component", pa.string()), ("time", pa.float64()), ("state", pa.binary())]))
+        self._states = _Stream(
+            self.running / STATES_STREAM,
+            pa.schema([("component", pa.string()), ("time", pa.float64()), ("state", pa.binary())]),
+        )
 
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
         """Replace ``run.json``."""
@@ -201,15 +220,21 @@ class _Stream:
         import pyarrow as pa
 
         self._schema, self._file = schema, path.open("wb")
-        self._writer = pa.ipc.new_stream(self._file, schema, options=pa.ipc.IpcWriteOptions(compression="zstd"))
+        self._writer = pa.ipc.new_stream(
+            self._file, schema, options=pa.ipc.IpcWriteOptions(compression="zstd")
+        )
         self._file.flush()
 
     def append(self, columns: Sequence[Any]) -> None:
         """Write a batch, given by columns of equal length."""
         import pyarrow as pa
 
-        self._writer.write_batch(pa.record_batch([pa.array(c, f.type) for c, f in zip(columns, self._schema, strict=True)],
-                                                 schema=self._schema))
+        self._writer.write_batch(
+            pa.record_batch(
+                [pa.array(c, f.type) for c, f in zip(columns, self._schema, strict=True)],
+                schema=self._schema,
+            )
+        )
         self._file.flush()
 
     def close(self) -> None:
@@ -252,13 +277,20 @@ def schema(columns: Sequence[Column]) -> Any:
     """Arrow's schema of the time series."""
     import pyarrow as pa
 
-    return pa.schema([pa.field(c.name, pa.float64(), metadata={"unit": c.unit, "description": c.description}) for c in columns])
+    return pa.schema(
+        [
+            pa.field(c.name, pa.float64(), metadata={"unit": c.unit, "description": c.description})
+            for c in columns
+        ]
+    )
 
 
 def write_json(path: Path, content: Any) -> None:
     """Write a file that is complete at any moment."""
     beside = path.with_name(path.name + ".new")
-    beside.write_text(json.dumps(content, indent=2, default=str, ensure_ascii=False) + "\n", encoding="utf-8")
+    beside.write_text(
+        json.dumps(content, indent=2, default=str, ensure_ascii=False) + "\n", encoding="utf-8"
+    )
     os.replace(beside, path)
 
 
@@ -301,8 +333,13 @@ def _convert_states(folder: Path) -> None:
         with h5py.File(folder / STATES, "w") as file:
             for component, at, state in chain([first], frames):
                 times.setdefault(component, []).append(at)
-                file.create_dataset(f"{component}/state/{len(times[component]) - 1}", data=np.frombuffer(state, np.uint8),
-                                    compression="gzip", compression_opts=1, shuffle=True)
+                file.create_dataset(
+                    f"{component}/state/{len(times[component]) - 1}",
+                    data=np.frombuffer(state, np.uint8),
+                    compression="gzip",
+                    compression_opts=1,
+                    shuffle=True,
+                )
             for component, values in times.items():
                 file.create_dataset(f"{component}/time", data=values).attrs["unit"] = "s"
     (folder / STATES_STREAM).unlink()

@@ -24,16 +24,30 @@ class Snapshots:
         exchanged = {end.name for end in plan.outputs}
         wanted = [*plan.recorded, *(bond.work for bond in plan.bonds if bond.work is not None)]
         apart = {end.name: end for end in wanted if end.name not in exchanged}
-        self.ends: Sequence[End] = [*plan.outputs, *sorted(apart.values(), key=lambda end: (
-            plan.order.index(end.component), end.port.kind, end.port.reference))]
+        self.ends: Sequence[End] = [
+            *plan.outputs,
+            *sorted(
+                apart.values(),
+                key=lambda end: (
+                    plan.order.index(end.component),
+                    end.port.kind,
+                    end.port.reference,
+                ),
+            ),
+        ]
         self.exchanged, self.every = len(plan.outputs), plan.timing.output_every
-        self.blocks = make_blocks(self.ends[self.exchanged:], self.exchanged)
+        self.blocks = make_blocks(self.ends[self.exchanged :], self.exchanged)
         self.place = {end.name: i for i, end in enumerate(self.ends)}
         channels = sum(bond.force.size for bond in plan.bonds)
         self.taken = slice(len(self.ends), len(self.ends) + channels)
         self.given_back = slice(self.taken.stop, self.taken.stop + channels)
         self.waiting: list[int] = []
-        self.rows = np.zeros((max(1, min(_MOST_ROWS, _MOST_NUMBERS // max(1, self.given_back.stop))), self.given_back.stop))
+        self.rows = np.zeros(
+            (
+                max(1, min(_MOST_ROWS, _MOST_NUMBERS // max(1, self.given_back.stop))),
+                self.given_back.stop,
+            )
+        )
 
     def due(self, first: int, last: int) -> range:
         """The exchanges after ``first`` up to ``last`` after which a row is taken."""
@@ -50,4 +64,8 @@ class Snapshots:
         Raises:
             StopIteration: there is none.
         """
-        return next(i for i, end in enumerate(self.ends) if end.component == component and not np.isfinite(row[i]))
+        return next(
+            i
+            for i, end in enumerate(self.ends)
+            if end.component == component and not np.isfinite(row[i])
+        )

@@ -3,11 +3,11 @@
 from decimal import Decimal
 from math import ulp
 
-TICKS_PER_SECOND = 10 ** 12
+TICKS_PER_SECOND = 10**12
 """A tick is a picosecond: steps in use go down to 1e-7 s, and a step that follows from a wave speed needs a few digits more. In 64
 bits, that reaches over 50 days."""
 
-_MOST = 2 ** 62
+_MOST = 2**62
 """Longest time in ticks: 53 days, so that sums of two times hold in 64 bits as well."""
 
 
@@ -22,7 +22,9 @@ def to_ticks(seconds: float) -> int:
     if abs(exact - ticks) > 2 * Decimal(ulp(seconds)) * TICKS_PER_SECOND:
         raise ValueError(f"{seconds!r} s is no whole number of picoseconds")
     if abs(ticks) > _MOST:
-        raise ValueError(f"{seconds:g} s is beyond the longest time, {float(_MOST) / TICKS_PER_SECOND:.3g} s")
+        raise ValueError(
+            f"{seconds:g} s is beyond the longest time, {float(_MOST) / TICKS_PER_SECOND:.3g} s"
+        )
     return int(ticks)
 
 

@@ -17,7 +17,7 @@ def expand(name: str, known: Iterable[str]) -> list[str]:
     found = _RANGE.search(name)
     if found is None:
         return [name]
-    head, tail = name[:found.start()], name[found.end():]
+    head, tail = name[: found.start()], name[found.end() :]
     if found.group(1) is not None:
         return [f"{head}[{i}]{tail}" for i in range(int(found.group(1)), int(found.group(2)) + 1)]
     element = re.compile(re.escape(head) + r"\[(\d+)\]" + re.escape(tail))
@@ -42,4 +42,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = get_close_matches(name, names, 3, 0.5)
     if close:
         return f"did you mean {' or '.join(close)}?"
-    return f"there are {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}" if names else "there are none"
+    return (
+        f"there are {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}"
+        if names
+        else "there are none"
+    )

@@ -59,7 +59,9 @@ def nearest_steps(step: int, exchange: int) -> list[int]:
     """The steps next below and next above ``step`` that fit (ticks)."""
     if step > exchange:
         return [step // exchange * exchange, (step // exchange + 1) * exchange]
-    divisors = [d for n in range(1, int(exchange ** 0.5) + 1) if exchange % n == 0 for d in (n, exchange // n)]
+    divisors = [
+        d for n in range(1, int(exchange**0.5) + 1) if exchange % n == 0 for d in (n, exchange // n)
+    ]
     below, above = [d for d in divisors if d <= step], [d for d in divisors if d >= step]
     return [max(below), min(above)]
 
@@ -71,14 +73,25 @@ def plan(order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: 
     jacobi: all take the values of the beginning of the exchange, then all step, then all show what they have reached.
     """
     period = lcm(*(max(1, steps[name] // exchange) for name in order))
-    return Schedule(exchange, tuple(_exchange(number, order, steps, exchange, scheme) for number in range(period)))
+    return Schedule(
+        exchange,
+        tuple(_exchange(number, order, steps, exchange, scheme) for number in range(period)),
+    )
 
 
-def _exchange(number: int, order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: Scheme) -> tuple[Operation, ...]:
+def _exchange(
+    number: int, order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: Scheme
+) -> tuple[Operation, ...]:
     turns = [_turn(number, name, steps[name], exchange) for name in order]
     if scheme == "sequential":
         return tuple(operation for turn in turns for operation in turn)
-    return tuple(operation for action in Action for turn in turns for operation in turn if operation.action is action)
+    return tuple(
+        operation
+        for action in Action
+        for turn in turns
+        for operation in turn
+        if operation.action is action
+    )
 
 
 def _turn(number: int, name: str, step: int, exchange: int) -> list[Operation]:

@@ -27,7 +27,9 @@ RESERVED = ("time", "coupling")
 
 def _not_reserved(name: str) -> str:
     if name in RESERVED:
-        raise ValueError(f"a component cannot be called {name}: columns of the results are; choose another name")
+        raise ValueError(
+            f"a component cannot be called {name}: columns of the results are; choose another name"
+        )
     return name
 
 
@@ -70,7 +72,9 @@ class Connection(_Data):
             return data
         parts = [part.strip() for part in data.split("->")]
         if len(parts) != 2 or not all(parts):
-            raise ValueError(f'{data!r} is no connection; write "component.output -> component.input"')
+            raise ValueError(
+                f'{data!r} is no connection; write "component.output -> component.input"'
+            )
         return {"source": parts[0], "target": parts[1]}
 
 
@@ -156,7 +160,9 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
         found: dict[str, list[str]] = {}
         for entry in error.errors():
             found.setdefault(_path(entry["loc"]), []).append(_sentence(entry))
-        raise InputRefused([Problem(f"{where}: {key}", " or ".join(sentences)) for key, sentences in found.items()]) from error
+        raise InputRefused(
+            [Problem(f"{where}: {key}", " or ".join(sentences)) for key, sentences in found.items()]
+        ) from error
 
 
 def load_system(path: Path) -> System:
@@ -168,21 +174,32 @@ def load_system(path: Path) -> System:
     try:
         data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
-        raise InputRefused([Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]) from error
+        raise InputRefused(
+            [Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]
+        ) from error
     except UnicodeDecodeError as error:
         raise InputRefused([_not_utf_8(path)]) from error
     except tomllib.TOMLDecodeError as error:
         raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
     system = system_from(data, str(path))
     folder = path.resolve().parent
-    return system.model_copy(update={"components": {
-        name: spec.model_copy(update={"fmu": str(folder / spec.fmu)}) for name, spec in system.components.items()}})
+    return system.model_copy(
+        update={
+            "components": {
+                name: spec.model_copy(update={"fmu": str(folder / spec.fmu)})
+                for name, spec in system.components.items()
+            }
+        }
+    )
 
 
 def _not_utf_8(path: Path) -> Problem:
     utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
-    return Problem(str(path), f"is {'written in UTF-16' if utf_16 else 'no text in UTF-8'}, and TOML is UTF-8",
-                   "save it again with the encoding UTF-8")
+    return Problem(
+        str(path),
+        f"is {'written in UTF-16' if utf_16 else 'no text in UTF-8'}, and TOML is UTF-8",
+        "save it again with the encoding UTF-8",
+    )
 
 
 def with_values(system: System, values: Mapping[str, Value]) -> System:
@@ -199,28 +216,58 @@ def with_values(system: System, values: Mapping[str, Value]) -> System:
     problems = []
     for name, value in values.items():
         component, _, parameter = name.partition(".")
-        owners = [key for key, entry in system.shared.items() if name == key or any(matches(t, name) for t in entry.targets)]
+        owners = [
+            key
+            for key, entry in system.shared.items()
+            if name == key or any(matches(t, name) for t in entry.targets)
+        ]
         if owners:
             shared.setdefault(owners[0], {})[name] = value
         elif component in parameters and parameter:
             parameters[component][parameter] = value
         else:
-            problems.append(Problem(name, "is neither component.parameter nor a shared value",
-                                    nearest(component, [*system.components, *system.shared])))
-    problems += [Problem(key, "is one value for all its targets, and is given several: "
-                         + ", ".join(f"{n} = {v}" for n, v in given.items()), "give one of them")
-                 for key, given in shared.items() if len(set(map(str, given.values()))) > 1]
+            problems.append(
+                Problem(
+                    name,
+                    "is neither component.parameter nor a shared value",
+                    nearest(component, [*system.components, *system.shared]),
+                )
+            )
+    problems += [
+        Problem(
+            key,
+            "is one value for all its targets, and is given several: "
+            + ", ".join(f"{n} = {v}" for n, v in given.items()),
+            "give one of them",
+        )
+        for key, given in shared.items()
+        if len(set(map(str, given.values()))) > 1
+    ]
     if problems:
         raise InputRefused(problems)
-    return system.model_copy(update={
-        "components": {name: spec.model_copy(update={"parameters": parameters[name]}) for name, spec in system.components.items()},
-        "shared": {key: entry.model_copy(update={"value": next(iter(shared[key].values()))}) if key in shared else entry
-                   for key, entry in system.shared.items()}})
+    return system.model_copy(
+        update={
+            "components": {
+                name: spec.model_copy(update={"parameters": parameters[name]})
+                for name, spec in system.components.items()
+            },
+            "shared": {
+                key: entry.model_copy(update={"value": next(iter(shared[key].values()))})
+                if key in shared
+                else entry
+                for key, entry in system.shared.items()
+            },
+        }
+    )
 
 
 def _path(location: tuple[int | str, ...]) -> str:
     """``components.rock.step``; the names that pydantic gives to the alternatives of a type are left out."""
-    kept = [part for part in location if not (isinstance(part, str) and re.fullmatch(r"bool|int|float|str|constrained-.*", part))]
+    kept = [
+        part
+        for part in location
+        if not (isinstance(part, str) and re.fullmatch(r"bool|int|float|str|constrained-.*", part))
+    ]
     return ".".join(map(str, kept))
 
 
@@ -229,10 +276,19 @@ def _sentence(error: Any) -> str:
         return f"there is no such key; {nearest(str(error['loc'][-1]), _KEYS)}"
     if error["type"] == "missing":
         return "is missing"
-    given = "" if isinstance(error["input"], dict | list) or error["type"] == "value_error" else f" (given: {error['input']!r})"
+    given = (
+        ""
+        if isinstance(error["input"], dict | list) or error["type"] == "value_error"
+        else f" (given: {error['input']!r})"
+    )
     message = str(error["msg"]).removeprefix("Value error, ")
     return message[0].lower() + message[1:] + given
 
 
-_KEYS = sorted({key for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, System)
-                for key in model.model_fields})
+_KEYS = sorted(
+    {
+        key
+        for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, System)
+        for key in model.model_fields
+    }
+)

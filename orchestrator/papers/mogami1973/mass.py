@@ -5,9 +5,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from rockshed.components.common.units import cm
-from rockshed.components.impulsive_ground.settlement import DERIVED, PRINTED, initial_velocity, soil_mass
 from scipy.integrate import quad
+
+from rockshed.components.common.units import cm
+from rockshed.components.impulsive_ground.settlement import (
+    DERIVED,
+    PRINTED,
+    initial_velocity,
+    soil_mass,
+)
 
 from ..study import Outcomes, Row, Study, verdict
 from .plate_tests import AREAS, BOX, DENSITY, DEPTH, SPREAD, mass, radius, trials
@@ -15,8 +21,15 @@ from .plate_tests import AREAS, BOX, DENSITY, DEPTH, SPREAD, mass, radius, trial
 
 def momentum(r: float) -> float:
     """Momentum of the frustum of sand by quadrature, for a plate of radius r (m) that moves with 1 m/s."""
-    return float(quad(lambda z: DENSITY * math.pi * (r + z * math.tan(SPREAD)) ** 2 * (1.0 - z / DEPTH), 0.0, DEPTH,
-                      epsabs=0.0, epsrel=1e-13)[0])
+    return float(
+        quad(
+            lambda z: DENSITY * math.pi * (r + z * math.tan(SPREAD)) ** 2 * (1.0 - z / DEPTH),
+            0.0,
+            DEPTH,
+            epsabs=0.0,
+            epsrel=1e-13,
+        )[0]
+    )
 
 
 def square_coefficient() -> float:
@@ -29,21 +42,57 @@ def square_coefficient() -> float:
 def rows(found: Outcomes) -> list[Row]:
     """Printed against derived."""
     number = square_coefficient()
-    made = [Row("number before r² in (1)", "1", paper=3.0, computed=number, verdict=verdict(abs(number - 3.0) < 1e-6),
-                note="momentum of the frustum by quadrature; printed four times")]
+    made = [
+        Row(
+            "number before r² in (1)",
+            "1",
+            paper=3.0,
+            computed=number,
+            verdict=verdict(abs(number - 3.0) < 1e-6),
+            note="momentum of the frustum by quadrature; printed four times",
+        )
+    ]
     for area in AREAS:
-        made.append(Row(f"virtual mass, plate of {area:g} cm²", "kg", paper=mass(area, PRINTED), computed=mass(area),
-                        note=f"paper: with 3 r²; quadrature {momentum(radius(area)):.3f} kg + plate"))
-    each = [(t, initial_velocity(t.impulse, mass(t.area, PRINTED)) / initial_velocity(t.impulse, mass(t.area)) - 1.0)
-            for t in trials()]
+        made.append(
+            Row(
+                f"virtual mass, plate of {area:g} cm²",
+                "kg",
+                paper=mass(area, PRINTED),
+                computed=mass(area),
+                note=f"paper: with 3 r²; quadrature {momentum(radius(area)):.3f} kg + plate",
+            )
+        )
+    each = [
+        (
+            t,
+            initial_velocity(t.impulse, mass(t.area, PRINTED))
+            / initial_velocity(t.impulse, mass(t.area))
+            - 1.0,
+        )
+        for t in trials()
+    ]
     for area in AREAS:
         values = [excess for t, excess in each if t.area == area]
-        made.append(Row(f"v0 and settlement (7) too large, plate of {area:g} cm²", "%", computed=100.0 * max(values),
-                        note=f"{len(values)} tests, all alike to {max(values) - min(values):.0e}: I cancels"))
+        made.append(
+            Row(
+                f"v0 and settlement (7) too large, plate of {area:g} cm²",
+                "%",
+                computed=100.0 * max(values),
+                note=f"{len(values)} tests, all alike to {max(values) - min(values):.0e}: I cancels",
+            )
+        )
     foot = [2.0 * (radius(area) + DEPTH * math.tan(SPREAD)) / cm for area in AREAS]
-    made.append(Row("width of the frustum's foot, smallest plate", "cm", paper=BOX[0] / cm, computed=foot[0],
-                    verdict=verdict(foot[0] <= BOX[0] / cm), note="paper: width of the box it must fit into; the walls must have "
-                    f"carried some of it; {foot[-1]:.0f} cm under the largest plate"))
+    made.append(
+        Row(
+            "width of the frustum's foot, smallest plate",
+            "cm",
+            paper=BOX[0] / cm,
+            computed=foot[0],
+            verdict=verdict(foot[0] <= BOX[0] / cm),
+            note="paper: width of the box it must fit into; the walls must have "
+            f"carried some of it; {foot[-1]:.0f} cm under the largest plate",
+        )
+    )
     return made
 
 
@@ -53,19 +102,37 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
 
     file = folder / "mass.png"
     areas = np.linspace(20.0, 450.0, 200)
-    words = (f"Mass of plate and sand that moves, the bracket of (1): depth 45 cm, 45°, {DENSITY:g} kg/m³ and plates of 2 cm of "
-             "steel assumed. Circles: quadrature of the frustum's momentum, for the paper's plates.")
+    words = (
+        f"Mass of plate and sand that moves, the bracket of (1): depth 45 cm, 45°, {DENSITY:g} kg/m³ and plates of 2 cm of "
+        "steel assumed. Circles: quadrature of the frustum's momentum, for the paper's plates."
+    )
     with captioned([words], file, WIDTH, 3.4) as made:
         axes = made.subplots()
         axes.plot(areas, [mass(a) for a in areas], color=INK, label="derived, 12 r²")
         axes.plot(areas, [mass(a, PRINTED) for a in areas], "--", color=ROCK, label="printed, 3 r²")
-        plates = [mass(a) - float(soil_mass(radius(a), DEPTH, SPREAD, DENSITY, DERIVED)) for a in AREAS]
-        axes.plot(AREAS, [momentum(radius(a)) + plate for a, plate in zip(AREAS, plates)], "o", color=GREY, fillstyle="none")
+        plates = [
+            mass(a) - float(soil_mass(radius(a), DEPTH, SPREAD, DENSITY, DERIVED)) for a in AREAS
+        ]
+        axes.plot(
+            AREAS,
+            [momentum(radius(a)) + plate for a, plate in zip(AREAS, plates)],
+            "o",
+            color=GREY,
+            fillstyle="none",
+        )
         axes.set(xlabel="area of the plate (cm²)", ylabel="virtual mass (kg)")
         axes.set_ylim(bottom=0.0)
         axes.legend(loc="lower right")
     return [file]
 
 
-STUDY = Study("mass", "Virtual mass of the sand, (1)", 1.0, rows, draw=draw, notes=(
-    "Density of the sand and mass of the plates are not printed: 1600 kg/m³ and 2 cm of steel are assumed.",))
+STUDY = Study(
+    "mass",
+    "Virtual mass of the sand, (1)",
+    1.0,
+    rows,
+    draw=draw,
+    notes=(
+        "Density of the sand and mass of the plates are not printed: 1600 kg/m³ and 2 cm of steel are assumed.",
+    ),
+)

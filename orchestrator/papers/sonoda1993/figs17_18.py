@@ -6,7 +6,13 @@ from pathlib import Path
 from rockshed.components.common.units import cm, kgf, ms
 
 from ...cases import sonoda1993
-from ...metrics.headlines import BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN, BEAM_SHARE, BEAM_SHARE_FROM_STRAIN, PEAK_TRANSMITTED
+from ...metrics.headlines import (
+    BEAM_ENERGY,
+    BEAM_ENERGY_FROM_STRAIN,
+    BEAM_SHARE,
+    BEAM_SHARE_FROM_STRAIN,
+    PEAK_TRANSMITTED,
+)
 from ..study import COMPLETE, Outcomes, Row, Study, Task, row_of_runs, verdict
 from .laboratory import ALL_MODELS, impact
 
@@ -23,7 +29,12 @@ def tasks(quick: bool) -> list[Task]:
 
 def rows(found: Outcomes) -> list[Row]:
     """Peaks of force and energy, and the part of the ball's energy."""
-    return [row for number in TESTS for model in ALL_MODELS for row in _of_test(number, impact(number, model), found)] + [_share()]
+    return [
+        row
+        for number in TESTS
+        for model in ALL_MODELS
+        for row in _of_test(number, impact(number, model), found)
+    ] + [_share()]
 
 
 def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
@@ -31,14 +42,52 @@ def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
     paper = sonoda1993.known_of(test)[PEAK_TRANSMITTED].paper
     measured = sonoda1993.BEAM_ENERGY[number] / _ENERGY
     return [
-        row_of_runs(f"peak transmitted force, test {number}", "kgf", kgf, PEAK_TRANSMITTED, [task], found,
-                    paper.value / kgf if paper else None, test.peak_force / kgf, "paper: its table 5, inter- or extrapolated"),
-        row_of_runs(f"peak beam energy, eqs (5) and (6), test {number}", "kgf cm", _ENERGY, BEAM_ENERGY, [task], found),
-        row_of_runs(f"peak beam energy, eq. (7), test {number}", "kgf cm", _ENERGY, BEAM_ENERGY_FROM_STRAIN, [task], found,
-                    experiment=measured, note="experiment: about, read from fig. 18"),
-        row_of_runs(f"peak beam energy, eqs (5) and (6) / impact energy, test {number}", "%", 0.01, BEAM_SHARE, [task], found),
-        row_of_runs(f"peak beam energy, eq. (7) / impact energy, test {number}", "%", 0.01, BEAM_SHARE_FROM_STRAIN, [task], found,
-                    experiment=100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy()),
+        row_of_runs(
+            f"peak transmitted force, test {number}",
+            "kgf",
+            kgf,
+            PEAK_TRANSMITTED,
+            [task],
+            found,
+            paper.value / kgf if paper else None,
+            test.peak_force / kgf,
+            "paper: its table 5, inter- or extrapolated",
+        ),
+        row_of_runs(
+            f"peak beam energy, eqs (5) and (6), test {number}",
+            "kgf cm",
+            _ENERGY,
+            BEAM_ENERGY,
+            [task],
+            found,
+        ),
+        row_of_runs(
+            f"peak beam energy, eq. (7), test {number}",
+            "kgf cm",
+            _ENERGY,
+            BEAM_ENERGY_FROM_STRAIN,
+            [task],
+            found,
+            experiment=measured,
+            note="experiment: about, read from fig. 18",
+        ),
+        row_of_runs(
+            f"peak beam energy, eqs (5) and (6) / impact energy, test {number}",
+            "%",
+            0.01,
+            BEAM_SHARE,
+            [task],
+            found,
+        ),
+        row_of_runs(
+            f"peak beam energy, eq. (7) / impact energy, test {number}",
+            "%",
+            0.01,
+            BEAM_SHARE_FROM_STRAIN,
+            [task],
+            found,
+            experiment=100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy(),
+        ),
     ]
 
 
@@ -49,9 +98,14 @@ def _impact_energy() -> float:
 def _share() -> Row:
     """The paper's summary against the energies that it measured."""
     shares = [100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy() for number in TESTS]
-    return Row("measured energy of the beam is 1 to 3 % of the ball's", "%", experiment=shares[-1], model="claim",
-               verdict=verdict(SHARE[0] - 0.5 < min(shares) and max(shares) < SHARE[1] + 0.5),
-               note=f"{shares[0]:.1f} % in test {TESTS[0]}, {shares[1]:.1f} % in test {TESTS[1]}; rounded to whole percent")
+    return Row(
+        "measured energy of the beam is 1 to 3 % of the ball's",
+        "%",
+        experiment=shares[-1],
+        model="claim",
+        verdict=verdict(SHARE[0] - 0.5 < min(shares) and max(shares) < SHARE[1] + 0.5),
+        note=f"{shares[0]:.1f} % in test {TESTS[0]}, {shares[1]:.1f} % in test {TESTS[1]}; rounded to whole percent",
+    )
 
 
 def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
@@ -70,8 +124,13 @@ def _fig_17(found: Outcomes, file: Path) -> Path:
             for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
                 outcome = found.of(impact(number, model))
                 if outcome.status == COMPLETE:
-                    axes.plot(outcome.series["time"] / ms, outcome.series["sand.transmitted_force"] / kgf, color=colour,
-                              label=model, linewidth=1.1)
+                    axes.plot(
+                        outcome.series["time"] / ms,
+                        outcome.series["sand.transmitted_force"] / kgf,
+                        color=colour,
+                        label=model,
+                        linewidth=1.1,
+                    )
             reference_line(axes, sonoda1993.tests()[number].peak_force / kgf, "peak measured")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
         made.axes[0].set_ylabel("transmitted force (kgf)")
@@ -82,14 +141,23 @@ def _fig_17(found: Outcomes, file: Path) -> Path:
 def _fig_18(found: Outcomes, file: Path) -> Path:
     from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
 
-    curves = (("beam.energy.elastic", "-", "eqs (5), (6)"), ("beam.energy.strain_estimate", ":", "eq. (7)"))
+    curves = (
+        ("beam.energy.elastic", "-", "eqs (5), (6)"),
+        ("beam.energy.strain_estimate", ":", "eq. (7)"),
+    )
     with captioned([_CAPTION.format("Fig. 18")], file, WIDTH, 3.2) as made:
         for axes, number, letter in zip(made.subplots(1, 2, sharey=True), TESTS, "ab"):
             for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
                 outcome = found.of(impact(number, model))
                 for column, line, equation in curves if outcome.status == COMPLETE else ():
-                    axes.plot(outcome.series["time"] / ms, outcome.series[column] / _ENERGY, line, color=colour, linewidth=1.1,
-                              label=f"{model}, {equation}")
+                    axes.plot(
+                        outcome.series["time"] / ms,
+                        outcome.series[column] / _ENERGY,
+                        line,
+                        color=colour,
+                        linewidth=1.1,
+                        label=f"{model}, {equation}",
+                    )
             reference_line(axes, sonoda1993.BEAM_ENERGY[number] / _ENERGY, "peak measured, eq. (7)")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
         made.axes[0].set_ylabel("energy of the beam (kgf cm)")
@@ -97,6 +165,15 @@ def _fig_18(found: Outcomes, file: Path) -> Path:
     return file
 
 
-STUDY = Study("figs17-18", "Figures 17 and 18: force and energy on the beam, tests 4 and 10", 5.1, rows, tasks, draw, (
-    "One run for each row, on the undisturbed lattice; the literal model moves by several percent with a disturbed one.",
-    "The experiment's energies follow from the strain at midspan by eq. (7)."))
+STUDY = Study(
+    "figs17-18",
+    "Figures 17 and 18: force and energy on the beam, tests 4 and 10",
+    5.1,
+    rows,
+    tasks,
+    draw,
+    (
+        "One run for each row, on the undisturbed lattice; the literal model moves by several percent with a disturbed one.",
+        "The experiment's energies follow from the strain at midspan by eq. (7).",
+    ),
+)

@@ -36,7 +36,12 @@ class Model:
     law: str | None = None
 
 
-FREE = ("sand.rotation=free", "sand.stiffness_factor=1", "sand.disc.spread=0.25", "sand.settling.time=8")
+FREE = (
+    "sand.rotation=free",
+    "sand.stiffness_factor=1",
+    "sand.disc.spread=0.25",
+    "sand.settling.time=8",
+)
 PACK = (*FREE, "sand.packing=random")
 """A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
 ROLLING = (*PACK, "sand.rolling_resistance=0.3")
@@ -77,7 +82,11 @@ _FREE_HEIGHT = 1.25
 
 def models(quick: bool, on_girders: bool) -> list[Model]:
     """The models of a reproduction; on a rigid base without those that differ in the girders only."""
-    return [model for model in MODELS if (model.quick or not quick) and (on_girders or not model.girders)]
+    return [
+        model
+        for model in MODELS
+        if (model.quick or not quick) and (on_girders or not model.girders)
+    ]
 
 
 ONE_SAND = "crushed"
@@ -97,8 +106,13 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
         higher = _above_pack() if model.pack and not model.law else ()
         settings = [*model.settings, *(model.girders if on_girders else ()), *higher]
         if seed is not None:
-            settings += [f"sand.seed={seed}", *([] if model.pack else [f"sand.lattice_shift={LATTICE_SHIFT:g}"])]
-        request = Request(case, settings, coupling="impulse", options={"stop_time": stop_time}, model=model.law)
+            settings += [
+                f"sand.seed={seed}",
+                *([] if model.pack else [f"sand.lattice_shift={LATTICE_SHIFT:g}"]),
+            ]
+        request = Request(
+            case, settings, coupling="impulse", options={"stop_time": stop_time}, model=model.law
+        )
         return Task(request, model.name, seed)
 
     if quick:
@@ -109,14 +123,20 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
 def _above_pack() -> Sequence[str]:
     """The rock starts so high that it is above every pack, and so fast that it has its speed where the lattice ends."""
     fallen = 2.0 * GRAVITY * (_FREE_HEIGHT - LAYER)
-    return (f"rock.position0.y={_FREE_HEIGHT + ROCK_RADIUS:.6g}", f"rock.velocity0.y={-math.sqrt(ROCK_SPEED**2 - fallen):.8g}")
+    return (
+        f"rock.position0.y={_FREE_HEIGHT + ROCK_RADIUS:.6g}",
+        f"rock.velocity0.y={-math.sqrt(ROCK_SPEED**2 - fallen):.8g}",
+    )
 
 
 def plot_forces(axes: "Axes", outcome: Outcome) -> None:
     """Transmitted and rock force (tf) over time (ms) of a run: as computed, thin, and settled."""
     from ...pictures.style import ROCK, TRANSMITTED
 
-    for column, colour, name in (("transmitted_force", TRANSMITTED, "transmitted"), ("rock.force.y", ROCK, "on the rock")):
+    for column, colour, name in (
+        ("transmitted_force", TRANSMITTED, "transmitted"),
+        ("rock.force.y", ROCK, "on the rock"),
+    ):
         if outcome.status == COMPLETE:
             time, force = outcome.series["time"], outcome.series[f"sand.{column}"]
             smooth = low_pass(time, force, outcome.figures[SETTLED_CUT_OFF])
@@ -126,8 +146,12 @@ def plot_forces(axes: "Axes", outcome: Outcome) -> None:
     axes.set_xlim(0.0, None)
 
 
-SEED_NOTE = (f"Mean and standard deviation over {len(SEEDS)} seeds: random packs, or a lattice shifted by {LATTICE_SHIFT:g} "
-             "diameters. With --quick one run, and fewer models.")
-STEP_NOTE = ("Sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms, sand every 0.05 ms, girders every 0.01 ms. "
-             "With calibrated sand force and energy are within 0.3 % of those with exchanges every 0.05 ms, and of those with all "
-             "steps doubled; packs are chaotic, their seeds tell how much.")
+SEED_NOTE = (
+    f"Mean and standard deviation over {len(SEEDS)} seeds: random packs, or a lattice shifted by {LATTICE_SHIFT:g} "
+    "diameters. With --quick one run, and fewer models."
+)
+STEP_NOTE = (
+    "Sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms, sand every 0.05 ms, girders every 0.01 ms. "
+    "With calibrated sand force and energy are within 0.3 % of those with exchanges every 0.05 ms, and of those with all "
+    "steps doubled; packs are chaotic, their seeds tell how much."
+)

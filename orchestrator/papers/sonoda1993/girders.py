@@ -33,7 +33,12 @@ def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
 
 def tasks(quick: bool) -> list[Task]:
     """Every span with every model."""
-    return [task for impact in SPANS.values() for model in models(quick, True) for task in _runs(impact, model, quick)]
+    return [
+        task
+        for impact in SPANS.values()
+        for model in models(quick, True)
+        for task in _runs(impact, model, quick)
+    ]
 
 
 def rows(found: Outcomes) -> list[Row]:
@@ -41,8 +46,15 @@ def rows(found: Outcomes) -> list[Row]:
     listed = []
     for model in models(found.quick, True):
         energies = [_energy(impact, model, found) for impact in SPANS.values()]
-        listed += [*energies, *(row for impact in SPANS.values() for row in _springs_and_forces(impact, model, found)),
-                   *_over_spans(energies, model, found)]
+        listed += [
+            *energies,
+            *(
+                row
+                for impact in SPANS.values()
+                for row in _springs_and_forces(impact, model, found)
+            ),
+            *_over_spans(energies, model, found),
+        ]
     return listed
 
 
@@ -62,22 +74,50 @@ def _percent(value: float | None) -> float | None:
 
 def _energy(impact: Impact, model: Model, found: Outcomes) -> Row:
     """The energy as it was measured."""
-    return row_of_runs(f"girders' energy / rock's by eq. (7), span {impact.span:g} m", "%", 0.01, _share(BEAM_ENERGY_FROM_STRAIN),
-                       _runs(impact, model, found.quick), found,
-                       experiment=_percent(_known(impact, BEAM_SHARE_FROM_STRAIN, "experiment")),
-                       note="from the strain at midspan since the start")
+    return row_of_runs(
+        f"girders' energy / rock's by eq. (7), span {impact.span:g} m",
+        "%",
+        0.01,
+        _share(BEAM_ENERGY_FROM_STRAIN),
+        _runs(impact, model, found.quick),
+        found,
+        experiment=_percent(_known(impact, BEAM_SHARE_FROM_STRAIN, "experiment")),
+        note="from the strain at midspan since the start",
+    )
 
 
 def _springs_and_forces(impact: Impact, model: Model, found: Outcomes) -> list[Row]:
     """The energy as the paper's analysis has it, and both forces."""
     runs, span = _runs(impact, model, found.quick), f"span {impact.span:g} m"
     return [
-        row_of_runs(f"girders' energy / rock's by eqs (5), (6), {span}", "%", 0.01, _share(BEAM_ENERGY), runs, found,
-                    _percent(_known(impact, BEAM_SHARE, "paper")), note="largest elastic energy less that at rest under the sand"),
-        row_of_runs(f"settled ratio transmitted / rock, {span}", "1", 1.0, SETTLED_RATIO, runs, found,
-                    _known(impact, SETTLED_RATIO, "paper"), note="paper: a difference of 30 to 50 % in figs 23 and 24"),
-        detail(row_of_runs(f"settled transmitted force, {span}", "tf", tf, SETTLED_TRANSMITTED, runs, found)),
-        detail(row_of_runs(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK, runs, found)),
+        row_of_runs(
+            f"girders' energy / rock's by eqs (5), (6), {span}",
+            "%",
+            0.01,
+            _share(BEAM_ENERGY),
+            runs,
+            found,
+            _percent(_known(impact, BEAM_SHARE, "paper")),
+            note="largest elastic energy less that at rest under the sand",
+        ),
+        row_of_runs(
+            f"settled ratio transmitted / rock, {span}",
+            "1",
+            1.0,
+            SETTLED_RATIO,
+            runs,
+            found,
+            _known(impact, SETTLED_RATIO, "paper"),
+            note="paper: a difference of 30 to 50 % in figs 23 and 24",
+        ),
+        detail(
+            row_of_runs(
+                f"settled transmitted force, {span}", "tf", tf, SETTLED_TRANSMITTED, runs, found
+            )
+        ),
+        detail(
+            row_of_runs(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK, runs, found)
+        ),
     ]
 
 
@@ -89,9 +129,27 @@ def _over_spans(energies: Sequence[Row], model: Model, found: Outcomes) -> list[
     complete = len(computed) == len(energies)
     rise = computed[-1] / computed[0] if complete else None
     factor = max(max(c / m, m / c) for c, m in zip(computed, measured)) if complete else None
-    where = {"model": model.name, "note": "" if complete else "a span has no result", **origin(every, found)}
-    return [Row("girders' energy by eq. (7), longest / shortest span", "1", None, measured[-1] / measured[0], rise, **where),
-            Row("largest factor between computed and measured energy, eq. (7)", "1", computed=factor, **where)]
+    where = {
+        "model": model.name,
+        "note": "" if complete else "a span has no result",
+        **origin(every, found),
+    }
+    return [
+        Row(
+            "girders' energy by eq. (7), longest / shortest span",
+            "1",
+            None,
+            measured[-1] / measured[0],
+            rise,
+            **where,
+        ),
+        Row(
+            "largest factor between computed and measured energy, eq. (7)",
+            "1",
+            computed=factor,
+            **where,
+        ),
+    ]
 
 
 SHOWN = ("calibrated", "one-law")
@@ -100,15 +158,25 @@ SHOWN = ("calibrated", "one-law")
 
 def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """Forces over time as in figs 23 and 24, and table 6 over the span."""
-    return [_forces(found, folder / "figs23-24.png"), _table_6(found, listed, folder / "table6.png")]
+    return [
+        _forces(found, folder / "figs23-24.png"),
+        _table_6(found, listed, folder / "table6.png"),
+    ]
 
 
 def _forces(found: Outcomes, file: Path) -> Path:
     from ...pictures.style import GREY, WIDTH, captioned, legend
 
     shown = [model for model in models(found.quick, True) if model.name in SHOWN]
-    with captioned(["Figs 23 and 24 of Sonoda et al. 1993: 1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders. Thin: "
-                    "as computed; thick: settled (low-pass). The first seed of each model."], file, WIDTH, 4.6) as made:
+    with captioned(
+        [
+            "Figs 23 and 24 of Sonoda et al. 1993: 1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders. Thin: "
+            "as computed; thick: settled (low-pass). The first seed of each model."
+        ],
+        file,
+        WIDTH,
+        4.6,
+    ) as made:
         grid = made.subplots(len(shown), len(SPANS), sharey=True, squeeze=False)
         for line, model in zip(grid, shown):
             for axes, impact in zip(line, SPANS.values()):
@@ -127,30 +195,62 @@ def _table_6(found: Outcomes, listed: Sequence[Row], file: Path) -> Path:
     from ...pictures.style import INK, WIDTH, captioned
 
     spans = list(SPANS)
-    with captioned(["Table 6 of Sonoda et al. 1993: energy of the girders as a part of the rock's. Squares: measured (left), the "
-                    "paper's analysis (right). Bars: standard deviation over seeds."], file, WIDTH, 3.6) as made:
-        for axes, by, who in zip(made.subplots(1, 2, sharey=True), ("eq. (7)", "eqs (5), (6)"), ("experiment", "paper")):
-            shown = [row for row in listed if row.quantity.startswith(f"girders' energy / rock's by {by}")]
+    with captioned(
+        [
+            "Table 6 of Sonoda et al. 1993: energy of the girders as a part of the rock's. Squares: measured (left), the "
+            "paper's analysis (right). Bars: standard deviation over seeds."
+        ],
+        file,
+        WIDTH,
+        3.6,
+    ) as made:
+        for axes, by, who in zip(
+            made.subplots(1, 2, sharey=True), ("eq. (7)", "eqs (5), (6)"), ("experiment", "paper")
+        ):
+            shown = [
+                row
+                for row in listed
+                if row.quantity.startswith(f"girders' energy / rock's by {by}")
+            ]
             for model in models(found.quick, True):
                 lines = [row for row in shown if row.model == model.name]
-                axes.errorbar(spans, [float("nan") if row.computed is None else row.computed for row in lines],
-                              [row.spread or 0.0 for row in lines], marker="o", markersize=3, linewidth=1.0, label=model.name)
-            known = [getattr(row, who) for row in shown[:len(spans)]]
+                axes.errorbar(
+                    spans,
+                    [float("nan") if row.computed is None else row.computed for row in lines],
+                    [row.spread or 0.0 for row in lines],
+                    marker="o",
+                    markersize=3,
+                    linewidth=1.0,
+                    label=model.name,
+                )
+            known = [getattr(row, who) for row in shown[: len(spans)]]
             axes.plot(spans, known, "s--", color=INK, markersize=5, label="Sonoda et al.")
-            axes.set(title=f"by {by}", xlabel="span (m)", xticks=spans, yscale="log", ylim=(3.0, 100.0))
+            axes.set(
+                title=f"by {by}", xlabel="span (m)", xticks=spans, yscale="log", ylim=(3.0, 100.0)
+            )
             axes.yaxis.set_major_formatter("{x:g}")
         made.axes[0].set_ylabel("energy of the girders / energy of the rock (%)")
         made.legend(*made.axes[0].get_legend_handles_labels(), loc="outside right upper")
     return file
 
 
-STUDY = Study("girders", "Table 6, figures 23 and 24: full scale on girders", 7.0, rows, tasks, draw, (
-    SEED_NOTE, STEP_NOTE,
-    "What compares with the experiment is eq. (7) from the strain at midspan, gauges at zero before the test. The paper's analysis "
-    "sums up the springs by eqs (5), (6), which give more: eq. (7) is that of a static point load at midspan, and the energy at "
-    "rest under the sand has a cross term with the impact's that grows with the span.",
-    "The girders start at rest in equilibrium under sand and own weight. Masses of deck (200 kg/m) and box (2 t) are assumed where "
-    "a model names them; elsewhere there are none, as the paper gives none.",
-    "'poured' is a pack of discs +-25 % with rolling resistance 0.3, brought to the solid fraction 0.74; models that begin so "
-    "differ from it by what they name: bulk weight (0.0018 kgf/cm3 of the layer, not of a disc), deck and box, unloading stiffness "
-    "3 or 20 times the loading one, cohesion 0.05 kgf/cm2; all together: these with unloading 3."))
+STUDY = Study(
+    "girders",
+    "Table 6, figures 23 and 24: full scale on girders",
+    7.0,
+    rows,
+    tasks,
+    draw,
+    (
+        SEED_NOTE,
+        STEP_NOTE,
+        "What compares with the experiment is eq. (7) from the strain at midspan, gauges at zero before the test. The paper's analysis "
+        "sums up the springs by eqs (5), (6), which give more: eq. (7) is that of a static point load at midspan, and the energy at "
+        "rest under the sand has a cross term with the impact's that grows with the span.",
+        "The girders start at rest in equilibrium under sand and own weight. Masses of deck (200 kg/m) and box (2 t) are assumed where "
+        "a model names them; elsewhere there are none, as the paper gives none.",
+        "'poured' is a pack of discs +-25 % with rolling resistance 0.3, brought to the solid fraction 0.74; models that begin so "
+        "differ from it by what they name: bulk weight (0.0018 kgf/cm3 of the layer, not of a disc), deck and box, unloading stiffness "
+        "3 or 20 times the loading one, cohesion 0.05 kgf/cm2; all together: these with unloading 3.",
+    ),
+)

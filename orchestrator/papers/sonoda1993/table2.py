@@ -9,7 +9,14 @@ from rockshed.components.common.units import cm, kgf
 from ...cases import sonoda1993
 from ...cases.sonoda1993 import Test
 from ...metrics.headlines import PEAK_TRANSMITTED, load_cell
-from ..statistics import by_power_law, constant, exponent_error, leave_one_out, mean_absolute_error, power_law
+from ..statistics import (
+    by_power_law,
+    constant,
+    exponent_error,
+    leave_one_out,
+    mean_absolute_error,
+    power_law,
+)
 from ..study import Outcome, Outcomes, Row, Study, Task, origin, row_of_runs
 from .laboratory import ALL_MODELS, ONE_LAW, SEED_NOTE, impacts
 from .twelve import BOX_TESTS, error, exponent, twelve
@@ -27,53 +34,115 @@ def _paper(test: Test) -> float:
 
 def tasks(quick: bool) -> list[Task]:
     """Sixteen tests, each with every model."""
-    return [task for number in sonoda1993.tests() for model in ALL_MODELS for task in impacts(number, model, quick)]
+    return [
+        task
+        for number in sonoda1993.tests()
+        for model in ALL_MODELS
+        for task in impacts(number, model, quick)
+    ]
 
 
 def rows(found: Outcomes) -> list[Row]:
     """Each test, then errors and trends over the tests, then what needs no mechanics."""
     listed = []
     for through, figure in _SEEN.items():
-        each = {model: {number: _of_test(test, model, found, through, figure) for number, test in sonoda1993.tests().items()}
-                for model in ALL_MODELS}
+        each = {
+            model: {
+                number: _of_test(test, model, found, through, figure)
+                for number, test in sonoda1993.tests().items()
+            }
+            for model in ALL_MODELS
+        }
         listed += [each[model][number] for number in sonoda1993.tests() for model in ALL_MODELS]
-        listed += [row for model in ALL_MODELS for row in _over_tests(model, each[model], found, through)]
+        listed += [
+            row for model in ALL_MODELS for row in _over_tests(model, each[model], found, through)
+        ]
     return listed + baselines()
 
 
 def through_load_cell(outcome: Outcome) -> float:
     """Peak (N) of the transmitted force as the load cells under the beam show it."""
-    return float(load_cell(outcome.series["time"], outcome.series["sand.transmitted_force"], sonoda1993.LOAD_CELL).max())
+    return float(
+        load_cell(
+            outcome.series["time"], outcome.series["sand.transmitted_force"], sonoda1993.LOAD_CELL
+        ).max()
+    )
 
 
 _SEEN: Mapping[str, str | Callable[[Outcome], float]] = {
-    "": PEAK_TRANSMITTED, f" through a load cell of {sonoda1993.LOAD_CELL / 1e3:g} kHz": through_load_cell}
+    "": PEAK_TRANSMITTED,
+    f" through a load cell of {sonoda1993.LOAD_CELL / 1e3:g} kHz": through_load_cell,
+}
 """How the force is seen, in words, and the figure."""
 
 
-def _of_test(test: Test, model: str, found: Outcomes, through: str, figure: str | Callable[[Outcome], float]) -> Row:
-    return row_of_runs(f"peak transmitted force{through}, test {test.number}", "kgf", kgf, figure,
-                       impacts(test.number, model, found.quick), found, _paper(test) / kgf, test.peak_force / kgf,
-                       "paper: its table 5, h = 0.2, inter- or extrapolated to the test's E_bar")
+def _of_test(
+    test: Test, model: str, found: Outcomes, through: str, figure: str | Callable[[Outcome], float]
+) -> Row:
+    return row_of_runs(
+        f"peak transmitted force{through}, test {test.number}",
+        "kgf",
+        kgf,
+        figure,
+        impacts(test.number, model, found.quick),
+        found,
+        _paper(test) / kgf,
+        test.peak_force / kgf,
+        "paper: its table 5, h = 0.2, inter- or extrapolated to the test's E_bar",
+    )
 
 
 def _over_tests(model: str, each: Mapping[int, Row], found: Outcomes, through: str) -> list[Row]:
     """Mean error over the twelve tests and over all, and the trend of the twelve. A test without a result makes them empty."""
     where = origin([task for number in each for task in impacts(number, model, found.quick)], found)
-    where["options"] = {name: value for name, value in where["options"].items() if name != "modulus"}
-    computed = {number: row.computed * kgf for number, row in each.items() if row.computed is not None}
+    where["options"] = {
+        name: value for name, value in where["options"].items() if name != "modulus"
+    }
+    computed = {
+        number: row.computed * kgf for number, row in each.items() if row.computed is not None
+    }
     sixteen = list(sonoda1993.tests().values())
 
-    def row(quantity: str, unit: str, value: Callable[[], float], paper: float | None, experiment: float | None = None) -> Row:
+    def row(
+        quantity: str,
+        unit: str,
+        value: Callable[[], float],
+        paper: float | None,
+        experiment: float | None = None,
+    ) -> Row:
         complete = len(computed) == len(each)
-        return Row(quantity, unit, paper, experiment, value() if complete else None, model=model,
-                   note="" if complete else "a test has no result", **where)
+        return Row(
+            quantity,
+            unit,
+            paper,
+            experiment,
+            value() if complete else None,
+            model=model,
+            note="" if complete else "a test has no result",
+            **where,
+        )
 
-    return [row(f"mean absolute error{through}, {BOX_TESTS}", "%", lambda: error(computed, twelve()), _paper_error()),
-            row(f"mean absolute error{through}, all sixteen tests", "%", lambda: error(computed, sixteen), None),
-            row(f"trend exponent of P against k{through}, {BOX_TESTS}", "1",
-                lambda: exponent(computed), exponent({t.number: _paper(t) for t in twelve()}),
-                exponent({t.number: t.peak_force for t in twelve()}))]
+    return [
+        row(
+            f"mean absolute error{through}, {BOX_TESTS}",
+            "%",
+            lambda: error(computed, twelve()),
+            _paper_error(),
+        ),
+        row(
+            f"mean absolute error{through}, all sixteen tests",
+            "%",
+            lambda: error(computed, sixteen),
+            None,
+        ),
+        row(
+            f"trend exponent of P against k{through}, {BOX_TESTS}",
+            "1",
+            lambda: exponent(computed),
+            exponent({t.number: _paper(t) for t in twelve()}),
+            exponent({t.number: t.peak_force for t in twelve()}),
+        ),
+    ]
 
 
 def _paper_error() -> float:
@@ -87,13 +156,31 @@ def baselines() -> list[Row]:
     measured = [test.peak_force for test in twelve()]
 
     def row(name: str, predicted: Sequence[float], note: str) -> Row:
-        return Row(f"mean absolute error of {name}, {BOX_TESTS}", "%", computed=100.0 * mean_absolute_error(predicted, measured),
-                   model="baseline", note=note)
+        return Row(
+            f"mean absolute error of {name}, {BOX_TESTS}",
+            "%",
+            computed=100.0 * mean_absolute_error(predicted, measured),
+            model="baseline",
+            note=note,
+        )
 
-    return [row("a constant", leave_one_out(stiffness, measured, constant), "leave-one-out mean of the measurements"),
-            row("a power law in k", leave_one_out(stiffness, measured, by_power_law), "leave-one-out fit to the measurements"),
-            row("the paper's trend", [_paper(test) for test in twelve()],
-                "a power law between the rows of its table 5, h = 0.2; no measurement in it")]
+    return [
+        row(
+            "a constant",
+            leave_one_out(stiffness, measured, constant),
+            "leave-one-out mean of the measurements",
+        ),
+        row(
+            "a power law in k",
+            leave_one_out(stiffness, measured, by_power_law),
+            "leave-one-out fit to the measurements",
+        ),
+        row(
+            "the paper's trend",
+            [_paper(test) for test in twelve()],
+            "a power law between the rows of its table 5, h = 0.2; no measurement in it",
+        ),
+    ]
 
 
 def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
@@ -101,14 +188,30 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned
 
     file = folder / "table2.png"
-    with captioned(["Table 2 of Sonoda et al. 1993; E_bar = k / 1.29 where table 4 gives none. Filled: box 1, open: box 2. Bars: "
-                    "standard deviation over seeds."], file, WIDTH, 4.2) as made:
+    with captioned(
+        [
+            "Table 2 of Sonoda et al. 1993; E_bar = k / 1.29 where table 4 gives none. Filled: box 1, open: box 2. Bars: "
+            "standard deviation over seeds."
+        ],
+        file,
+        WIDTH,
+        4.2,
+    ) as made:
         axes = made.subplots()
         _measured(axes)
         for model, colour in (("calibrated", TRANSMITTED), ("literal", ROCK), (ONE_LAW, BEAM)):
             of_model = {row.quantity: row for row in listed if row.model == model}
-            rows = {number: of_model[f"peak transmitted force, test {number}"] for number in sonoda1993.tests()}
-            _points(axes, model, colour, "o", {number: row for number, row in rows.items() if row.computed is not None})
+            rows = {
+                number: of_model[f"peak transmitted force, test {number}"]
+                for number in sonoda1993.tests()
+            }
+            _points(
+                axes,
+                model,
+                colour,
+                "o",
+                {number: row for number, row in rows.items() if row.computed is not None},
+            )
         _decorate(axes)
     return [file]
 
@@ -117,11 +220,23 @@ def _measured(axes: "Axes") -> None:
     """The measurements and the power law through those of box 1."""
     from ...pictures.style import GREY, INK
 
-    _points(axes, "measured", INK, "s", {t.number: Row("", "", computed=t.peak_force / kgf) for t in sonoda1993.tests().values()})
+    _points(
+        axes,
+        "measured",
+        INK,
+        "s",
+        {t.number: Row("", "", computed=t.peak_force / kgf) for t in sonoda1993.tests().values()},
+    )
     k, p = [_k(test) for test in twelve()], [test.peak_force / kgf for test in twelve()]
     factor, exponent = power_law(k, p)
-    axes.plot(sorted(k), [factor * x**exponent for x in sorted(k)], "--", color=GREY, linewidth=1.0,
-              label=f"fit to box 1: $P \\sim k^{{{exponent:.2f} \\pm {exponent_error(k, p):.2f}}}$")
+    axes.plot(
+        sorted(k),
+        [factor * x**exponent for x in sorted(k)],
+        "--",
+        color=GREY,
+        linewidth=1.0,
+        label=f"fit to box 1: $P \\sim k^{{{exponent:.2f} \\pm {exponent_error(k, p):.2f}}}$",
+    )
 
 
 def _k(test: Test) -> float:
@@ -132,24 +247,52 @@ def _k(test: Test) -> float:
 def _points(axes: "Axes", name: str, colour: str, mark: str, rows: Mapping[int, Row]) -> None:
     """Forces of tests over k, with their spread."""
     for box, fill in ((1, colour), (2, "white")):
-        tests = [test for number, test in sonoda1993.tests().items() if number in rows and test.box == box]
-        axes.errorbar([_k(test) for test in tests], [rows[test.number].computed or 0.0 for test in tests],
-                      yerr=[rows[test.number].spread or 0.0 for test in tests], fmt=mark, color=colour, markersize=4.5,
-                      linewidth=0.8, markerfacecolor=fill, label=name if box == 1 else "_")
+        tests = [
+            test
+            for number, test in sonoda1993.tests().items()
+            if number in rows and test.box == box
+        ]
+        axes.errorbar(
+            [_k(test) for test in tests],
+            [rows[test.number].computed or 0.0 for test in tests],
+            yerr=[rows[test.number].spread or 0.0 for test in tests],
+            fmt=mark,
+            color=colour,
+            markersize=4.5,
+            linewidth=0.8,
+            markerfacecolor=fill,
+            label=name if box == 1 else "_",
+        )
 
 
 def _decorate(axes: "Axes") -> None:
     from matplotlib.ticker import ScalarFormatter
 
-    axes.set(xscale="log", yscale="log", xlabel="secant spring constant k (kgf/cm)", ylabel="peak transmitted force P (kgf)",
-             xticks=[15, 20, 30, 40, 60, 90], yticks=[300, 400, 500, 600, 700])
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlabel="secant spring constant k (kgf/cm)",
+        ylabel="peak transmitted force P (kgf)",
+        xticks=[15, 20, 30, 40, 60, 90],
+        yticks=[300, 400, 500, 600, 700],
+    )
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(ScalarFormatter())
         axis.set_minor_formatter(lambda value, place: "")
     axes.legend(loc="upper left")
 
 
-STUDY = Study("table2", "Table 2: peak transmitted force of the sixteen tests", 4.9, rows, tasks, draw, (
-    SEED_NOTE, "Errors and trends over tests are those of the mean over the seeds.",
-    "Rows through a load cell: the same runs behind a causal low-pass of second order (Butterworth); the paper gives a natural "
-    "frequency of 3200 Hz and a response up to about 1 kHz. The mass of the sand box is not modelled."))
+STUDY = Study(
+    "table2",
+    "Table 2: peak transmitted force of the sixteen tests",
+    4.9,
+    rows,
+    tasks,
+    draw,
+    (
+        SEED_NOTE,
+        "Errors and trends over tests are those of the mean over the seeds.",
+        "Rows through a load cell: the same runs behind a causal low-pass of second order (Butterworth); the paper gives a natural "
+        "frequency of 3200 Hz and a response up to about 1 kHz. The mass of the sand box is not modelled.",
+    ),
+)

@@ -17,9 +17,13 @@ def twelve() -> list[Test]:
 
 def error(computed: Mapping[int, float], tests: Sequence[Test]) -> float:
     """Mean absolute error (percent) of peak forces (N, by the number of the test) against the measured ones."""
-    return 100.0 * mean_absolute_error([computed[test.number] for test in tests], [test.peak_force for test in tests])
+    return 100.0 * mean_absolute_error(
+        [computed[test.number] for test in tests], [test.peak_force for test in tests]
+    )
 
 
 def exponent(forces: Mapping[int, float]) -> float:
     """Exponent of the force (N, by the number of the test) against the measured static stiffness, over the twelve tests."""
-    return power_law([test.static_stiffness for test in twelve()], [forces[test.number] for test in twelve()])[1]
+    return power_law(
+        [test.static_stiffness for test in twelve()], [forces[test.number] for test in twelve()]
+    )[1]

@@ -5,11 +5,26 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+
 from rockshed.components.common.units import cm, kN, mm
 
 from ..study import Outcomes, Row, Study, verdict
 from .figs10_11 import limit
-from .struck_rod import AREA, DENSITY, DROP, GRAVITY, MASS, QUAKE, SOURCE, SPEED, Traces, closed_form, kappa, reflecting, strike
+from .struck_rod import (
+    AREA,
+    DENSITY,
+    DROP,
+    GRAVITY,
+    MASS,
+    QUAKE,
+    SOURCE,
+    SPEED,
+    Traces,
+    closed_form,
+    kappa,
+    reflecting,
+    strike,
+)
 
 LENGTH, SEGMENTS = 5.0, 1000
 ENERGY = 4762.5
@@ -23,7 +38,9 @@ MODULUS = DENSITY * SPEED**2
 @cache
 def front(parts: int) -> Traces:
     """The front of the wave on its way down."""
-    return strike(LENGTH, SEGMENTS, ("head.contact_force",), 0.9, parts=parts, toe__condition="fixed")
+    return strike(
+        LENGTH, SEGMENTS, ("head.contact_force",), 0.9, parts=parts, toe__condition="fixed"
+    )
 
 
 def overshoot(parts: int) -> float:
@@ -40,8 +57,14 @@ def resistance(segments: int, reflection: float, length: float = 50.0) -> float:
 @cache
 def parted(reflection: float = 0.5) -> Traces:
     """A blow in which hammer and rod separate."""
-    return strike(10.0, SEGMENTS, ("head.contact_force", "ram.speed", "energy.residual"), 6.0, scheme="repaired",
-                  **reflecting(reflection))
+    return strike(
+        10.0,
+        SEGMENTS,
+        ("head.contact_force", "ram.speed", "energy.residual"),
+        6.0,
+        scheme="repaired",
+        **reflecting(reflection),
+    )
 
 
 def rows(found: Outcomes) -> list[Row]:
@@ -54,23 +77,46 @@ def rows(found: Outcomes) -> list[Row]:
     assert time is not None
     assert left is not None
     resting = {n: resistance(n, RESISTING) / kN for n in DIVISIONS}
-    tension, kept = float(np.min(run["head.contact_force"])), np.abs(run["energy.residual"]).max() / run.rod["energy.start"]
+    tension, kept = (
+        float(np.min(run["head.contact_force"])),
+        np.abs(run["energy.residual"]).max() / run.rod["energy.start"],
+    )
     return [
-        Row("table 1: energy of a blow", "kgf cm", ENERGY, computed=MASS * DROP / cm, verdict=verdict(MASS * DROP / cm == ENERGY),
-            note=f"63.5 kg x 75 cm = {MASS * DROP * GRAVITY:.0f} J"),
-        Row("a step smaller than dx/c oscillates: overshoot of the front at dx/c / 5", "1", computed=overshoot(5),
+        Row(
+            "table 1: energy of a blow",
+            "kgf cm",
+            ENERGY,
+            computed=MASS * DROP / cm,
+            verdict=verdict(MASS * DROP / cm == ENERGY),
+            note=f"63.5 kg x 75 cm = {MASS * DROP * GRAVITY:.0f} J",
+        ),
+        Row(
+            "a step smaller than dx/c oscillates: overshoot of the front at dx/c / 5",
+            "1",
+            computed=overshoot(5),
             verdict=verdict(abs(overshoot(1)) < 1e-10 < 0.1 < overshoot(5)),
             note=f"inside the rod yes: at dx/c exact to {abs(overshoot(1)):.0e}. At the toe no: there one spring k2 "
-                 f"diverges at dx/c from k2/k1 = {limit():.2f} on, and a smaller step would be stable"),
-        Row("R_u = k2 Q with k2 = (1 - alpha)/(1 + alpha) k1 changes with the number of segments: R_u with 1,000 over that with 10",
-            "1", computed=resting[1000] / resting[10], verdict=verdict(resting[1000] > 99.0 * resting[10]),
+            f"diverges at dx/c from k2/k1 = {limit():.2f} on, and a smaller step would be stable",
+        ),
+        Row(
+            "R_u = k2 Q with k2 = (1 - alpha)/(1 + alpha) k1 changes with the number of segments: R_u with 1,000 over that with 10",
+            "1",
+            computed=resting[1000] / resting[10],
+            verdict=verdict(resting[1000] > 99.0 * resting[10]),
             note=f"50 m, alpha = {RESISTING:g}, Q = {QUAKE / mm:g} mm (assumed): "
-                 + ", ".join(f"{value:.4g} kN with {n}" for n, value in resting.items())
-                 + ": a resistance of the ground cannot depend on how the rod is divided"),
-        Row("zeroed tension is wrong; hammer and rod must be treated apart after the separation: velocity of the hammer over the "
-            "exact one", "1", 1.0, computed=float(run["ram.speed"][-1] / rebound), verdict=verdict(False),
+            + ", ".join(f"{value:.4g} kN with {n}" for n, value in resting.items())
+            + ": a resistance of the ground cannot depend on how the rod is divided",
+        ),
+        Row(
+            "zeroed tension is wrong; hammer and rod must be treated apart after the separation: velocity of the hammer over the "
+            "exact one",
+            "1",
+            1.0,
+            computed=float(run["ram.speed"][-1] / rebound),
+            verdict=verdict(False),
             note=f"unilateral contact max(0, k C) with the displacements kept is that treatment: smallest force {tension:g} N, "
-                 f"separation at {left / time:.4f} of the exact time, error of the energy {kept:.0e}"),
+            f"separation at {left / time:.4f} of the exact time, error of the energy {kept:.0e}",
+        ),
     ]
 
 
@@ -79,13 +125,20 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     from ...pictures.style import INK, ROCK, TRANSMITTED, WIDTH, captioned
 
     file = folder / "resistance.png"
-    words = (f"Ultimate resistance R_u = k2 Q of Uto et al.'s (6) with k2 from (9), for a rod of 50 m: it grows with the number of "
-             f"segments. Q = {QUAKE / mm:g} mm (assumed). {SOURCE}")
+    words = (
+        f"Ultimate resistance R_u = k2 Q of Uto et al.'s (6) with k2 from (9), for a rod of 50 m: it grows with the number of "
+        f"segments. Q = {QUAKE / mm:g} mm (assumed). {SOURCE}"
+    )
     with captioned([words], file, WIDTH, 3.2) as made:
         axes, segments = made.subplots(), np.array([5, 10, 20, 50, 100, 200, 500, 1000])
         for reflection, colour in ((-0.5, ROCK), (0.0, INK), (0.5, TRANSMITTED)):
-            axes.loglog(segments, [resistance(int(n), reflection) / kN for n in segments], ".-", color=colour,
-                        label=f"alpha = {reflection:g}")
+            axes.loglog(
+                segments,
+                [resistance(int(n), reflection) / kN for n in segments],
+                ".-",
+                color=colour,
+                label=f"alpha = {reflection:g}",
+            )
         axes.set(xlabel="segments", ylabel="R_u (kN)")
         axes.legend()
     return [file]

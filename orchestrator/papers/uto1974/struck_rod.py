@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
 from rockshed.components.common.units import cm, cm2
@@ -65,8 +66,16 @@ def kappa(reflection: float) -> float:
     return (1.0 - reflection) / (1.0 + reflection)
 
 
-def strike(length: float, segments: int, outputs: tuple[str, ...], times: float, scheme: str = "smith", parts: int = 1,
-           ground: int = 1, **parameters: Any) -> Traces:
+def strike(
+    length: float,
+    segments: int,
+    outputs: tuple[str, ...],
+    times: float,
+    scheme: str = "smith",
+    parts: int = 1,
+    ground: int = 1,
+    **parameters: Any,
+) -> Traces:
     """Strike a rod of this length (m) and follow it for a number of travel times.
 
     parts: of the critical step that make a step. ground: segments of the ground as a rod. ``__`` in names stands for a dot.
@@ -86,7 +95,10 @@ def strike(length: float, segments: int, outputs: tuple[str, ...], times: float,
         except ComponentError:
             break
         rows.append([rod[name] for name in outputs])
-    values = {name: np.array(column) for name, column in zip(outputs, zip(*rows, strict=True), strict=True)}
+    values = {
+        name: np.array(column)
+        for name, column in zip(outputs, zip(*rows, strict=True), strict=True)
+    }
     ended = len(rows) == round(times * rod["travel_time"] / step)
     return Traces(np.arange(1, len(rows) + 1) * step, values, rod, ended)
 
@@ -98,4 +110,10 @@ def reflecting(reflection: float) -> dict[str, Any]:
 
 def closed_form(traces: Traces, reflection: float) -> StVenant:
     """St. Venant's solution for the same rod."""
-    return StVenant(MASS, traces.rod["ram.velocity"], traces.rod["head.impedance"], traces.travel_time, reflection)
+    return StVenant(
+        MASS,
+        traces.rod["ram.velocity"],
+        traces.rod["head.impedance"],
+        traces.travel_time,
+        reflection,
+    )

@@ -23,30 +23,51 @@ def shipped() -> dict[str, Material]:
     return {name: Material.model_validate(entry) for name, entry in data.items()}
 
 
-def materials(own: Mapping[str, Material], where: Places, problems: list[Problem]) -> dict[str, Material]:
+def materials(
+    own: Mapping[str, Material], where: Places, problems: list[Problem]
+) -> dict[str, Material]:
     """All materials by name, complete; those of the site come before those that ship."""
     found = dict(shipped())
     for name, given in own.items():
         base = shipped().get(given.like or "")
         if given.like is not None and base is None:
-            problems.append(Problem(where.of(("material", name, "like")), f"there is no material {given.like!r}",
-                                    nearest(given.like, shipped())))
+            problems.append(
+                Problem(
+                    where.of(("material", name, "like")),
+                    f"there is no material {given.like!r}",
+                    nearest(given.like, shipped()),
+                )
+            )
             continue
         made = _completed(given, base)
         missing = [quantity for quantity in QUANTITIES if getattr(made, quantity) is None]
         if missing:
-            problems.append(Problem(where.of(("material", name)), f"material {name} has no {', '.join(missing)}",
-                                    'give them, or name with like = "..." the material that has them'))
+            problems.append(
+                Problem(
+                    where.of(("material", name)),
+                    f"material {name} has no {', '.join(missing)}",
+                    'give them, or name with like = "..." the material that has them',
+                )
+            )
         found[name] = made
     return found
 
 
 def _completed(given: Material, base: Material | None) -> Material:
     """A material with the values of the one it is like, and the sources of all of them."""
-    own = {quantity: getattr(given, quantity) for quantity in QUANTITIES if getattr(given, quantity) is not None}
-    values = {**({quantity: getattr(base, quantity) for quantity in QUANTITIES} if base else {}), **own}
-    source = {**({quantity: source_of(base, quantity) for quantity in QUANTITIES} if base else {}),
-              **{quantity: source_of(given, quantity) or OWN for quantity in own}}
+    own = {
+        quantity: getattr(given, quantity)
+        for quantity in QUANTITIES
+        if getattr(given, quantity) is not None
+    }
+    values = {
+        **({quantity: getattr(base, quantity) for quantity in QUANTITIES} if base else {}),
+        **own,
+    }
+    source = {
+        **({quantity: source_of(base, quantity) for quantity in QUANTITIES} if base else {}),
+        **{quantity: source_of(given, quantity) or OWN for quantity in own},
+    }
     return Material(description=given.description, source=source, **values)
 
 
@@ -69,5 +90,8 @@ def parameters(material: Material) -> dict[str, float]:
 
 def described(material: Material) -> dict[str, Any]:
     """Values and their sources as plain data."""
-    return {"description": material.description, **parameters(material),
-            "source": {quantity: source_of(material, quantity) for quantity in QUANTITIES}}
+    return {
+        "description": material.description,
+        **parameters(material),
+        "source": {quantity: source_of(material, quantity) for quantity in QUANTITIES},
+    }

@@ -1,6 +1,7 @@
 """What the studies of Mogami and Tamura find."""
 
 import pytest
+
 from rockshed.papers.mogami1973 import fits, mass, settlement
 from rockshed.papers.reproduction import reproduce, studies
 from rockshed.papers.study import Outcomes
@@ -30,10 +31,17 @@ def test_the_fits_contradict_the_model():
     assert found["slope of (12), largest / smallest plate"].verdict == "does not"
     assert fits.slope_of_model(400.0) > 1.5 * fits.slope_of_model(100.0)
     assert found["settlement of (12) in (7) / that of (11), 96 tests"].verdict == "does not"
-    assert found["fig. 3: R0, plate of 100 cm²"].computed == pytest.approx(0.5366, rel=1e-3)  # by a pocket calculator
+    assert found["fig. 3: R0, plate of 100 cm²"].computed == pytest.approx(
+        0.5366, rel=1e-3
+    )  # by a pocket calculator
 
 
 def test_reproduction_draws_its_figures(tmp_path):
     assert [study.name for study in studies("mogami1973")] == ["mass", "settlement", "fits"]
     reproduce("mogami1973", tmp_path, workers=1)
-    assert {file.name for file in (tmp_path / "figures").iterdir()} == {"mass.png", "blow.png", "figure3.png", "coefficient.png"}
+    assert {file.name for file in (tmp_path / "figures").iterdir()} == {
+        "mass.png",
+        "blow.png",
+        "figure3.png",
+        "coefficient.png",
+    }

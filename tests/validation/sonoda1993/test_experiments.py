@@ -5,6 +5,7 @@ The calibrated sand was fitted to the paper's computation, not to these measurem
 
 import numpy as np
 import pytest
+
 from rockshed.bench.monolithic import from_system
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as table_2
@@ -22,14 +23,20 @@ def impact(number, **options):
 
 def force_error(number, **options):
     """Relative error of the peak transmitted force against the load cell."""
-    return float(impact(number, **options).column("transmitted_force").max()) / table_2()[number].peak_force - 1.0
+    return (
+        float(impact(number, **options).column("transmitted_force").max())
+        / table_2()[number].peak_force
+        - 1.0
+    )
 
 
 @pytest.mark.parametrize(("number", "error", "energy"), [(4, -0.25, 9.0), (10, -0.12, 22.3)])
 def test_tests_4_and_10_beside_the_experiment(number, error, energy):
     """The paper's two figures: measured 519 and 673 kgf, about 13 and 40 kgf cm."""
     assert force_error(number) == pytest.approx(error, abs=0.02)
-    assert impact(number).column("beam_energy").max() / (kgf * cm) == pytest.approx(energy, rel=0.05)
+    assert impact(number).column("beam_energy").max() / (kgf * cm) == pytest.approx(
+        energy, rel=0.05
+    )
 
 
 def test_mean_error_over_the_twelve_tests_of_box_1():
@@ -44,6 +51,8 @@ def test_the_force_grows_with_the_modulus_like_the_measured_one_but_faster():
     numbers = range(1, 13)
     stiffness = np.log([table_2()[n].static_stiffness for n in numbers])
     measured = np.polyfit(stiffness, np.log([table_2()[n].peak_force for n in numbers]), 1)[0]
-    computed = np.polyfit(stiffness, np.log([impact(n).column("transmitted_force").max() for n in numbers]), 1)[0]
+    computed = np.polyfit(
+        stiffness, np.log([impact(n).column("transmitted_force").max() for n in numbers]), 1
+    )[0]
     assert measured == pytest.approx(0.21, abs=0.01)
     assert measured < computed < 0.4

@@ -1,6 +1,7 @@
 """One contact law for all tests against what was measured: single packings within what single packings scatter."""
 
 import pytest
+
 from rockshed.cases import full_scale, sonoda1993
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.run import simulate
@@ -11,10 +12,16 @@ from rockshed.runs.job import Request, prepare
 @pytest.fixture(scope="module")
 def figures(tmp_path_factory):
     """Headlines of a case with the one law, by name."""
+
     def computed(case, **options):
-        job = prepare(Request(case, coupling="impulse", options=options, model="one-law", in_process=True))
-        run = simulate(job.system, tmp_path_factory.mktemp(case) / "run", sources=job.sources, facts=job.facts)
+        job = prepare(
+            Request(case, coupling="impulse", options=options, model="one-law", in_process=True)
+        )
+        run = simulate(
+            job.system, tmp_path_factory.mktemp(case) / "run", sources=job.sources, facts=job.facts
+        )
         return {figure.name: figure.value for figure in h.headlines(run)}
+
     return computed
 
 
@@ -35,4 +42,6 @@ def test_energy_in_the_girders(figures, span):
     """Table 6: 5.6 and 7.6 percent; elastic lattices give 33 to 40."""
     name = f"girders-{span}"
     known = full_scale.known_of(full_scale.impacts()[name])[h.BEAM_SHARE_FROM_STRAIN].experiment
-    assert figures(name, stop_time=0.16)[h.BEAM_SHARE_FROM_STRAIN] == pytest.approx(known.value, rel=0.4)
+    assert figures(name, stop_time=0.16)[h.BEAM_SHARE_FROM_STRAIN] == pytest.approx(
+        known.value, rel=0.4
+    )

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from rockshed.components.common.units import cm, kgf
 from rockshed.components.sand_cushion import COMPONENT
 
@@ -12,8 +13,14 @@ EXCHANGE = 0.01
 def loads(modulus, **options):
     """Load (N) on the ball at every 0.1 mm down to 4 cm, for E_bar in kgf/cm2."""
     sand = COMPONENT.instance()
-    for name, value in {"base": "floor", "modulus": modulus * kgf / cm ** 2, "internal_step": 6e-5, "kinematics": "linear",
-                        "forces": "mean", **options}.items():
+    for name, value in {
+        "base": "floor",
+        "modulus": modulus * kgf / cm**2,
+        "internal_step": 6e-5,
+        "kinematics": "linear",
+        "forces": "mean",
+        **options,
+    }.items():
         sand[name] = value
     sand.initialise()
     start = sand["surface_height"] + sand["rock.radius"]
@@ -29,7 +36,7 @@ def loads(modulus, **options):
 def secant(load, modulus, depth):
     """k / E_bar (kgf/cm / (kgf/cm2)) at a depth in cm, the load averaged over the last half millimetre."""
     at = round(depth * cm / SPEED / EXCHANGE)
-    return load[at - 5:at].mean() / kgf / depth / modulus
+    return load[at - 5 : at].mean() / kgf / depth / modulus
 
 
 def test_spring_constant_is_proportional_to_the_modulus():

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+
 from rockshed.papers.reproduction import reproduce, studies
 from rockshed.papers.study import Outcomes
 from rockshed.papers.ushiro.figure7 import BASE, SPEEDS, STUDY, TREATMENTS, VARIATIONS
@@ -17,11 +18,15 @@ def rows():
 def test_all_its_claims_hold_but_the_one_on_epsilon(rows, model):
     verdicts = {quantity: row.verdict for (name, quantity), row in rows.items() if name == model}
     assert len(verdicts) == 6
-    assert [quantity for quantity, found in verdicts.items() if found != "holds"] == ["ε is about e at v1 ≈ 0"]
+    assert [quantity for quantity, found in verdicts.items() if found != "holds"] == [
+        "ε is about e at v1 ≈ 0"
+    ]
 
 
 def test_without_gravity_slow_impacts_have_the_root_of_epsilon(rows):
-    assert rows["none", "ε is about e at v1 ≈ 0"].computed == pytest.approx(math.sqrt(0.6), rel=1e-3)
+    assert rows["none", "ε is about e at v1 ≈ 0"].computed == pytest.approx(
+        math.sqrt(0.6), rel=1e-3
+    )
     assert rows["printed", "ε is about e at v1 ≈ 0"].computed == 0.0
 
 
@@ -32,7 +37,9 @@ def test_a_curve_against_a_sample_integrated_by_hand():
     force = 3e6 * area * (1.0 - math.exp(-1.0))
     speed = math.sqrt(2.0 * work / mass)
     released = 0.6 * force**2 / (2.0 * 30e6 * area)
-    assert BASE.restitution(speed, TREATMENTS["none"]) == pytest.approx(math.sqrt(released / work), rel=1e-12)
+    assert BASE.restitution(speed, TREATMENTS["none"]) == pytest.approx(
+        math.sqrt(released / work), rel=1e-12
+    )
 
 
 def test_reproduction_writes_the_figure(tmp_path):

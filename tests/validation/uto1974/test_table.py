@@ -3,6 +3,7 @@
 import json
 
 import pytest
+
 from rockshed.papers.reproduction import reproduce, studies
 from rockshed.papers.uto1974.struck_rod import alpha, kappa
 
@@ -14,7 +15,9 @@ def made(tmp_path_factory):
 
 
 def row(made, beginning):
-    rows = [row for part in made[0].parts for row in part.rows if row.quantity.startswith(beginning)]
+    rows = [
+        row for part in made[0].parts for row in part.rows if row.quantity.startswith(beginning)
+    ]
     assert len(rows) == 1, [r.quantity for r in rows]
     return rows[0]
 
@@ -49,19 +52,35 @@ def test_a_claim_has_its_verdict_and_its_number(made, beginning):
 
 def test_the_measured_rod_has_its_times_and_says_what_is_assumed(made):
     assert row(made, "fig. 7: the front passes").computed == pytest.approx(2.58 / 5.12, abs=0.005)
-    assert row(made, "fig. 7: it comes back").computed == pytest.approx((2.58 + 2.0 * 31.36) / 5.12, abs=0.005)
-    assert row(made, "fig. 7: largest stress").computed == pytest.approx(7850 * 5120 * (2 * 9.80665 * 0.75) ** 0.5 / 1e6, rel=0.002)
+    assert row(made, "fig. 7: it comes back").computed == pytest.approx(
+        (2.58 + 2.0 * 31.36) / 5.12, abs=0.005
+    )
+    assert row(made, "fig. 7: largest stress").computed == pytest.approx(
+        7850 * 5120 * (2 * 9.80665 * 0.75) ** 0.5 / 1e6, rel=0.002
+    )
     assert "assumed" in row(made, "fig. 7: ultimate resistance").note
 
 
 def test_files_of_the_reproduction(made):
     figures = {file.stem for file in (made[1] / "figures").iterdir()}
-    assert figures == {"figure6", "figure7", "figure8", "figure10", "figure11", "figure13", "resistance"}
-    assert [study["name"] for study in json.loads((made[1] / "reproduction.json").read_text())["studies"]] == [
-        "claims", "figure6", "figure7", "figure8", "figures10-11", "figure13"]
+    assert figures == {
+        "figure6",
+        "figure7",
+        "figure8",
+        "figure10",
+        "figure11",
+        "figure13",
+        "resistance",
+    }
+    assert [
+        study["name"]
+        for study in json.loads((made[1] / "reproduction.json").read_text())["studies"]
+    ] == ["claims", "figure6", "figure7", "figure8", "figures10-11", "figure13"]
     assert len(studies("uto1974")) == 6
 
 
 def test_reflection_and_ratio_of_impedances_are_inverse_to_each_other():
-    assert [kappa(value) for value in (-2.0 / 3.0, -1.0 / 3.0, 0.0, 0.5)] == pytest.approx([5.0, 2.0, 1.0, 1.0 / 3.0])
+    assert [kappa(value) for value in (-2.0 / 3.0, -1.0 / 3.0, 0.0, 0.5)] == pytest.approx(
+        [5.0, 2.0, 1.0, 1.0 / 3.0]
+    )
     assert alpha(kappa(0.3)) == pytest.approx(0.3)

@@ -15,8 +15,10 @@ COMPONENT = Component(
     step=kernel.step,
     folder=Path(__file__).parent,
     sizes={"tanks": Size(3, 1, 50, "number of tanks")},
-    faults={kernel.OVERFLOW: "a tank overflows above the level {limit} m: raise limit or reduce inflow",
-            kernel.INFLOW_AT_START: "inflow {inflow} m/s at the start exceeds the limit {limit} m: reduce inflow"},
+    faults={
+        kernel.OVERFLOW: "a tank overflows above the level {limit} m: raise limit or reduce inflow",
+        kernel.INFLOW_AT_START: "inflow {inflow} m/s at the start exceeds the limit {limit} m: reduce inflow",
+    },
     default_step=0.01,
     default_stop_time=1.0,
 )

@@ -12,7 +12,11 @@ OVERFLOW, INFLOW_AT_START = 1, 2
 
 @kernel
 def show(w, x, k):
-    levels, hidden, counts = view(w, k, A.level), view(x, k, A.hidden_level), view(k, k, A.hidden_count)
+    levels, hidden, counts = (
+        view(w, k, A.level),
+        view(x, k, A.hidden_level),
+        view(k, k, A.hidden_count),
+    )
     for i in range(len(levels)):
         levels[i] = hidden[i]
     w[V.count], w[V.initialisations] = counts[0], counts[1]
@@ -20,7 +24,11 @@ def show(w, x, k):
 
 @kernel
 def initialise(w, x, k):
-    start, hidden, counts = view(w, k, A.level0), view(x, k, A.hidden_level), view(k, k, A.hidden_count)
+    start, hidden, counts = (
+        view(w, k, A.level0),
+        view(x, k, A.hidden_level),
+        view(k, k, A.hidden_count),
+    )
     for i in range(len(start)):
         hidden[i] = start[i]
     counts[0] = int(w[V.first_count])
@@ -38,7 +46,11 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    hidden, extra, counts = view(x, k, A.hidden_level), view(w, k, A.extra), view(k, k, A.hidden_count)
+    hidden, extra, counts = (
+        view(x, k, A.hidden_level),
+        view(w, k, A.extra),
+        view(k, k, A.hidden_count),
+    )
     w[V.flow] = w[V.valve] * w[V.inflow]
     for i in range(len(hidden)):
         leak = hidden[i] if w[V.leak] == 2.0 else 0.0
