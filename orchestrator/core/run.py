@@ -15,10 +15,11 @@ from .loop.exchange import State, make_driver
 from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Master, Progress
+from .results.metric import Metric
 from .results.provenance import describe_run
 from .results.reading import Run, read_run
 from .results.recording import Recorder
-from .results.run_folder import Figure, RunFolder
+from .results.run_folder import RunFolder
 from .system.clock import to_seconds
 from .system.plan import Plan, make_plan
 from .system.system import System
@@ -124,19 +125,19 @@ class _Session:
         if failure is not None:
             raise failure
 
-    def _figures(self) -> list[Figure]:
-        timing, figures = self.plan.timing, list[Figure]()
+    def _figures(self) -> list[Metric]:
+        timing, figures = self.plan.timing, list[Metric]()
         for entry in self.watched:
             end = self.plan.outputs[entry["place"]]
             for which, bound in (("maximum", "high"), ("minimum", "low")):
                 figures += [
-                    Figure(f"{end.name} {which}", float(entry[bound]), end.port.unit_name),
-                    Figure(
+                    Metric(f"{end.name} {which}", float(entry[bound]), end.port.unit_name),
+                    Metric(
                         f"{end.name} {which} at", timing.seconds(int(entry[bound + "_at"])), "s"
                     ),
                 ]
             figures.append(
-                Figure(
+                Metric(
                     f"{end.name} integral",
                     float(entry["area"]) * to_seconds(timing.exchange),
                     "s" if end.port.unit_name == "1" else f"{end.port.unit_name}.s",
@@ -146,9 +147,9 @@ class _Session:
         return [
             *figures,
             *self.accounts.figures(),
-            Figure("simulated time", simulated, "s"),
-            Figure("exchanges", self.master.exchanges),
-            Figure("wall time of the exchanges", self.master.wall_time, "s"),
+            Metric("simulated time", simulated, "s"),
+            Metric("exchanges", self.master.exchanges),
+            Metric("wall time of the exchanges", self.master.wall_time, "s"),
         ]
 
     def close(self) -> None:

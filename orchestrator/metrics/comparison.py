@@ -11,8 +11,8 @@ from rockshed.components.common.units import cm, kgf, kN, mm, ms
 from ..cases.registry import changes_of, references_of
 from ..cases.sand_models import model_of
 from ..commands.screen import plain_table
+from ..core.results.metric import Beside, Metric
 from ..core.results.reading import Run
-from ..core.results.run_folder import Beside, Figure
 from . import headlines as h
 
 
@@ -91,7 +91,7 @@ def known_of(run: Run) -> Mapping[str, h.Known]:
     return {} if h.still_sinking(run) else references_of(run.provenance).known
 
 
-def figures(run: Run, known: Mapping[str, h.Known]) -> list[Figure]:
+def figures(run: Run, known: Mapping[str, h.Known]) -> list[Metric]:
     """Every headline figure of a run, with what others found for it."""
     return [
         replace(
@@ -147,7 +147,7 @@ def _piles(run: Run) -> Iterator[Row]:
             yield from _rows(figure.name, _OF_PILES[what], figure)
 
 
-def _rows(label: str, scales: tuple[Scale, ...], figure: Figure) -> Iterator[Row]:
+def _rows(label: str, scales: tuple[Scale, ...], figure: Metric) -> Iterator[Row]:
     """One row for each unit; the deviations stand in the first."""
     for number, scale in enumerate(scales):
         first = number == 0

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ..core.results.run_folder import Figure
+from ..core.results.metric import Metric
 
 if TYPE_CHECKING:
     import numpy as np
@@ -205,48 +205,48 @@ def beam_energies(run: "Run") -> tuple[float | None, float | None]:
     )
 
 
-def headlines(run: "Run") -> list[Figure]:
+def headlines(run: "Run") -> list[Metric]:
     """Every headline figure that the results give."""
     forces = _static(run) if driven(run) else [*_forces(run), *_load_cell(run), *_settled(run)]
     return [*forces, *_cushion(run), *_beam(run), *_piles(run), *_energy(run)]
 
 
-def _static(run: "Run") -> Iterator[Figure]:
+def _static(run: "Run") -> Iterator[Metric]:
     """Load and secant spring constant at 4 cm."""
     from .load_curve import DEPTH, load_curve
 
     curve, work = load_curve(run.series, str(roles(run).sand)), machine_work(run)
     if curve is not None and curve.reaches(DEPTH):
         load = float(curve.at(DEPTH))
-        yield Figure(STATIC_LOAD, load, "N")
-        yield Figure(STATIC_STIFFNESS, load / DEPTH, "N/m")
-        yield Figure(STATIC_DEPARTURE, curve.departure(DEPTH))
+        yield Metric(STATIC_LOAD, load, "N")
+        yield Metric(STATIC_STIFFNESS, load / DEPTH, "N/m")
+        yield Metric(STATIC_DEPARTURE, curve.departure(DEPTH))
     if work is not None:
-        yield Figure(MACHINE_WORK, float(work[-1]), "J")
+        yield Metric(MACHINE_WORK, float(work[-1]), "J")
         residual = system_residual(run)
         if residual is not None and work[-1]:
-            yield Figure(RESIDUAL_WORK_SHARE, float(max(residual, key=abs)) / float(work[-1]))
+            yield Metric(RESIDUAL_WORK_SHARE, float(max(residual, key=abs)) / float(work[-1]))
 
 
-def _forces(run: "Run") -> Iterator[Figure]:
+def _forces(run: "Run") -> Iterator[Metric]:
     sand = roles(run).sand
     transmitted, rock = f"{sand}.transmitted_force", f"{sand}.rock.force.y"
     if transmitted not in run.series or rock not in run.series:
         return
     (peak, peak_at), (on_rock, on_rock_at) = extreme(run, transmitted), extreme(run, rock)
-    yield Figure(PEAK_TRANSMITTED, peak, "N")
-    yield Figure(PEAK_TRANSMITTED_AT, peak_at, "s")
-    yield Figure(PEAK_ROCK, on_rock, "N")
-    yield Figure(PEAK_ROCK_AT, on_rock_at, "s")
+    yield Metric(PEAK_TRANSMITTED, peak, "N")
+    yield Metric(PEAK_TRANSMITTED_AT, peak_at, "s")
+    yield Metric(PEAK_ROCK, on_rock, "N")
+    yield Metric(PEAK_ROCK_AT, on_rock_at, "s")
     if on_rock > 0.0:
-        yield Figure(RATIO, peak / on_rock)
+        yield Metric(RATIO, peak / on_rock)
     time, force = run.series["time"], run.series[rock]
-    yield Figure(IMPULSE_ROCK, integral(run, rock), "N.s")
+    yield Metric(IMPULSE_ROCK, integral(run, rock), "N.s")
     at_rest = float(run.series[transmitted][0]) * float(time[-1] - time[0])
-    yield Figure(IMPULSE_TRANSMITTED, integral(run, transmitted) - at_rest, "N.s")
+    yield Metric(IMPULSE_TRANSMITTED, integral(run, transmitted) - at_rest, "N.s")
     touching = time[force > CONTACT_SHARE * on_rock]
     if touching.size:
-        yield Figure(DURATION, float(touching[-1] - touching[0]), "s")
+        yield Metric(DURATION, float(touching[-1] - touching[0]), "s")
 
 
 def cut_off(run: "Run") -> float:
@@ -286,16 +286,16 @@ def load_cell(
     return shown
 
 
-def _load_cell(run: "Run") -> Iterator[Figure]:
+def _load_cell(run: "Run") -> Iterator[Metric]:
     """Peak through the load cell that the run was asked to have."""
     cut_off, column = run.provenance.get("load_cell"), f"{roles(run).sand}.transmitted_force"
     if cut_off and column in run.series and run.series["time"].size > 1:
-        yield Figure(
+        yield Metric(
             PEAK_LOAD_CELL,
             float(load_cell(run.series["time"], run.series[column], cut_off).max()),
             "N",
         )
-        yield Figure(LOAD_CELL_CUT_OFF, cut_off, "1/s")
+        yield Metric(LOAD_CELL_CUT_OFF, cut_off, "1/s")
 
 
 def settled(run: "Run", column: str) -> "NDArray[np.float64] | None":
@@ -330,17 +330,17 @@ def low_pass(
     return np.interp(time, even, filtered)
 
 
-def _settled(run: "Run") -> Iterator[Figure]:
+def _settled(run: "Run") -> Iterator[Metric]:
     columns = [f"{roles(run).sand}.{output}" for output in ("transmitted_force", "rock.force.y")]
     curves = [settled(run, column) for column in columns if column in run.series]
     if len(curves) < len(columns) or any(curve is None for curve in curves):
         return
     transmitted, rock = (float(curve.max()) for curve in curves if curve is not None)
-    yield Figure(SETTLED_TRANSMITTED, transmitted, "N")
-    yield Figure(SETTLED_ROCK, rock, "N")
+    yield Metric(SETTLED_TRANSMITTED, transmitted, "N")
+    yield Metric(SETTLED_ROCK, rock, "N")
     if rock > 0.0:
-        yield Figure(SETTLED_RATIO, transmitted / rock)
-    yield Figure(SETTLED_CUT_OFF, cut_off(run), "1/s")
+        yield Metric(SETTLED_RATIO, transmitted / rock)
+    yield Metric(SETTLED_CUT_OFF, cut_off(run), "1/s")
 
 
 def still_in_contact(run: "Run") -> bool:
@@ -374,14 +374,14 @@ def integral(run: "Run", column: str) -> float:
     return float((0.5 * (values[1:] + values[:-1]) * (time[1:] - time[:-1])).sum())
 
 
-def _cushion(run: "Run") -> Iterator[Figure]:
+def _cushion(run: "Run") -> Iterator[Metric]:
     sand = roles(run).sand
     if f"{sand}.penetration" not in run.series:
         return
     depth, _ = extreme(run, f"{sand}.penetration")
-    yield Figure(PENETRATION, depth, "m")
+    yield Metric(PENETRATION, depth, "m")
     if sand and f"{sand}.surface_height" in run.series:
-        yield Figure(
+        yield Metric(
             CLEARANCE,
             float(run.series[f"{sand}.surface_height"][0]) - base_height(run) - depth,
             "m",
@@ -404,13 +404,13 @@ def base_height(run: "Run") -> float:
     return float(max(tops, default=0.0)) + float(sand["parameters"]["beam.radius"]["value"])
 
 
-def _beam(run: "Run") -> Iterator[Figure]:
+def _beam(run: "Run") -> Iterator[Metric]:
     column = f"{roles(run).beam}.midspan.deflection"
     if column in run.series:
-        yield Figure(DEFLECTION, extreme(run, column)[0], "m")
+        yield Metric(DEFLECTION, extreme(run, column)[0], "m")
     for name, energy in zip((BEAM_ENERGY, BEAM_ENERGY_FROM_STRAIN), beam_energies(run)):
         if energy is not None:
-            yield Figure(name, energy, "J")
+            yield Metric(name, energy, "J")
 
 
 HEAD_FORCE, TOE_FORCE = "largest force at the head", "largest force at the toe"
@@ -423,43 +423,43 @@ def pile_figure(component: str, what: str) -> str:
     return f"{component}: {what}"
 
 
-def _piles(run: "Run") -> Iterator[Figure]:
+def _piles(run: "Run") -> Iterator[Metric]:
     """Rods and grounds, each under its own name."""
     series = run.series
     for rod in named(run, "PileRod"):
         for what, column in ((HEAD_FORCE, "head.contact_force"), (TOE_FORCE, "toe.contact_force")):
             if f"{rod}.{column}" in series:
-                yield Figure(pile_figure(rod, what), extreme(run, f"{rod}.{column}")[0], "N")
+                yield Metric(pile_figure(rod, what), extreme(run, f"{rod}.{column}")[0], "N")
         for what, column in ((COMPRESSION, "stress.compression"), (TENSION, "stress.tension")):
             values = [
                 float(series[name][-1]) for name in series if name.startswith(f"{rod}.{column}[")
             ]
             if values:
-                yield Figure(pile_figure(rod, what), max(values), "Pa")
+                yield Metric(pile_figure(rod, what), max(values), "Pa")
         if f"{rod}.energy.transferred" in series:
-            yield Figure(
+            yield Metric(
                 pile_figure(rod, TRANSFERRED), float(series[f"{rod}.energy.transferred"][-1]), "J"
             )
     for ground in named(run, "ImpulsiveGround"):
         if f"{ground}.settlement" in series:
-            yield Figure(
+            yield Metric(
                 pile_figure(ground, SETTLEMENT), extreme(run, f"{ground}.settlement")[0], "m"
             )
         if f"{ground}.permanent_set" in series:
-            yield Figure(
+            yield Metric(
                 pile_figure(ground, SET), float(series[f"{ground}.permanent_set"][-1]), "m"
             )
 
 
-def _energy(run: "Run") -> Iterator[Figure]:
+def _energy(run: "Run") -> Iterator[Metric]:
     impact, residual = impact_energy(run), system_residual(run)
     if impact is not None:
-        yield Figure(IMPACT_ENERGY, impact, "J")
+        yield Metric(IMPACT_ENERGY, impact, "J")
     if residual is not None:
-        yield Figure(RESIDUAL, float(max(residual, key=abs)), "J")
+        yield Metric(RESIDUAL, float(max(residual, key=abs)), "J")
     if impact:
         if residual is not None:
-            yield Figure(RESIDUAL_SHARE, float(max(residual, key=abs)) / impact)
+            yield Metric(RESIDUAL_SHARE, float(max(residual, key=abs)) / impact)
         for name, energy in zip((BEAM_SHARE, BEAM_SHARE_FROM_STRAIN), beam_energies(run)):
             if energy is not None:
-                yield Figure(name, energy / impact)
+                yield Metric(name, energy / impact)

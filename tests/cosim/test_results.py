@@ -12,8 +12,9 @@ import pytest
 from fmpy.util import read_csv
 
 from rockshed.core.errors import InputRefused
+from rockshed.core.results.metric import Metric
 from rockshed.core.results.reading import add_figures, read_run
-from rockshed.core.results.run_folder import Column, Figure, RunFolder, running_folder
+from rockshed.core.results.run_folder import Column, RunFolder, running_folder
 from rockshed.core.run import simulate
 from tests.cosim.mocks import Mock, mass, out, spring, wired
 
@@ -84,7 +85,7 @@ def test_the_provenance_tells_what_was_run(result):
 
 
 def test_figures_can_be_added_and_replaced(result):
-    add_figures(result.folder, [Figure("mine", 1.5, "kN"), Figure("exchanges", 7)])
+    add_figures(result.folder, [Metric("mine", 1.5, "kN"), Metric("exchanges", 7)])
     again = read_run(result.folder)
     assert (
         again.figure("mine").value,

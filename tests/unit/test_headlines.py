@@ -8,8 +8,8 @@ import pytest
 from rockshed.cases import sonoda1993
 from rockshed.cases.registry import case, cases, changes_of, references_of
 from rockshed.core.errors import InputRefused
+from rockshed.core.results.metric import Metric
 from rockshed.core.results.reading import Run
-from rockshed.core.results.run_folder import Figure
 from rockshed.metrics import comparison
 from rockshed.metrics import headlines as h
 from rockshed.runs.job import Request, prepare
@@ -98,8 +98,8 @@ def test_peaks_impulse_and_duration_of_a_half_sine():
 def test_extremes_over_all_exchanges_go_before_those_of_the_rows():
     run = made_up(
         summary=[
-            Figure("sand.rock.force.y maximum", 1234.0, "N"),
-            Figure("sand.rock.force.y maximum at", 0.0049, "s"),
+            Metric("sand.rock.force.y maximum", 1234.0, "N"),
+            Metric("sand.rock.force.y maximum at", 0.0049, "s"),
         ]
     )
     assert figure(run, h.PEAK_ROCK) == 1234.0

@@ -6,7 +6,8 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...core.results.run_folder import Figure, RunFolder
+from ...core.results.metric import Metric
+from ...core.results.run_folder import RunFolder
 from .blows import Blow, Done, bearing_graph, drive
 from .preparation import Prepared
 from .results import write
@@ -22,7 +23,7 @@ class Finished:
     blows: Sequence[Blow]
     graph: Sequence[Blow]
     wall_time: float
-    figures: Sequence[Figure]
+    figures: Sequence[Metric]
     pictures: Sequence[Path]
 
 

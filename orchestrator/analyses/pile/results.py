@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from ...core.results.columns import Column, result_column, result_table
-from ...core.results.run_folder import RUN, SUMMARY, Figure, write_json
+from ...core.results.metric import Metric
+from ...core.results.run_folder import RUN, SUMMARY, write_json
 from .blows import TRACES, Blow, blow_figures
 from .preparation import Prepared
 
@@ -37,15 +38,15 @@ _WORDS = {
 }
 
 
-def figures(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow]) -> list[Figure]:
+def figures(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow]) -> list[Metric]:
     """The summary: every blow, and the whole."""
     found = [
-        Figure("blows", len(blows)),
-        Figure("rated_energy", made.rated_energy, "J"),
-        Figure("impact_energy", blows[0].impact_energy, "J"),
-        Figure("resistance", made.resistance, "N"),
-        Figure("travel_time", made.travel_time, "s"),
-        Figure("penetration", sum(blow.set for blow in blows), "m"),
+        Metric("blows", len(blows)),
+        Metric("rated_energy", made.rated_energy, "J"),
+        Metric("impact_energy", blows[0].impact_energy, "J"),
+        Metric("resistance", made.resistance, "N"),
+        Metric("travel_time", made.travel_time, "s"),
+        Metric("penetration", sum(blow.set for blow in blows), "m"),
     ]
     for number, blow in enumerate(blows):
         found += _figures(f"blow.{number + 1}", made, blow)
@@ -54,15 +55,15 @@ def figures(made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow]) -> lis
     return found
 
 
-def _figures(prefix: str, made: Prepared, blow: Blow) -> Iterator[Figure]:
+def _figures(prefix: str, made: Prepared, blow: Blow) -> Iterator[Metric]:
     for name, value, unit in blow_figures(made, blow):
         if value is not None:
-            yield Figure(f"{prefix}.{name}", value, unit)
+            yield Metric(f"{prefix}.{name}", value, unit)
 
 
 def write(
     made: Prepared, blows: Sequence[Blow], graph: Sequence[Blow], folder: Path, wall_time: float
-) -> list[Figure]:
+) -> list[Metric]:
     """All files except the pictures; ``run.json`` comes last. Returns the summary."""
     import pyarrow.csv
     import pyarrow.parquet

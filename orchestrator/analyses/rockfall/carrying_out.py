@@ -6,7 +6,8 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...core.results.run_folder import Figure, RunFolder
+from ...core.results.metric import Metric
+from ...core.results.run_folder import RunFolder
 from .campaign import Crew, Done
 from .preparation import Prepared
 from .replay import check
@@ -22,7 +23,7 @@ class Finished:
     folder: Path
     trials: int
     wall_time: float
-    figures: Sequence[Figure]
+    figures: Sequence[Metric]
     passings: Sequence[Passing]
     pictures: Sequence[Path]
 

@@ -33,7 +33,8 @@ from rockshed.components.slope_rockfall.trajectory import (
 )
 
 from ...core.results.columns import result_column, result_table
-from ...core.results.run_folder import RUN, SUMMARY, Figure, write_json
+from ...core.results.metric import Metric
+from ...core.results.run_folder import RUN, SUMMARY, write_json
 from ...sites.rockfall.materials import described
 from ...sites.rockfall.profile import surface
 from .campaign import Campaign, Records
@@ -131,19 +132,19 @@ def _barrier(
 # --- figures ---
 
 
-def figures(given: Campaign, records: Records, passed: Sequence[Passing]) -> list[Figure]:
+def figures(given: Campaign, records: Records, passed: Sequence[Passing]) -> list[Metric]:
     """The summary: how trials end, and every line and barrier with percentiles and their intervals."""
     ends = records.outcomes[:, OUTCOME.end].astype(int)
     found = [
-        Figure("trials", given.trials),
+        Metric("trials", given.trials),
         *(
-            Figure(f"end.{words.replace(' ', '_')}", int((ends == code).sum()))
+            Metric(f"end.{words.replace(' ', '_')}", int((ends == code).sum()))
             for code, words in ENDS.items()
         ),
-        Figure("events", int(records.outcomes[:, OUTCOME.events].sum())),
+        Metric("events", int(records.outcomes[:, OUTCOME.events].sum())),
     ]
     found += [
-        Figure(f"largest.{name}", float(records.outcomes[:, column].max()), unit)
+        Metric(f"largest.{name}", float(records.outcomes[:, column].max()), unit)
         for name, column, unit in (
             ("height", OUTCOME.height, "m"),
             ("speed", OUTCOME.speed, "m/s"),
@@ -155,29 +156,29 @@ def figures(given: Campaign, records: Records, passed: Sequence[Passing]) -> lis
     return found
 
 
-def _figures_of(passing: Passing) -> Iterator[Figure]:
+def _figures_of(passing: Passing) -> Iterator[Metric]:
     prefix = f"{'line' if passing.barrier is None else 'barrier'}.{passing.name}"
-    yield Figure(f"{prefix}.passing", passing.count)
+    yield Metric(f"{prefix}.passing", passing.count)
     yield from (
-        Figure(f"{prefix}.share{end}", value)
+        Metric(f"{prefix}.share{end}", value)
         for end, value in (("", passing.share), (".low", passing.low), (".high", passing.high))
     )
     yield from (
-        Figure(f"{prefix}.{name}", number) for name, number in (passing.barrier or {}).items()
+        Metric(f"{prefix}.{name}", number) for name, number in (passing.barrier or {}).items()
     )
     for quantity in QUANTITIES:
         values = passing.values[quantity.name]
         if not len(values):
             continue
-        yield Figure(f"{prefix}.{quantity.name}.mean", float(values.mean()), quantity.unit)
+        yield Metric(f"{prefix}.{quantity.name}.mean", float(values.mean()), quantity.unit)
         if len(values) > 1:
-            yield Figure(
+            yield Metric(
                 f"{prefix}.{quantity.name}.deviation", float(values.std(ddof=1)), quantity.unit
             )
         for found in passing.percentiles(quantity.name):
             name = f"{prefix}.{quantity.name}.p{100 * found.share:.0f}"
             yield from (
-                Figure(f"{name}{end}", value, quantity.unit)
+                Metric(f"{name}{end}", value, quantity.unit)
                 for end, value in (("", found.value), (".low", found.low), (".high", found.high))
                 if value is not None
             )
@@ -199,7 +200,7 @@ def write(
     folder: Path,
     wall_time: float,
     crew: Mapping[str, Any],
-) -> list[Figure]:
+) -> list[Metric]:
     """All files except the pictures; ``run.json`` comes last, with the facts of the crew. Returns the summary."""
     import pyarrow.csv
     import pyarrow.parquet

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from ..errors import RunFailed
 from ..fmu.slave import WARNING, Slave
-from ..results.run_folder import Column, Figure
+from ..results.metric import Metric
+from ..results.run_folder import Column
 from ..system.plan import End, Plan
 from .exchange import State
 
@@ -80,10 +81,10 @@ class Accounts:
         self._newest = found[-1]
         return found
 
-    def figures(self) -> list[Figure]:
+    def figures(self) -> list[Metric]:
         """The newest values, for the summary."""
         return [
-            Figure(column.name, float(value), column.unit)
+            Metric(column.name, float(value), column.unit)
             for column, value in zip(self.described, self._newest)
         ]
 

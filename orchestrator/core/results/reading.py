@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused, Problem
+from .metric import Metric
 from .run_folder import (
     COLUMNS,
     PARQUET,
@@ -20,7 +21,6 @@ from .run_folder import (
     STATES_STREAM,
     SUMMARY,
     Column,
-    Figure,
     batches,
     read_columns,
     running_folder,
@@ -39,7 +39,7 @@ class Run:
 
     folder: Path
     provenance: Mapping[str, Any]
-    summary: Sequence[Figure]
+    summary: Sequence[Metric]
     columns: Sequence[Column]
     series: Mapping[str, NDArray[np.float64]]
 
@@ -48,7 +48,7 @@ class Run:
         """Complete, interrupted, failed or running."""
         return str(self.provenance["status"])
 
-    def figure(self, name: str) -> Figure:
+    def figure(self, name: str) -> Metric:
         """The figure of the summary with this name."""
         return next(figure for figure in self.summary if figure.name == name)
 
@@ -110,7 +110,7 @@ def read_run(folder: Path) -> Run:
     with _undamaged(found / SUMMARY):
         summary = (
             [
-                Figure.from_entry(entry)
+                Metric.from_entry(entry)
                 for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
             ]
             if (found / SUMMARY).is_file()
@@ -151,7 +151,7 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
         return {column.name: table[column.name].to_numpy() for column in columns}
 
 
-def add_figures(folder: Path, figures: Sequence[Figure]) -> None:
+def add_figures(folder: Path, figures: Sequence[Metric]) -> None:
     """Add figures to the summary of a finished run; one with a name that is there already replaces it."""
     path = folder / SUMMARY
     present = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}

@@ -19,7 +19,7 @@ import json
 import os
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
@@ -30,6 +30,7 @@ from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from ..errors import InputRefused, Problem
+from .metric import Metric
 
 RUN, SUMMARY, COLUMNS = "run.json", "summary.json", "columns.csv"
 PARQUET, CSV, STATES = "timeseries.parquet", "timeseries.csv", "states.h5"
@@ -43,42 +44,6 @@ class Column:
     name: str
     unit: str
     description: str = ""
-
-
-@dataclass(frozen=True)
-class Beside:
-    """What another source gives for a figure: its value, by how much the figure deviates (figure / value - 1), how it was found."""
-
-    value: float
-    deviation: float
-    note: str = ""
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A headline figure of the summary. references: what others found, by who found it."""
-
-    name: str
-    value: float | int | str
-    unit: str = "1"
-    references: Mapping[str, Beside] = field(default_factory=dict)
-
-    def as_entry(self) -> dict[str, Any]:
-        """As plain data; references only where there are any."""
-        return {key: value for key, value in asdict(self).items() if key != "references" or value}
-
-    @classmethod
-    def from_entry(cls, entry: Mapping[str, Any]) -> "Figure":
-        """The figure in an entry of a summary; what other programs have added to the entry is passed over.
-
-        Raises:
-            KeyError, TypeError: it is no entry of a summary.
-        """
-        references = {
-            who: Beside(found["value"], found["deviation"], found.get("note", ""))
-            for who, found in entry.get("references", {}).items()
-        }
-        return cls(entry["name"], entry["value"], entry.get("unit", "1"), references)
 
 
 class RunFolder:
@@ -191,13 +156,13 @@ class RunFolder:
 
     # ------------------------------------------------------------------ at the end
 
-    def finish(self, status: str, figures: Sequence[Figure], **facts: Any) -> None:
+    def finish(self, status: str, figures: Sequence[Metric], **facts: Any) -> None:
         """Write the final files and put them in the place of the folder. ``facts`` are added to the provenance."""
         for stream in filter(None, (self._rows, self._states)):
             stream.close()
         self.complete(status, figures, **facts)
 
-    def complete(self, status: str, figures: Sequence[Figure], **facts: Any) -> None:
+    def complete(self, status: str, figures: Sequence[Metric], **facts: Any) -> None:
         """Turn streams, which may have been cut off, into the final files, and put them in the place of the folder."""
         write_json(self.running / SUMMARY, [figure.as_entry() for figure in figures])
         _convert_rows(self.running, self.columns)
