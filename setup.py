@@ -1,14 +1,17 @@
-"""One package from three folders: ``rockshed`` is orchestrator/, with components/ and fmus/ as rooms of it."""
+"""Build one package from three folders of the repository.
+
+``rockshed`` is the folder orchestrator/; components/ and fmus/ are subpackages of it.
+"""
 
 from setuptools import find_packages, setup
 
-ROOMS = {"rockshed": "orchestrator", "rockshed.components": "components", "rockshed.fmus": "fmus"}
+FOLDERS = {"rockshed": "orchestrator", "rockshed.components": "components", "rockshed.fmus": "fmus"}
 
 setup(
-    package_dir=ROOMS,
+    package_dir=FOLDERS,
     packages=[
-        f"{room}{'.' if name else ''}{name}"
-        for room, folder in ROOMS.items()
+        ".".join(filter(None, (package, name)))
+        for package, folder in FOLDERS.items()
         for name in ("", *find_packages(folder))
     ],
 )
