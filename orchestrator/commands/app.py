@@ -337,7 +337,8 @@ def _simulate(
     with screen.progress("preparing") as progress:
         from ..core.errors import RunFailed
         from ..core.loop.journal import reported
-        from ..core.results.reading import add_figures, read_run
+        from ..core.results.metric import Metrics
+        from ..core.results.reading import add_metrics, read_run
         from ..core.run import simulate
         from ..metrics import comparison
         from ..runs.building import is_cold
@@ -365,8 +366,8 @@ def _simulate(
         except RunFailed:
             done = read_run(folder)  # status and reason are in it
     figures = comparison.figures(done, comparison.known_of(done))
-    add_figures(folder, figures)
-    return replace(done, summary=[*done.summary, *figures])
+    add_metrics(folder, figures)
+    return replace(done, metrics=Metrics([*done.metrics.values(), *figures]))
 
 
 @app.command(hidden=True)
@@ -410,7 +411,7 @@ def _finish(done: "Run", screen: "Screen", with_figures: bool) -> bool:
                 "error": done.provenance.get("error"),
                 "warnings": warnings,
                 "caption": comparison.caption(done),
-                "figures": [figure.as_entry() for figure in done.summary],
+                "figures": [figure.as_entry() for figure in done.metrics.values()],
                 "pictures": [str(file) for file in figures],
             }
         )

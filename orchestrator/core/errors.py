@@ -34,3 +34,10 @@ class RunFailed(Exception):  # noqa: N818
     def __init__(self, component: str, time: float, what: str) -> None:
         self.component, self.time = component, time
         super().__init__(f"{component} at t = {time:.9g} s: {what}")
+
+
+class UnknownName(KeyError):  # noqa: N818
+    """There is nothing of this name. The message names those that come nearest."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])

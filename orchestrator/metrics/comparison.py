@@ -123,7 +123,7 @@ def rows(run: Run, known: Mapping[str, h.Known]) -> list[Row]:
                 "" if figure.unit == "1" else figure.unit,
                 figure.value if isinstance(figure.value, str) else f"{figure.value:.6g}",
             )
-            for figure in run.summary
+            for figure in run.metrics.values()
         ]
     return found + list(_piles(run)) + list(_couplings(run))
 

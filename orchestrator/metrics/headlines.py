@@ -128,7 +128,7 @@ def driven(run: "Run") -> bool:
 
 def extreme(run: "Run", column: str) -> tuple[float, float]:
     """Largest value of an output and its time (s): over all exchanges if the run watched it and has ended, else over the rows."""
-    known = {figure.name: figure.value for figure in run.summary}
+    known = {metric.name: metric.value for metric in run.metrics.values()}
     if f"{column} maximum" in known:
         return float(known[f"{column} maximum"]), float(known[f"{column} maximum at"])
     at = int(run.series[column].argmax())
@@ -366,7 +366,8 @@ def still_sinking(run: "Run") -> bool:
 def integral(run: "Run", column: str) -> float:
     """Integral of an output over the time: over all exchanges if the run watched it and has ended, else over the rows."""
     known = next(
-        (figure.value for figure in run.summary if figure.name == f"{column} integral"), None
+        (metric.value for metric in run.metrics.values() if metric.name == f"{column} integral"),
+        None,
     )
     if known is not None:
         return float(known)

@@ -191,7 +191,7 @@ def _outcome(key: str, run: "Run", error: str, failed_at: float | None, began: f
     figures = (
         {
             f.name: float(f.value)
-            for f in [*run.summary, *headlines(run)]
+            for f in [*run.metrics.values(), *headlines(run)]
             if not isinstance(f.value, str)
         }
         if complete

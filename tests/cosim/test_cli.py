@@ -270,7 +270,7 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     assert (
         json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["figures"]
     )
-    read = read_run(tmp_path / "results/lab-impact").figure("peak transmitted force")
+    read = read_run(tmp_path / "results/lab-impact").metrics["peak_transmitted_force"]
     assert (read.references["paper"].value, read.references["paper"].note) == (
         computed["value"],
         computed["note"],
@@ -796,7 +796,7 @@ def test_ctrl_c_keeps_what_was_computed(rockshed, long_run, tmp_path):
     assert "peak transmitted force" in out
     run = read_run(tmp_path / "run")
     assert run.status == "interrupted"
-    assert run.series["time"][-1] == pytest.approx(run.figure("simulated time").value)
+    assert run.series["time"][-1] == pytest.approx(run.metrics["simulated_time"].value)
     assert not (tmp_path / "run.running").exists()
     assert rockshed("plot", tmp_path / "run").exit_code == 0
 

@@ -62,7 +62,7 @@ def test_ctrl_c_ends_the_run_and_keeps_everything(foreign, tmp_path, plain):
     run = read_run(tmp_path / "run")
     assert run.status == "interrupted"
     assert is_sound(run)
-    assert run.series["time"][-1] == run.figure("simulated time").value > 0.0
+    assert run.series["time"][-1] == run.metrics["simulated_time"].value > 0.0
     assert run.provenance["error"] is None
     assert len(list(run.states("a"))) == int(run.series["time"][-1] / 0.1 + 1e-9) + 1
     assert [path.name for path in tmp_path.iterdir()] == ["run"]

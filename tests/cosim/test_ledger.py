@@ -175,5 +175,6 @@ def test_the_alarm_compares_with_a_reference(tmp_path, reference, alarms):
 def test_the_summary_has_the_final_accounts(tmp_path):
     result = oscillate(tmp_path, 0.01, "jacobi")
     for name in ("coupling.b.energy", "coupling.b.work.taker", "coupling.b.work.giver"):
-        assert result.figure(name).value == result.series[name][-1]
-        assert result.figure(name).unit == "J"
+        metric = result.metrics[name.replace(".", "_")]
+        assert metric.value == result.series[name][-1]
+        assert metric.unit == "J"

@@ -237,7 +237,7 @@ def test_a_step_that_fails_ends_the_run_and_keeps_what_was_computed(tmp_path, st
     assert kept.status == "failed"
     assert kept.provenance["error"] == str(failure.value)
     assert kept.series["bad.y"] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
-    assert kept.figure("exchanges").value == 5
+    assert kept.metrics["exchanges"].value == 5
 
 
 def test_a_warning_lets_the_run_go_on(tmp_path):
@@ -275,14 +275,14 @@ def test_extremes_of_watched_outputs_count_every_exchange(tmp_path):
     wave = Mock([out("y", "m")], lambda v, t, h: v.update(y=math.sin(2.0 * math.pi * (t + h))))
     result = run(tmp_path, [], {"a": wave}, exchange_step=0.01, output_interval=1.0, watch=["a.y"])
     assert (
-        result.figure("a.y maximum").value,
-        result.figure("a.y maximum at").value,
+        result.metrics["a_y_maximum"].value,
+        result.metrics["a_y_maximum_at"].value,
     ) == pytest.approx((1.0, 0.25))
     assert (
-        result.figure("a.y minimum").value,
-        result.figure("a.y minimum at").value,
+        result.metrics["a_y_minimum"].value,
+        result.metrics["a_y_minimum_at"].value,
     ) == pytest.approx((-1.0, 0.75))
-    assert result.figure("a.y maximum").unit == "m"
+    assert result.metrics["a_y_maximum"].unit == "m"
 
 
 def test_integrals_of_watched_outputs_count_every_exchange(tmp_path):
@@ -292,5 +292,5 @@ def test_integrals_of_watched_outputs_count_every_exchange(tmp_path):
     )
     result = run(tmp_path, [], {"a": ramp}, exchange_step=0.01, output_interval=1.0, watch=["a.y"])
     assert result.series["a.y"].tolist() == [0.0, 0.0]
-    assert result.figure("a.y integral").value == pytest.approx(0.99**2 + 0.5 * 0.01 * 1.98)
-    assert result.figure("a.y integral").unit == "N.s"
+    assert result.metrics["a_y_integral"].value == pytest.approx(0.99**2 + 0.5 * 0.01 * 1.98)
+    assert result.metrics["a_y_integral"].unit == "N.s"

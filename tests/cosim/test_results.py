@@ -13,7 +13,7 @@ from fmpy.util import read_csv
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.results.metric import Metric
-from rockshed.core.results.reading import add_figures, read_run
+from rockshed.core.results.reading import add_metrics, read_run
 from rockshed.core.results.run_folder import Column, RunFolder, running_folder
 from rockshed.core.run import simulate
 from tests.cosim.mocks import Mock, mass, out, spring, wired
@@ -85,14 +85,55 @@ def test_the_provenance_tells_what_was_run(result):
 
 
 def test_figures_can_be_added_and_replaced(result):
-    add_figures(result.folder, [Metric("mine", 1.5, "kN"), Metric("exchanges", 7)])
+    add_metrics(result.folder, [Metric("mine", 1.5, "kN"), Metric("exchanges", 7)])
     again = read_run(result.folder)
     assert (
-        again.figure("mine").value,
-        again.figure("mine").unit,
-        again.figure("exchanges").value,
+        again.metrics["mine"].value,
+        again.metrics["mine"].unit,
+        again.metrics["exchanges"].value,
     ) == (1.5, "kN", 7)
-    assert len([figure for figure in again.summary if figure.name == "exchanges"]) == 1
+    assert list(again.metrics).count("exchanges") == 1
+    assert len(json.loads((result.folder / "summary.json").read_text())) == len(again.metrics)
+
+
+def test_a_variable_of_a_run_has_its_unit_and_behaves_as_its_values(result):
+    position = result["mass.position"]
+    assert (position.name, position.unit, len(position)) == ("mass.position", "m", 11)
+    assert position.values is result.series["mass.position"]
+    assert position.time is result.time
+    assert np.max(position) == position.values.max()
+    assert position[-1] == list(position)[-1] == np.asarray(position)[-1]
+    assert np.asarray(position, np.float32).dtype == np.float32
+    assert repr(position).startswith("<mass.position (m): 11 values, t = 0 to 1 s, ")
+    assert list(result) == list(result.series)
+    assert "mass.position" in result
+
+
+def test_a_name_that_a_run_has_not_is_a_key_error_with_the_nearest_ones(result):
+    with pytest.raises(KeyError, match=r"no variable 'mass.positon'; did you mean mass.position"):
+        result["mass.positon"]
+    with pytest.raises(KeyError, match=r"no metric 'exchange'; did you mean exchanges"):
+        result.metrics["exchange"]
+
+
+def test_a_run_says_in_short_what_it_is(result):
+    assert repr(result) == (
+        f"<Run test: complete, 1 s in 11 rows of 3 variables, in {result.folder}>"
+    )
+    assert "simulated_time" in repr(result.metrics)
+    assert "simulated_time" in result._repr_html_()
+    assert (result.status, result.error, result.warnings) == ("complete", None, [])
+
+
+def test_the_time_series_as_a_table_carry_units(result):
+    table = result.to_arrow()
+    assert table.column_names == list(result)
+    assert table.schema.field("mass.position").metadata[b"unit"] == b"m"
+    pytest.importorskip("pandas")
+    frame = result.to_pandas()
+    assert frame.index.name == "time"
+    assert frame["mass.position"].to_numpy().tolist() == result.series["mass.position"].tolist()
+    assert frame.attrs["units"]["mass.position"] == "m"
 
 
 def test_what_other_programs_add_to_a_summary_is_passed_over(result):
@@ -110,7 +151,7 @@ def test_what_other_programs_add_to_a_summary_is_passed_over(result):
             ]
         )
     )
-    theirs = read_run(result.folder).figure("theirs")
+    theirs = read_run(result.folder).metrics["theirs"]
     assert (
         theirs.value,
         theirs.references["paper"].value,

@@ -64,7 +64,7 @@ def test_it_hits_and_bounces(run):
     assert force[-1] == 0.0
     assert speed[-1] > 1.0 > -8.0 > speed.min()
     assert run.series["sand.rock.force.x"].min() < -2e4  # the sand brakes it along the roof too
-    assert run.figure("beam.midspan.deflection maximum").value > 0.05
+    assert run.metrics["beam_midspan_deflection_maximum"].value > 0.05
 
 
 def test_the_books_of_energy_close(run):
@@ -72,7 +72,7 @@ def test_the_books_of_energy_close(run):
     residual = h.system_residual(run)
     assert np.abs(residual).max() < 0.005 * energy
     for bond in ("sand_rock", "sand_beam"):
-        assert abs(run.figure(f"coupling.{bond}.energy").value) < 0.005 * energy
+        assert abs(run.metrics[f"coupling_{bond}_energy"].value) < 0.005 * energy
     assert warnings(run) == []
 
 

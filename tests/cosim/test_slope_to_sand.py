@@ -69,4 +69,4 @@ def test_out_of_its_flight_it_hits_the_sand_as_the_falling_rock_does(tmp_path):
         peak = falling.series[name].max()
         assert peak > 0.0
         assert from_slope.series[name].max() == pytest.approx(peak, rel=0.02)
-    assert abs(from_slope.figure("coupling.sand_rock.energy").value) < 0.005 * 0.5 * 4.0 * 7.0**2
+    assert abs(from_slope.metrics["coupling_sand_rock_energy"].value) < 0.005 * 0.5 * 4.0 * 7.0**2

@@ -133,8 +133,8 @@ def impacts(native_fmus, tmp_path_factory):
 def test_the_laboratory_impact_has_the_same_bits(impacts):
     one, other = impacts
     assert one.series["time"].size == 1001
-    assert one.figure("sand.transmitted_force maximum").value > 1000.0
-    assert one.figure("beam.midspan.deflection maximum").value > 1e-5
+    assert one.metrics["sand_transmitted_force_maximum"].value > 1000.0
+    assert one.metrics["beam_midspan_deflection_maximum"].value > 1e-5
     for name, values in one.series.items():
         np.testing.assert_array_equal(other.series[name], values, err_msg=name)
 

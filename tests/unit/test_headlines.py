@@ -8,7 +8,7 @@ import pytest
 from rockshed.cases import sonoda1993
 from rockshed.cases.registry import case, cases, changes_of, references_of
 from rockshed.core.errors import InputRefused
-from rockshed.core.results.metric import Metric
+from rockshed.core.results.metric import Metric, Metrics
 from rockshed.core.results.reading import Run
 from rockshed.metrics import comparison
 from rockshed.metrics import headlines as h
@@ -77,7 +77,7 @@ def made_up(length=0.02, summary=(), **columns):
             )
         },
     }
-    return Run(None, provenance, list(summary), [], series)
+    return Run(None, provenance, Metrics(summary), [], series)
 
 
 def figure(run, name):

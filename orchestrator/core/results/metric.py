@@ -1,9 +1,13 @@
-"""One figure of a run: value, unit, and what others found for it."""
+"""Metrics of a run: single values with unit and references, reached by identifiers that stay."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
+from html import escape
 from typing import Any
+
+from ..errors import UnknownName
+from ..system.names import nearest
 
 
 @dataclass(frozen=True)
@@ -26,7 +30,10 @@ class Beside:
 
 
 def identifier(name: str) -> str:
-    """Turn a name in words into a stable identifier: ``peak transmitted force`` -> ``peak_transmitted_force``."""
+    """Turn a name in words into a stable identifier.
+
+    ``peak transmitted force`` becomes ``peak_transmitted_force``.
+    """
     return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
 
 
@@ -75,3 +82,51 @@ class Metric:
             for who, found in entry.get("references", {}).items()
         }
         return cls(entry["name"], entry["value"], entry.get("unit", "1"), references)
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        value = f"{self.value:.6g}" if isinstance(self.value, float) else str(self.value)
+        return value + unit
+
+
+class Metrics(Mapping[str, Metric]):
+    """Metrics of a run by identifier, in the order in which they were computed.
+
+    Parameters
+    ----------
+    metrics : iterable of Metric
+        Of two with one identifier, the later one counts.
+
+    Examples
+    --------
+    >>> Metrics([Metric("simulated time", 0.1, "s")])["simulated_time"].value
+    0.1
+    """
+
+    def __init__(self, metrics: Iterable[Metric] = ()) -> None:
+        self._metrics = {metric.identifier: metric for metric in metrics}
+
+    def __getitem__(self, identifier: str) -> Metric:
+        if identifier not in self._metrics:
+            raise UnknownName(f"there is no metric {identifier!r}; {self._nearest(identifier)}")
+        return self._metrics[identifier]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._metrics)
+
+    def __len__(self) -> int:
+        return len(self._metrics)
+
+    def _nearest(self, name: str) -> str:
+        return nearest(identifier(name), self._metrics)
+
+    def __repr__(self) -> str:
+        width = max(map(len, self), default=0)
+        return "\n".join(f"{name:{width}}  {metric}" for name, metric in self.items())
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(name)}</td><td>{escape(str(metric))}</td></tr>"
+            for name, metric in self.items()
+        )
+        return f"<table>{rows}</table>"

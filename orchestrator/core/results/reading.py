@@ -4,14 +4,16 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputRefused, Problem
-from .metric import Metric
+from ..errors import InputRefused, Problem, UnknownName
+from ..system.names import nearest
+from .metric import Metric, Metrics
 from .run_folder import (
     COLUMNS,
     PARQUET,
@@ -28,29 +30,108 @@ from .run_folder import (
     streamed_frames,
     write_json,
 )
+from .series import Series
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run:
-    """A run that has been read.
+    """Results of a run, as its folder holds them.
 
-    provenance: content of ``run.json``; its ``status`` is ``running`` while the run goes on, and after it was killed.
+    ``run["rock.position.x"]`` is a :class:`~rockshed.core.results.series.Series`; iterating over a
+    run gives the names of its variables.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the results are.
+    provenance : mapping
+        Content of ``run.json``.
+    metrics : Metrics
+        Single values by identifier: ``run.metrics["peak_transmitted_force"]``.
+    columns : sequence of Column
+        Names, units and descriptions of the recorded variables, ``time`` first.
+    series : mapping of str to array of float, shape (rows,)
+        Values of each column.
     """
 
     folder: Path
     provenance: Mapping[str, Any]
-    summary: Sequence[Metric]
+    metrics: Metrics
     columns: Sequence[Column]
     series: Mapping[str, NDArray[np.float64]]
 
     @property
     def status(self) -> str:
-        """Complete, interrupted, failed or running."""
+        """``complete``, ``interrupted`` or ``failed``.
+
+        ``running`` while the run goes on, and after its process was killed.
+        """
         return str(self.provenance["status"])
 
-    def figure(self, name: str) -> Metric:
-        """The figure of the summary with this name."""
-        return next(figure for figure in self.summary if figure.name == name)
+    @property
+    def error(self) -> str | None:
+        """Reason for the end of a run that failed, else None."""
+        return self.provenance.get("error")
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the FMUs, of the initialisation and of the energy accounts."""
+        return list(self.provenance.get("warnings", []))
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Simulated time of the rows (s)."""
+        return self.series["time"]
+
+    def __getitem__(self, name: str) -> Series:
+        column = next((column for column in self.columns if column.name == name), None)
+        if column is None:
+            raise UnknownName(f"the run has no variable {name!r}; {nearest(name, self.series)}")
+        return Series(name, column.unit, column.description, self.time, self.series[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.series)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.series
+
+    def to_arrow(self) -> Any:
+        """Return the time series as an Arrow table.
+
+        Returns
+        -------
+        pyarrow.Table
+            ``time`` and a column for each variable; unit and description are in the metadata of
+            the fields.
+        """
+        import pyarrow as pa
+
+        values = [self.series[column.name] for column in self.columns]
+        return pa.table(values, schema=schema(self.columns))
+
+    def to_pandas(self) -> Any:
+        """Return the time series as a pandas table. pandas has to be installed.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A column for each variable, ``time`` (s) as the index, units by name in
+            ``attrs["units"]``.
+        """
+        table = self.to_arrow().to_pandas().set_index("time")
+        table.attrs["units"] = {column.name: column.unit for column in self.columns}
+        return table
+
+    def __repr__(self) -> str:
+        return f"<Run {self._in_short()}, in {self.folder}>"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self)[1:-1])}</p>{self.metrics._repr_html_()}"
+
+    def _in_short(self) -> str:
+        reached = f"{self.time[-1]:.6g} s in {self.time.size} rows" if self.time.size else "no row"
+        name = self.provenance.get("name", "")
+        return f"{name}: {self.status}, {reached} of {len(self.series) - 1} variables".lstrip(": ")
 
     def states(self, component: str) -> Iterator[tuple[float, bytes]]:
         """Time (s) and serialized state of a component, in the order in which they were recorded."""
@@ -116,7 +197,7 @@ def read_run(folder: Path) -> Run:
             if (found / SUMMARY).is_file()
             else []
         )
-    return Run(found, provenance, summary, columns, _read_series(found, columns))
+    return Run(found, provenance, Metrics(summary), columns, _read_series(found, columns))
 
 
 @contextmanager
@@ -151,10 +232,17 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
         return {column.name: table[column.name].to_numpy() for column in columns}
 
 
-def add_figures(folder: Path, figures: Sequence[Metric]) -> None:
-    """Add figures to the summary of a finished run; one with a name that is there already replaces it."""
+def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:
+    """Add metrics to the summary of a finished run.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the run.
+    metrics : sequence of Metric
+        One with a name that is there already replaces it.
+    """
     path = folder / SUMMARY
-    present = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}
-    write_json(
-        path, list({**present, **{figure.name: figure.as_entry() for figure in figures}}.values())
-    )
+    entries = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}
+    entries |= {metric.name: metric.as_entry() for metric in metrics}
+    write_json(path, list(entries.values()))

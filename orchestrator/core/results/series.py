@@ -1,0 +1,53 @@
+"""A variable of a run over time, with its unit."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Series:
+    """A recorded variable over time. numpy and matplotlib take it as its values.
+
+    Attributes
+    ----------
+    name : str
+        ``component.variable``.
+    unit : str
+        FMI unit of the values, ``1`` where there is none.
+    description : str
+        Of the variable, as its FMU has it.
+    time : array of float, shape (n,)
+        Simulated time of each value (s).
+    values : array of float, shape (n,)
+        In ``unit``.
+    """
+
+    name: str
+    unit: str
+    description: str
+    time: NDArray[np.float64]
+    values: NDArray[np.float64]
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.array(self.values, dtype) if copy else np.asarray(self.values, dtype)
+
+    def __len__(self) -> int:
+        return int(self.values.size)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self.values[place]
+
+    def __iter__(self) -> Iterator[float]:
+        return iter(self.values.tolist())
+
+    def __repr__(self) -> str:
+        head = f"<{self.name} ({self.unit})"
+        if not len(self):
+            return f"{head}: no values>"
+        span = f"t = {self.time[0]:.6g} to {self.time[-1]:.6g} s"
+        reach = f"{self.values.min():.6g} to {self.values.max():.6g}"
+        return f"{head}: {len(self)} values, {span}, {reach}>"
