@@ -15,8 +15,7 @@ from rockshed.components.common.units import cm, cm2, cm4, kgf, kN
 
 from ..core.system.schedule import Scheme
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
-from ..metrics import headlines as h
-from ..metrics.headlines import Known, Reference, References
+from ..references import Known, Reference, References
 from .sand_models import FULL_SCALE_SOIL, Layer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
 
@@ -289,6 +288,9 @@ def references(impact: Impact, changed: Mapping[str, Value]) -> References:
     return References(known_of(impact))
 
 
+_SETTLED_RATIO = "settled transmitted force / settled force on the rock"
+
+
 def known_of(impact: Impact) -> dict[str, Known]:
     """What the paper and the handbook give to compare with an impact, by the name of the figure.
 
@@ -301,17 +303,17 @@ def known_of(impact: Impact) -> dict[str, Known]:
             "the handbook's formula with lambda = 1000 kN/m2, whatever the sand",
         )
         return {
-            h.SETTLED_ROCK: Known(handbook=force),
-            h.SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice")),
+            "settled maximum of the force on the rock": Known(handbook=force),
+            _SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice")),
         }
     row = next(row for row in printed_rows("table6") if float(row["span_m"]) == impact.span)
     measured, computed = (
         Reference(0.01 * float(row[f"{who}_percent"])) for who in ("experiment", "paper_analysis")
     )
     return {
-        h.BEAM_SHARE: Known(computed),
-        h.BEAM_SHARE_FROM_STRAIN: Known(experiment=measured),
-        h.SETTLED_RATIO: Known(
+        "peak beam energy / impact energy": Known(computed),
+        "peak beam energy from the midspan strain / impact energy": Known(experiment=measured),
+        _SETTLED_RATIO: Known(
             Reference(1.4, "figs 23 and 24: the difference of the maxima is 30 to 50 %")
         ),
     }

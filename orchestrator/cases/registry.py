@@ -5,14 +5,15 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any, cast
+from typing import cast
 
 from rockshed.components.catalogue import component
+from rockshed.components.common.component import Component
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..core.system.system import System, Value
-from ..metrics.headlines import References
+from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test
 from .sand_models import Changes, Layer, Soil, changes, sand_model
@@ -107,77 +108,86 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
     return changes(model, layer)
 
 
-def references_of(facts: Mapping[str, Any]) -> References:
-    """What others found for the case that a run's provenance names, as far as the run is theirs; nothing if it names none."""
-    found = cases().get(facts.get("case", ""))
-    if found is None:
-        return References()
-    return found.references(
-        {
-            name: value
-            for name, value in changes_of(facts).items()
-            if name not in System.model_fields
-        }
-    )
+def differences(
+    chosen: Case, base: System, given: Mapping[str, Value], sizes: Sizes, own: Sizes
+) -> dict[str, Value]:
+    """Return what a run has other than its case.
 
+    Parameters
+    ----------
+    chosen : Case
+        The case that is run.
+    base : System
+        The system of the case in the sizes of the run, before any value is changed.
+    given : mapping of str to Value
+        Values by ``component.parameter`` or name of a shared value, and keys of the system.
+    sizes, own : mapping of str to sizes
+        Sizes by component: those of the run, and those of the case.
 
-def changes_of(facts: Mapping[str, Any]) -> dict[str, Value]:
-    """Values, keys of the system and sizes, by ``component.name``, in which a run differs from its case; of a system file, what
-    was given with the command."""
-    given, chosen = dict(facts.get("changed", {})), cases().get(facts.get("case", ""))
-    if chosen is None:
-        return given
-    own = {
-        name: component(model).with_sizes(chosen.sizes.get(name))
-        for name, model in chosen.models.items()
+    Returns
+    -------
+    dict of str to Value
+        Values, keys of the system and sizes, by ``component.name``, that differ.
+    """
+    values = {
+        name: value
+        for name, value in given.items()
+        if not _same(value, _own_value(chosen, base, name))
     }
-    for name, number in model_changes(chosen, facts.get("model"), given).sizes.items():
-        owner, _, size = name.partition(".")
-        own[owner][size] = number
-    sizes = {owner: {**own[owner], **built} for owner, built in facts.get("sizes", {}).items()}
-    system = chosen.make(
-        chosen.models, {**own, **sizes}, facts.get("coupling", next(iter(chosen.couplings)))
-    )
-    others = {
+    others: dict[str, Value] = {
         f"{owner}.{size}": number
         for owner, built in sizes.items()
         for size, number in built.items()
-        if number != own[owner].get(size)
+        if number != own.get(owner, {}).get(size)
     }
-    return {
-        name: value
-        for name, value in given.items()
-        if not _same(value, _own_value(chosen, system, name))
-    } | others
+    return values | others
+
+
+def references(chosen: Case, differing: Mapping[str, Value]) -> References:
+    """Return what others found for a case, as far as a run is theirs.
+
+    Parameters
+    ----------
+    chosen : Case
+        The case that is run.
+    differing : mapping of str to Value
+        What the run has other than the case, from :func:`differences`.
+
+    Returns
+    -------
+    References
+        What is known, and why something is not compared.
+    """
+    keys = System.model_fields
+    return chosen.references({name: value for name, value in differing.items() if name not in keys})
 
 
 def _own_value(chosen: Case, system: System, name: str) -> Value | None:
-    """The value of a parameter or of a shared value in a case, from its system or else as the component declares it."""
+    """Return the value of a parameter or a shared value in a case; None if there is none."""
     if name in System.model_fields:
         return cast(Value | None, getattr(system, name))
-    shared = next(
-        (
-            entry.value
-            for key, entry in system.shared.items()
-            if name == key or name in entry.targets
-        ),
-        None,
-    )
+    for key, entry in system.shared.items():
+        if name == key or name in entry.targets:
+            return entry.value
     owner, _, port = name.partition(".")
-    if shared is not None or owner not in chosen.models:
-        return shared
+    if owner not in chosen.models:
+        return None
     if port in system.components[owner].parameters:
         return system.components[owner].parameters[port]
-    declared = next(
-        (v for v in component(chosen.models[owner]).layout.ordered if v.name == port), None
-    )
-    if declared is None:
-        return None
-    start = declared.start_at(0, {})
-    return declared.choices[int(start) - 1] if declared.choices else start
+    return _declared_value(component(chosen.models[owner]), port)
+
+
+def _declared_value(declared: Component, port: str) -> Value | None:
+    """Return the start value that a component declares, of a choice its word."""
+    for variable in declared.layout.ordered:
+        if variable.name == port:
+            start = variable.start_at(0, {})
+            return variable.choices[int(start) - 1] if variable.choices else start
+    return None
 
 
 def _same(one: Value, other: Value | None) -> bool:
+    """Tell whether two values are equal as numbers, or else as texts."""
     try:
         return other is not None and math.isclose(float(one), float(other), rel_tol=1e-9)
     except ValueError:

@@ -156,9 +156,9 @@ def discs_of(layer: Layer, solid_fraction: float) -> int:
     return round(solid_fraction * layer.width * layer.height / area)
 
 
-def settings(name: str) -> tuple[str, ...]:
-    """A model that takes nothing from the soil, as ``sand.parameter=value``."""
-    return tuple(f"sand.{key}={value}" for key, value in MODELS[name].parameters.items())
+def model_values(name: str) -> dict[str, Value]:
+    """Return the values, by ``sand.parameter``, of a model that takes nothing from the soil."""
+    return {f"sand.{key}": value for key, value in MODELS[name].parameters.items()}
 
 
 def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes:

@@ -21,18 +21,16 @@ from ..core.system.system import (
     System,
     Value,
 )
-from ..metrics.headlines import (
-    BEAM_ENERGY_FROM_STRAIN,
-    PEAK_LOAD_CELL,
-    PEAK_TRANSMITTED,
-    PENETRATION,
-    Known,
-    Reference,
-    References,
-)
+from ..references import Known, Reference, References
 from .sand_models import DENSE, LOOSE, Layer, Soil
 
 _DATA = Path(__file__).parent / "data"
+
+_PEAK = "peak transmitted force"
+_PEAK_LOAD_CELL = "peak transmitted force through the load cell"
+_PENETRATION = "penetration"
+_BEAM_ENERGY = "peak beam energy from the midspan strain"
+"""Names of the metrics that the paper has values for."""
 
 STATIC_RATIO = 1.29
 """k (kgf/cm) / E_bar (kgf/cm2) of table 4; gives E_bar for the tests that table 4 leaves out."""
@@ -334,10 +332,10 @@ def known_of(test: Test) -> dict[str, Known]:
     """What the paper gives to compare with the computation of a test, by the name of the figure."""
     measured, computed = BEAM_ENERGY.get(test.number), _analysis(test.modulus, _DAMPING)
     return {
-        PEAK_TRANSMITTED: Known(computed[PEAK_TRANSMITTED].paper, Reference(test.peak_force)),
-        PEAK_LOAD_CELL: Known(experiment=Reference(test.peak_force)),
-        PENETRATION: computed[PENETRATION],
-        BEAM_ENERGY_FROM_STRAIN: Known(
+        _PEAK: Known(computed[_PEAK].paper, Reference(test.peak_force)),
+        _PEAK_LOAD_CELL: Known(experiment=Reference(test.peak_force)),
+        _PENETRATION: computed[_PENETRATION],
+        _BEAM_ENERGY: Known(
             experiment=Reference(measured, "read from fig. 17 or 18") if measured else None
         ),
     }
@@ -397,8 +395,8 @@ def differs(names: Sequence[str]) -> str:
 def _analysis(modulus: float, damping: float) -> dict[str, Known]:
     """What the paper computed, or would have."""
     return {
-        PEAK_TRANSMITTED: Known(_trend(modulus, damping, lambda row: row.peak_force)),
-        PENETRATION: Known(_trend(modulus, damping, lambda row: row.penetration)),
+        _PEAK: Known(_trend(modulus, damping, lambda row: row.peak_force)),
+        _PENETRATION: Known(_trend(modulus, damping, lambda row: row.penetration)),
     }
 
 

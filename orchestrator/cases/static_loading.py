@@ -6,8 +6,7 @@ from rockshed.components.common.units import cm, kgf
 
 from ..core.system.schedule import Scheme
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
-from ..metrics.headlines import STATIC_LOAD, STATIC_STIFFNESS, Known, Reference, References
-from ..metrics.load_curve import DEPTH
+from ..references import Known, Reference, References
 from .sand_models import Layer
 from .sonoda1993 import (
     BALL_MASS,
@@ -28,6 +27,8 @@ from .sonoda1993 import (
 )
 
 NAME = "static-test"
+DEPTH = 4 * cm
+"""Penetration (m) to which the secant spring constant k counts."""
 BOX = 1
 """The box of 37 cm."""
 DISCS = discs_in(BOX)
@@ -149,7 +150,7 @@ def references(changed: Mapping[str, Value]) -> References:
     )
     return References(
         {
-            STATIC_STIFFNESS: Known(Reference(stiffness, note)),
-            STATIC_LOAD: Known(Reference(stiffness * DEPTH, note)),
+            "secant spring constant k": Known(Reference(stiffness, note)),
+            "load at 4 cm": Known(Reference(stiffness * DEPTH, note)),
         }
     )

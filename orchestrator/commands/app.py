@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..core.errors import Problem
+
 if TYPE_CHECKING:
     from ..core.results.reading import Run
     from ..runs.job import Request
@@ -178,12 +180,13 @@ def build(
     quiet: Quiet = False,
 ) -> None:
     """Build FMUs, always anew."""
-    from ..runs.building import build_all
+    from ..runs.building import Export, build_all
+    from .assignments import sizes_of
 
     with _screen(quiet) as screen, screen.busy("building"):
-        for file in build_all(
-            components or [], size or [], output_dir, runtime, platform or [], fmi
-        ):
+        problems = list[Problem]()
+        sizes, export = sizes_of(size or [], problems), Export(runtime, platform or [], fmi)
+        for file in build_all(components or [], sizes, output_dir, export, problems):
             screen.say(f"{file}  {file.stat().st_size / 1024:.0f} KiB")
 
 
@@ -227,9 +230,13 @@ def export(
     """Write a system as TOML, with its FMUs, to change and run it."""
     from ..runs.export import export_system
     from ..runs.job import Request, prepare
+    from .assignments import sizes_of, values_of
 
     with _screen() as screen:
-        job = prepare(Request(target, set_ or [], size or [], coupling, model=model), screen.note)
+        problems = list[Problem]()
+        values, sizes = values_of("--set", set_ or [], problems), sizes_of(size or [], problems)
+        request = Request(target, values, sizes, coupling, model=model)
+        job = prepare(request, screen.note, problems)
         screen.say(str(export_system(job.system, folder)))
 
 
@@ -293,8 +300,10 @@ def run(
     FMUs of a case that are missing are built.
     """
     from ..runs.job import Request
+    from .assignments import sizes_of, values_of
     from .screen import INTERRUPTED, RUN_FAILED
 
+    problems = list[Problem]()
     options = {
         "stop_time": stop_time,
         "exchange_step": exchange_step,
@@ -304,8 +313,8 @@ def run(
     }
     request = Request(
         target,
-        set_ or [],
-        size or [],
+        values_of("--set", set_ or [], problems),
+        sizes_of(size or [], problems),
         coupling,
         {k: v for k, v in options.items() if v is not None},
         in_process,
@@ -314,7 +323,7 @@ def run(
         runtime,
     )
     with _screen(quiet, as_json) as screen:
-        done = _simulate(request, output_dir, allow_unstable, screen)
+        done = _simulate(request, problems, output_dir, allow_unstable, screen)
         if (
             done.status == "failed"
         ):  # said before drawing, which takes its time and may be interrupted
@@ -331,7 +340,11 @@ def run(
 
 
 def _simulate(
-    request: "Request", output_dir: Path | None, allow_unstable: bool, screen: "Screen"
+    request: "Request",
+    problems: "list[Problem]",
+    output_dir: Path | None,
+    allow_unstable: bool,
+    screen: "Screen",
 ) -> "Run":
     """Prepare and carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
@@ -345,7 +358,7 @@ def _simulate(
         from ..runs.job import prepare
         from .screen import COLD_START
 
-        job = prepare(request, screen.note)
+        job = prepare(request, screen.note, problems)
         if "runtime" in job.facts:
             screen.note(f"{job.facts['runtime']} FMUs ({job.facts['runtime_reason']})")
         folder = output_dir or RESULTS / job.name
@@ -626,9 +639,14 @@ def calibrate(
 
     with _screen(quiet, as_json) as screen:
         from ..analyses.calibration.report import as_data, asked_for, find, notes, table, write
-        from ..core.errors import RunFailed
+        from ..core.errors import InputRefused, RunFailed
+        from .assignments import values_of
 
-        asked = asked_for(target, stiffness, rotation, set_ or [])
+        problems = list[Problem]()
+        values = values_of("--set", set_ or [], problems)
+        if problems:
+            raise InputRefused(problems)
+        asked = asked_for(target, stiffness, rotation, values)
         folder = output_dir or RESULTS / "calibration"
         try:
             with screen.counting("static tests") as done:

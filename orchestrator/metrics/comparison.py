@@ -8,11 +8,11 @@ from rich.table import Table
 
 from rockshed.components.common.units import cm, kgf, kN, mm, ms
 
-from ..cases.registry import changes_of, references_of
 from ..cases.sand_models import model_of
 from ..commands.screen import plain_table
 from ..core.results.metric import Beside, Metric
 from ..core.results.reading import Run
+from ..references import References
 from . import headlines as h
 
 
@@ -88,7 +88,12 @@ class Row:
 
 def known_of(run: Run) -> Mapping[str, h.Known]:
     """What a run is compared with: nothing if it ended before the rock had come to a stop, or is not the one others know of."""
-    return {} if h.still_sinking(run) else references_of(run.provenance).known
+    return {} if h.still_sinking(run) else _references(run).known
+
+
+def _references(run: Run) -> References:
+    """What others found for the case of a run, as its preparation has written it down."""
+    return References.from_data(run.provenance.get("references", {}))
 
 
 def figures(run: Run, known: Mapping[str, h.Known]) -> list[Metric]:
@@ -183,7 +188,7 @@ def _couplings(run: Run) -> Iterator[Row]:
 
 def notes(run: Run, known: Mapping[str, h.Known]) -> list[str]:
     """What a reader has to know of the figures: where references that are only about right (≈) come from, what is cut off."""
-    remarks = list(references_of(run.provenance).remarks)
+    remarks = list(_references(run).remarks)
     if h.still_sinking(run):
         return [*remarks, _TOO_SHALLOW if h.driven(run) else _TOO_SHORT]
     found = [
@@ -272,7 +277,8 @@ def _bottomed_out(run: Run) -> Iterator[str]:
 def caption(run: Run) -> list[str]:
     """What was run, in short lines: case; how it was changed, if it was; model of the sand; exchange and steps."""
     facts = run.provenance
-    changed = ", ".join(f"{name} = {value}" for name, value in changes_of(facts).items())
+    differences = facts.get("differences", {})
+    changed = ", ".join(f"{name} = {value}" for name, value in differences.items())
     return [
         f"{facts['name']}: {facts['system']['description']}".removesuffix(": "),
         *filter(None, [changed and f"changed: {changed}", model(run)]),

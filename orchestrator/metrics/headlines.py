@@ -5,11 +5,13 @@ figure whose component or column is missing is left out.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..core.results.metric import Metric
+from ..references import Known as Known
+from ..references import Reference as Reference
 
 if TYPE_CHECKING:
     import numpy as np
@@ -59,35 +61,6 @@ LOAD_CELL_ROWS = 5.0
 
 CONTACT_SHARE = 0.01
 """Part of its peak above which the force on the rock counts towards its duration."""
-
-
-@dataclass(frozen=True)
-class Reference:
-    """A value (SI) to compare with. ``note`` says how it was found if it is not printed as such; it then is only about right."""
-
-    value: float
-    note: str = ""
-
-
-@dataclass(frozen=True)
-class Known:
-    """What others found for a figure: by the paper's analysis, in the experiment, and what a design handbook gives."""
-
-    paper: Reference | None = None
-    experiment: Reference | None = None
-    handbook: Reference | None = None
-
-    def by(self) -> "dict[str, Reference]":
-        """Those that there are, by who found them."""
-        return {who: reference for who, reference in vars(self).items() if reference}
-
-
-@dataclass(frozen=True)
-class References:
-    """What others found for a run, by the name of the figure, and why something is not compared."""
-
-    known: Mapping[str, Known] = field(default_factory=dict)
-    remarks: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ def _run(task: Task, outcome: Outcome) -> dict[str, Any]:
         "name": task.key,
         "case": task.request.target,
         "model": task.request.model,
-        "settings": list(task.request.settings),
+        "settings": task.settings,
         "coupling": task.request.coupling,
         "options": dict(task.request.options),
         "seed": task.seed,

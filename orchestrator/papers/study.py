@@ -28,6 +28,11 @@ class Task:
     allow_unstable: bool = False
 
     @property
+    def settings(self) -> list[str]:
+        """Values of the request that differ from the case, as ``name=value``."""
+        return [f"{name}={value}" for name, value in self.request.values.items()]
+
+    @property
     def key(self) -> str:
         """Case and everything that is changed in it, on one line."""
         options = [f"{name}={value}" for name, value in self.request.options.items()]
@@ -35,7 +40,7 @@ class Task:
         model = [f"model={self.request.model}"] if self.request.model else []
         unstable = ["unstable"] if self.allow_unstable else []
         return " ".join(
-            [self.request.target, *model, *self.request.settings, *coupling, *options, *unstable]
+            [self.request.target, *model, *self.settings, *coupling, *options, *unstable]
         )
 
 

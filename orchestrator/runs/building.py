@@ -3,72 +3,82 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rockshed.components.catalogue import NAMES, component
 from rockshed.components.common.component import ComponentError
+from rockshed.components.common.kernels import has_kernels
+from rockshed.fmus.places import Runtime, fmu_file, native_is_fresh
 
 from ..cases.registry import Case
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
-from ..core.system.system import Value
+from .request import AUTO
 
-if TYPE_CHECKING:
-    from rockshed.fmus.parts import Runtime
-
-AUTO, BOTH = "auto", "both"
-"""What may stand in the place of a runtime: the best that is there, or every one."""
+BOTH = "both"
+"""In the place of a runtime: every one."""
 
 Note = Callable[[str], None]
-"""Tells the user what is being done."""
+"""Called with a line for the user on what is being done."""
 
 
-def assignments(option: str, texts: Sequence[str], problems: list[Problem]) -> dict[str, Value]:
-    """Values by name from ``name=value``, as it is written on the command line. The last of several for one name holds."""
-    found: dict[str, Value] = {}
-    for text in texts:
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not (name and equals and value):
-            problems.append(
-                Problem(
-                    option, f"{text!r} is no assignment", f"write {option} component.name=value"
-                )
-            )
-        else:
-            found[name] = _value(value)
-    return found
+def silent(text: str) -> None:
+    """Tell nobody: the default of every ``note``."""
 
 
-def _value(text: str) -> Value:
-    """A number where the text is one; words and truth values stay text until the port says what it takes."""
-    for read in (int, float):
-        try:
-            return read(text)
-        except ValueError:
-            continue
-    return text
+def own_sizes(chosen: Case, others: Mapping[str, int]) -> dict[str, dict[str, int]]:
+    """Return the sizes of all components of a case.
 
+    Parameters
+    ----------
+    chosen : Case
+        The case.
+    others : mapping of str to int
+        By ``component.size``: sizes that are other than the case's, of a model of the sand.
 
-def case_sizes(
-    chosen: Case, numbers: Mapping[str, Value], problems: list[Problem]
-) -> dict[str, dict[str, int]]:
-    """The sizes of all components of a case, with what was asked for in them."""
+    Returns
+    -------
+    dict of str to dict of str to int
+        By component and size.
+    """
     sizes = {
         name: dict(component(model).with_sizes(chosen.sizes.get(name)))
         for name, model in chosen.models.items()
     }
+    for name, number in others.items():
+        owner, _, size = name.partition(".")
+        sizes[owner][size] = number
+    return sizes
+
+
+def case_sizes(
+    chosen: Case, numbers: Mapping[str, int], problems: list[Problem]
+) -> dict[str, dict[str, int]]:
+    """Return the sizes of all components of a case, with what is asked for in them.
+
+    Parameters
+    ----------
+    chosen : Case
+        The case.
+    numbers : mapping of str to int
+        By ``component.size``.
+    problems : list of Problem
+        Sizes that do not exist, are no whole numbers or out of range are appended.
+
+    Returns
+    -------
+    dict of str to dict of str to int
+        By component and size.
+    """
+    sizes = own_sizes(chosen, {})
     known = [f"{owner}.{size}" for owner, its in sizes.items() for size in its]
-    asked = _with_one_size(chosen, numbers, problems)
-    for name, value in asked.items():
+    for name, value in _with_one_size(chosen, numbers, problems).items():
         owner, _, size = name.partition(".")
         if name not in known:
             problems.append(
                 Problem(f"--size {name}", "there is no such size", nearest(name, known))
             )
-        elif not isinstance(value, int):
-            problems.append(
-                Problem(f"--size {name}", f"{value!r} is no whole number", "give a whole number")
-            )
+        elif not _is_whole(value):
+            problems.append(_not_whole(name, value))
         else:
             sizes[owner][size] = value
     for owner, model in chosen.models.items():
@@ -76,10 +86,18 @@ def case_sizes(
     return sizes
 
 
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _not_whole(name: str, value: object) -> Problem:
+    return Problem(f"--size {name}", f"{value!r} is no whole number", "give a whole number")
+
+
 def _with_one_size(
-    chosen: Case, numbers: Mapping[str, Value], problems: list[Problem]
-) -> dict[str, Value]:
-    """The sizes that were asked for, and those that are the same number as one of them."""
+    chosen: Case, numbers: Mapping[str, int], problems: list[Problem]
+) -> dict[str, int]:
+    """Return the sizes that are asked for, and those that are the same number as one of them."""
     given = {name: value for name, value in numbers.items() if name in chosen.one_size}
     if len(set(given.values())) > 1:
         problems.append(
@@ -123,8 +141,6 @@ def case_fmus(
     Raises:
         InputRefused: they cannot be compiled or written.
     """
-    from rockshed.fmus.places import Runtime, fmu_file
-
     stale = _stale(chosen, sizes)
     runtime, reason = (
         _best_runtime(chosen, sizes, stale) if wanted == AUTO else (Runtime(wanted), "as asked for")
@@ -139,7 +155,7 @@ def case_fmus(
 
 
 def _build_if_needed(
-    name: str, model: str, sizes: Mapping[str, int], runtime: "Runtime", file: Path, note: Note
+    name: str, model: str, sizes: Mapping[str, int], runtime: Runtime, file: Path, note: Note
 ) -> None:
     from rockshed.fmus.build import BuildError, build_if_needed
 
@@ -154,8 +170,6 @@ def _build_if_needed(
 
 def _stale(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> list[str]:
     """Components of which there is no native FMU that is up to date."""
-    from rockshed.fmus.places import native_is_fresh
-
     return [
         name
         for name, model in chosen.models.items()
@@ -165,9 +179,7 @@ def _stale(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> list[str]:
 
 def _best_runtime(
     chosen: Case, sizes: Mapping[str, Mapping[str, int]], stale: Sequence[str]
-) -> "tuple[Runtime, str]":
-    from rockshed.fmus.places import Runtime, fmu_file
-
+) -> tuple[Runtime, str]:
     if not stale:
         return Runtime.NATIVE, "they are up to date"
     there = [
@@ -183,131 +195,157 @@ def _changed_at(file: Path) -> int:
     return file.stat().st_mtime_ns if file.is_file() else 0
 
 
+@dataclass(frozen=True)
+class Export:
+    """What FMUs are built for.
+
+    Attributes
+    ----------
+    runtime : str, optional
+        ``python``, ``native`` or ``both``; by default Python, with FMI 3 native.
+    platforms : sequence of str
+        Of native FMUs, ``linux64`` for instance; by default this machine's.
+    fmi : int
+        Version of FMI, 2 or 3.
+    """
+
+    runtime: str | None = None
+    platforms: Sequence[str] = ()
+    fmi: int = 2
+
+    @property
+    def chosen_runtime(self) -> str:
+        """The runtime, also where none is named."""
+        return self.runtime or ("python" if self.fmi == 2 else "native")
+
+
 def build_all(
     names: Sequence[str],
-    size_texts: Sequence[str],
-    folder: Path | None,
-    runtime: str | None = None,
-    platforms: Sequence[str] = (),
-    fmi: int = 2,
+    sizes: Mapping[str, int],
+    folder: Path | None = None,
+    export: Export = Export(),
+    problems: Sequence[Problem] = (),
 ) -> list[Path]:
-    """Build the FMUs of these components, or of all; if one of them cannot be made, none is written.
+    """Build the FMUs of components; if one of them cannot be made, none is written.
 
-    A size goes to those of the components that have it. folder: the FMUs go into its folders ``python``, ``native`` and
-    ``native-fmi3``. fmi: 2 or 3, the version of FMI. runtime: by default Python, with FMI 3 native.
+    Parameters
+    ----------
+    names : sequence of str
+        Names of components; empty for all of the catalogue.
+    sizes : mapping of str to int
+        By name of the size; one goes to those of the components that have it.
+    folder : Path, optional
+        The FMUs go into its folders ``python``, ``native`` and ``native-fmi3``; by default into
+        the folder of built FMUs.
+    export : Export
+        Runtime, platforms, version of FMI.
+    problems : sequence of Problem
+        Problems that the caller has with the request, refused together with those seen here.
 
-    Raises:
-        InputRefused: unknown components, sizes, runtimes, versions or platforms, sizes out of range, a compiler that fails, a
-            folder that cannot be written.
+    Returns
+    -------
+    list of Path
+        The FMU files.
+
+    Raises
+    ------
+    InputRefused
+        Unknown components, sizes, runtimes, versions or platforms, sizes out of range, a compiler
+        that fails, a folder that cannot be written.
     """
-    from rockshed.fmus.build import BuildError, Fmi, Runtime, fmu_content, folder_name, store
+    from rockshed.fmus.build import BuildError, Runtime
 
-    runtime = runtime or (Runtime.PYTHON if fmi == Fmi.TWO else Runtime.NATIVE).value
-    problems: list[Problem] = []
-    sizes = assignments("--size", size_texts, problems)
     chosen = list(dict.fromkeys(names or NAMES))
-    problems += [
-        Problem(name, "there is no such component", nearest(name, NAMES))
-        for name in chosen
-        if name not in NAMES
+    found = [
+        *problems,
+        *(
+            Problem(name, "there is no such component", nearest(name, NAMES))
+            for name in chosen
+            if name not in NAMES
+        ),
+        *_export_problems(export),
     ]
-    problems += _runtime_problems(runtime, platforms, fmi)
-    known = [name for name in chosen if name in NAMES]
-    if not problems:
-        problems += _size_problems(known, sizes)
-    if problems:
-        raise InputRefused(problems)
-    its_sizes = {
-        n: component(n).with_sizes({s: int(v) for s, v in sizes.items() if s in component(n).sizes})
-        for n in known
-    }
+    if not found:
+        found += _size_problems(chosen, sizes)
+    if found:
+        raise InputRefused(found)
+    runtime = export.chosen_runtime
     runtimes = list(Runtime) if runtime == BOTH else [Runtime(runtime)]
     try:
-        made = [
-            (r, n, fmu_content(component(n), its_sizes[n], r, platforms, Fmi(fmi)))
-            for r in runtimes
-            for n in known
-        ]
-        return [
-            store(
-                component(n),
-                its_sizes[n],
-                content,
-                folder / folder_name(r, Fmi(fmi)) if folder else None,
-                r,
-                fmi=Fmi(fmi),
-            )
-            for r, n, content in made
-        ]
+        return _build(chosen, sizes, folder, runtimes, export)
     except BuildError as error:
         raise InputRefused([Problem("build", str(error))]) from error
 
 
-def _runtime_problems(runtime: str, platforms: Sequence[str], fmi: int) -> list[Problem]:
+def _build(
+    names: Sequence[str],
+    sizes: Mapping[str, int],
+    folder: Path | None,
+    runtimes: Sequence[Runtime],
+    export: Export,
+) -> list[Path]:
+    """Make the content of all FMUs, then write them."""
+    from rockshed.fmus.build import Fmi, fmu_content, folder_name, store
+
+    fmi, made = Fmi(export.fmi), []
+    for runtime in runtimes:
+        for name in names:
+            built = component(name)
+            its_sizes = built.with_sizes({s: n for s, n in sizes.items() if s in built.sizes})
+            content = fmu_content(built, its_sizes, runtime, export.platforms, fmi)
+            made.append((runtime, built, its_sizes, content))
+    files = []
+    for runtime, built, its_sizes, content in made:
+        place = folder / folder_name(runtime, fmi) if folder else None
+        files.append(store(built, its_sizes, content, place, runtime, fmi=fmi))
+    return files
+
+
+def _export_problems(export: Export) -> list[Problem]:
     from rockshed.fmus.build import ONLY_NATIVE, Fmi
     from rockshed.fmus.native.fmu import PLATFORMS
     from rockshed.fmus.parts import Runtime
 
+    runtime = export.chosen_runtime
     problems = [
         Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS))
-        for name in platforms
+        for name in export.platforms
         if name not in PLATFORMS
     ]
     if runtime not in (*Runtime, BOTH):
-        problems.append(
-            Problem(
-                "--runtime",
-                f"{runtime!r} is unknown",
-                f"choose one of {', '.join(Runtime)}, {BOTH}",
-            )
-        )
-    elif platforms and runtime == Runtime.PYTHON:
-        problems.append(
-            Problem(
-                "--platform",
-                "is for native FMUs; those with Python inside run everywhere",
-                "add --runtime native",
-            )
-        )
-    if fmi not in list(Fmi):
-        problems.append(
-            Problem(f"--fmi {fmi}", "there is no such version of FMI here", "choose 2 or 3")
-        )
-    elif fmi == Fmi.THREE and runtime != Runtime.NATIVE:
-        problems.append(
-            Problem(f"--fmi 3 --runtime {runtime}", ONLY_NATIVE, "add --runtime native")
-        )
+        choice = f"choose one of {', '.join(Runtime)}, {BOTH}"
+        problems.append(Problem("--runtime", f"{runtime!r} is unknown", choice))
+    elif export.platforms and runtime == Runtime.PYTHON:
+        reason = "is for native FMUs; those with Python inside run everywhere"
+        problems.append(Problem("--platform", reason, "add --runtime native"))
+    if export.fmi not in list(Fmi):
+        reason = "there is no such version of FMI here"
+        problems.append(Problem(f"--fmi {export.fmi}", reason, "choose 2 or 3"))
+    elif export.fmi == Fmi.THREE and runtime != Runtime.NATIVE:
+        where = f"--fmi 3 --runtime {runtime}"
+        problems.append(Problem(where, ONLY_NATIVE, "add --runtime native"))
     return problems
 
 
-def _size_problems(names: Sequence[str], sizes: Mapping[str, Value]) -> list[Problem]:
+def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Problem]:
     known = {size for name in names for size in component(name).sizes}
+    have = "have" if len(names) > 1 else "has"
     problems = [
         Problem(
-            f"--size {size}",
-            f"{' and '.join(names)} {'have' if len(names) > 1 else 'has'} no such size",
-            nearest(size, known),
+            f"--size {size}", f"{' and '.join(names)} {have} no such size", nearest(size, known)
         )
         for size in sizes
         if size not in known
     ]
-    problems += [
-        Problem(f"--size {size}", f"{value!r} is no whole number", "give a whole number")
-        for size, value in sizes.items()
-        if not isinstance(value, int)
-    ]
-    for name in names if not problems else []:
-        problems += range_problems(
-            f"--size, {name}",
-            name,
-            {s: int(n) for s, n in sizes.items() if s in component(name).sizes},
-        )
+    problems += [_not_whole(name, value) for name, value in sizes.items() if not _is_whole(value)]
+    if problems:
+        return problems
+    for name in names:
+        its_sizes = {s: n for s, n in sizes.items() if s in component(name).sizes}
+        problems += range_problems(f"--size, {name}", name, its_sizes)
     return problems
 
 
 def is_cold(names: Iterable[str]) -> bool:
     """Whether kernels of any of these components have never been compiled and kept on this machine."""
-    from rockshed.components.catalogue import component
-    from rockshed.components.common.kernels import has_kernels
-
     return not all(has_kernels(component(name).folder.name) for name in names)

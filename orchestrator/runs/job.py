@@ -1,53 +1,43 @@
-"""From what a person asks for to a system that can be run: case or file, sizes, FMUs, values.
+"""From a request to a system that can be run: case or file, sizes, FMUs, values.
 
 Everything that is wrong with a request is collected before it is refused.
 """
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from rockshed.components.catalogue import component
 from rockshed.components.common.units import ms
 
-from ..cases.registry import Case, case, model_changes
+from ..cases.registry import Case, Sizes, case, differences, model_changes, references
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
-from ..core.system.system import System, Value, load_system, system_from, with_values
+from ..core.system.system import System, load_system, system_from, with_values
 from ..metrics.headlines import LOAD_CELL_ROWS
-from .building import AUTO, Note, assignments, case_fmus, case_sizes
+from .building import Note, case_fmus, case_sizes, own_sizes, silent
+from .request import AUTO, Request
 
-
-@dataclass(frozen=True)
-class Request:
-    """What is asked for.
-
-    target: name of a case, or path of a system file (TOML).
-    settings: ``component.parameter=value``; sizes: ``component.size=value``.
-    options: keys of the system that are replaced, ``stop_time`` for instance.
-    model: of the sand, for cases; what is set otherwise goes before it.
-    load_cell: cut-off frequency (Hz) of a load cell through which the transmitted force is to be seen as well.
-    runtime: of the FMUs of a case: python, native, or auto for native ones where they are there and up to date.
-    """
-
-    target: str
-    settings: Sequence[str] = ()
-    sizes: Sequence[str] = ()
-    coupling: str | None = None
-    options: Mapping[str, Any] = field(default_factory=dict)
-    in_process: bool = False
-    load_cell: float | None = None
-    model: str | None = None
-    runtime: str = AUTO
+__all__ = ["Job", "Request", "plan_problems", "prepare"]
 
 
 @dataclass(frozen=True)
 class Job:
     """A system ready to run.
 
-    name: under which its results go. sources: components that are made without an FMU. facts: for the provenance of the run.
+    Attributes
+    ----------
+    name : str
+        Name under which the results go.
+    system : System
+        The system, values and options of the request in it.
+    sources : mapping of str to Source
+        Components that are made without an FMU file.
+    facts : mapping
+        For the provenance of the run: case, sizes, request, what differs from the case, references.
     """
 
     name: str
@@ -57,170 +47,141 @@ class Job:
 
     @property
     def components(self) -> frozenset[str]:
-        """Components of the catalogue whose kernels this process will compile if they have never been; those of a system file are
-        not known."""
-        is_native = self.facts.get("runtime") == "native"
-        return (
-            frozenset()
-            if is_native or "case" not in self.facts
-            else frozenset(case(self.facts["case"]).models.values())
-        )
+        """Components of the catalogue whose kernels this process compiles if nobody has before.
+
+        Those of a system file are not known.
+        """
+        if self.facts.get("runtime") == "native" or "case" not in self.facts:
+            return frozenset()
+        return frozenset(case(self.facts["case"]).models.values())
 
 
-def is_file(target: str) -> bool:
-    """Whether a target is meant as a system file and not as the name of a case."""
-    return target.endswith(".toml") or "/" in target or "\\" in target
+def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] = ()) -> Job:
+    """Make the system of a request; FMUs that are missing or out of date are built.
 
+    Parameters
+    ----------
+    request : Request
+        What is asked for.
+    note : callable
+        Called with a line for each FMU that is built.
+    problems : sequence of Problem
+        Problems that the caller has with the request, refused together with those seen here.
 
-def prepare(request: Request, note: Note = lambda text: None) -> Job:
-    """Find the system, build its FMUs where that is needed, apply what the request changes.
+    Returns
+    -------
+    Job
+        The system, ready to run.
 
-    Raises:
-        InputRefused: everything that is wrong with the request.
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with the request.
     """
     if request.target.endswith(".fmu"):
-        raise InputRefused(
-            [
-                Problem(
-                    request.target,
-                    "is an FMU, and a run takes a case or a system file",
-                    "look into it with "
-                    "`rockshed info`, and name it in a system file; `rockshed info lab-impact --toml` shows one",
-                )
-            ]
-        )
-    problems: list[Problem] = []
-    values = assignments("--set", request.settings, problems)
-    numbers = assignments("--size", request.sizes, problems)
-    if is_file(request.target):
-        problems += [
-            Problem(option, "is for cases only", reason)
-            for option, reason, given in (
-                ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
-                ("--model", "set the parameters of its sand", request.model),
-                (
-                    "--coupling",
-                    "set --master, --exchange-step and the components' parameters",
-                    request.coupling,
-                ),
-                ("--in-process", "a system file names FMU files", request.in_process),
-                ("--runtime", "a system file names FMU files", request.runtime != AUTO),
-            )
-            if given
-        ]
-        if problems:
-            raise InputRefused(problems)
-        name = Path(request.target).stem
-        system = load_system(Path(request.target))
-        sources, facts = dict[str, Source](), dict[str, Any](system_file=request.target)
+        raise InputRefused([_not_an_fmu(request.target)])
+    known = list(problems)
+    if request.is_file:
+        job = _from_file(request, known)
     else:
-        name = case(request.target).name
-        system, sources, facts = _from_case(
-            case(request.target), request, values, numbers, problems, note
-        )
-    system = _changed(system, request, values, problems)
-    problems += _load_cell_problems(request, system)
-    if problems:
-        raise InputRefused(problems + plan_problems(system, sources))
-    if "case" in facts:
-        system = with_values(
-            system,
-            {
-                name: value
-                for name, value in case(facts["case"]).derived(system, facts["sizes"]).items()
-                if name not in values
-            },
-        )
-    seen = {"load_cell": request.load_cell} if request.load_cell else {}
-    return Job(name, system, sources, {**facts, **seen, "changed": {**values, **request.options}})
+        job = _from_case(case(request.target), request, known, note)
+    system = _changed(job.system, request, known)
+    known += _load_cell_problems(request, system)
+    if known:
+        raise InputRefused(known + plan_problems(system, job.sources))
+    if "case" in job.facts:
+        system = _with_derived(system, request, job.facts)
+    facts: dict[str, Any] = {**job.facts, "request": request.as_data()}
+    if request.load_cell:
+        facts["load_cell"] = request.load_cell
+    return replace(job, system=system, facts=facts)
 
 
-def _load_cell_problems(request: Request, system: System) -> list[Problem]:
-    """A load cell whose cut-off is no frequency, or faster than the rows of the results can show."""
-    if request.load_cell is None:
-        return []
-    interval = system.output_interval or system.exchange_step
-    fastest = 1.0 / (LOAD_CELL_ROWS * interval)
-    if 0.0 < request.load_cell <= fastest * (1.0 + 1e-9):
-        return []
-    return [
-        Problem(
-            "--load-cell",
-            f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 and up to "
-            f"{fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
-            "give a lower one"
-            + (
-                f", or --output-interval {1.0 / (LOAD_CELL_ROWS * request.load_cell):.2g} or less"
-                if request.load_cell > 0.0
-                else ""
-            ),
-        )
-    ]
+def _not_an_fmu(target: str) -> Problem:
+    return Problem(
+        target,
+        "is an FMU, and a run takes a case or a system file",
+        "look into it with `rockshed info`, and name it in a system file; "
+        "`rockshed info lab-impact --toml` shows one",
+    )
 
 
-def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem]:
-    """What the FMUs find wrong with a system."""
-    from ..core.run import sources_of
-    from ..core.system.plan import make_plan
+def _from_file(request: Request, problems: list[Problem]) -> Job:
+    """Read the system of a file.
 
-    try:
-        make_plan(system, {**sources_of(system), **sources})
-    except InputRefused as refusal:
-        return refusal.problems
-    return []
-
-
-def _from_case(
-    chosen: Case,
-    request: Request,
-    values: Mapping[str, Value],
-    numbers: Mapping[str, Value],
-    problems: list[Problem],
-    note: Note,
-) -> tuple[System, dict[str, Source], dict[str, Any]]:
-    coupling = request.coupling or next(iter(chosen.couplings))
-    if coupling not in chosen.couplings:
-        problems.append(
-            Problem(
-                "--coupling",
-                f"{coupling!r} is unknown",
-                f"choose one of {', '.join(chosen.couplings)}",
-            )
-        )
-    problems += _runtime_problems(request)
-    model = model_changes(chosen, request.model, values)
-    sizes = case_sizes(chosen, {**model.sizes, **numbers}, problems)
+    Raises
+    ------
+    InputRefused
+        The request asks for what only cases have, or the file is refused.
+    """
+    for option, remedy, asked in (
+        ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
+        ("--model", "set the parameters of its sand", request.model),
+        (
+            "--coupling",
+            "set --master, --exchange-step and the components' parameters",
+            request.coupling,
+        ),
+        ("--in-process", "a system file names FMU files", request.in_process),
+        ("--runtime", "a system file names FMU files", request.runtime != AUTO),
+    ):
+        if asked:
+            problems.append(Problem(option, "is for cases only", remedy))
     if problems:
         raise InputRefused(problems)
+    facts = {
+        "system_file": request.target,
+        "differences": {**request.values, **request.options},
+    }
+    path = Path(request.target)
+    return Job(path.stem, load_system(path), {}, facts)
+
+
+def _from_case(chosen: Case, request: Request, problems: list[Problem], note: Note) -> Job:
+    """Make the system of a case in the sizes of the request, with the model of the sand.
+
+    Raises
+    ------
+    InputRefused
+        Coupling, runtime, model or sizes that are not to be had.
+    """
+    coupling = request.coupling or next(iter(chosen.couplings))
+    problems += _coupling_problems(chosen, coupling) + _runtime_problems(request)
+    model = model_changes(chosen, request.model, request.values)
+    sizes = case_sizes(chosen, {**model.sizes, **request.sizes}, problems)
+    if problems:
+        raise InputRefused(problems)
+    sources: dict[str, Source] = {}
     facts: dict[str, Any] = {"case": chosen.name, "coupling": coupling, "sizes": sizes}
     if request.model:
         facts["model"] = request.model
     if request.in_process:
-        here = {name: f"{made} (in process)" for name, made in chosen.models.items()}
-        return (
-            _with_model(chosen.make(here, sizes, coupling), model),
-            _in_process(chosen, sizes),
-            facts,
-        )
-    fmus = case_fmus(chosen, sizes, note, request.runtime)
-    facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
-    return _with_model(chosen.make(fmus.files, sizes, coupling), model), {}, facts
+        files = {name: f"{made} (in process)" for name, made in chosen.models.items()}
+        sources = _in_process(chosen, sizes)
+    else:
+        fmus = case_fmus(chosen, sizes, note, request.runtime)
+        facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
+        files = dict(fmus.files)
+    base = chosen.make(files, sizes, coupling)
+    given = {**request.values, **request.options}
+    differing = differences(chosen, base, given, sizes, own_sizes(chosen, model.sizes))
+    facts["differences"] = differing
+    facts["references"] = references(chosen, differing).as_data()
+    return Job(chosen.name, _with_model(base, model), sources, facts)
 
 
-def _with_model(system: System, model: Changes) -> System:
-    return system_from(
-        {**with_values(system, model.values).model_dump(), **model.options}, system.name
-    )
+def _coupling_problems(chosen: Case, coupling: str) -> list[Problem]:
+    if coupling in chosen.couplings:
+        return []
+    choice = f"choose one of {', '.join(chosen.couplings)}"
+    return [Problem("--coupling", f"{coupling!r} is unknown", choice)]
 
 
 def _runtime_problems(request: Request) -> list[Problem]:
     known = (AUTO, "native", "python")
     if request.runtime not in known:
-        return [
-            Problem(
-                "--runtime", f"{request.runtime!r} is unknown", f"choose one of {', '.join(known)}"
-            )
-        ]
+        choice = f"choose one of {', '.join(known)}"
+        return [Problem("--runtime", f"{request.runtime!r} is unknown", choice)]
     if request.in_process and request.runtime != AUTO:
         return [
             Problem(
@@ -232,22 +193,33 @@ def _runtime_problems(request: Request) -> list[Problem]:
     return []
 
 
-def _in_process(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> dict[str, Source]:
-    from rockshed.components.catalogue import component
-    from rockshed.fmus.in_process import InProcess
+def _with_model(system: System, model: Changes) -> System:
+    return system_from(
+        {**with_values(system, model.values).model_dump(), **model.options}, system.name
+    )
+
+
+def _with_derived(system: System, request: Request, facts: Mapping[str, Any]) -> System:
+    """Return the system with the values that follow from others where they are not given."""
+    derived = case(facts["case"]).derived(system, facts["sizes"])
+    return with_values(
+        system, {name: value for name, value in derived.items() if name not in request.values}
+    )
+
+
+def _in_process(chosen: Case, sizes: Sizes) -> dict[str, Source]:
+    from rockshed.fmus.in_process import InProcess  # imports pythonfmu, which FMU files do not need
 
     return {name: InProcess(component(model), sizes[name]) for name, model in chosen.models.items()}
 
 
-def _changed(
-    system: System, request: Request, values: Mapping[str, Value], problems: list[Problem]
-) -> System:
-    """The system with other values and other keys, as far as they have the right form."""
+def _changed(system: System, request: Request, problems: list[Problem]) -> System:
+    """Return the system with other values and keys, as far as they have the right form."""
     try:
-        system = with_values(system, values)
+        system = with_values(system, request.values)
     except InputRefused as refusal:
         problems += refusal.problems
-        for name, value in values.items():
+        for name, value in request.values.items():
             with suppress(InputRefused):  # told already
                 system = with_values(system, {name: value})
     try:
@@ -255,3 +227,50 @@ def _changed(
     except InputRefused as refusal:
         problems += refusal.problems
         return system
+
+
+def _load_cell_problems(request: Request, system: System) -> list[Problem]:
+    """Refuse a cut-off that is no frequency, or faster than the rows of the results can show."""
+    if request.load_cell is None:
+        return []
+    interval = system.output_interval or system.exchange_step
+    fastest = 1.0 / (LOAD_CELL_ROWS * interval)
+    if 0.0 < request.load_cell <= fastest * (1.0 + 1e-9):
+        return []
+    remedy = "give a lower one"
+    if request.load_cell > 0.0:
+        longest = 1.0 / (LOAD_CELL_ROWS * request.load_cell)
+        remedy += f", or --output-interval {longest:.2g} or less"
+    return [
+        Problem(
+            "--load-cell",
+            f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 "
+            f"and up to {fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
+            remedy,
+        )
+    ]
+
+
+def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem]:
+    """Return what the FMUs have against a system.
+
+    Parameters
+    ----------
+    system : System
+        Components, connections, values.
+    sources : mapping of str to Source
+        Components that are made without an FMU file.
+
+    Returns
+    -------
+    list of Problem
+        Empty if the system can be run.
+    """
+    from ..core.run import sources_of
+    from ..core.system.plan import make_plan
+
+    try:
+        make_plan(system, {**sources_of(system), **sources})
+    except InputRefused as refusal:
+        return refusal.problems
+    return []

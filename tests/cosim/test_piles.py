@@ -15,8 +15,8 @@ STIFF = RESISTANCE / (1e3 * IMPEDANCE / 1e-4)
 """Quake (m) of a toe that is 1000 times as stiff as the plain port bears at 1e-4 s."""
 
 
-def run(folder, case, *settings, coupling=None, **options):
-    job = prepare(Request(case, settings, coupling=coupling, options=options, in_process=True))
+def run(folder, case, values=(), coupling=None, **options):
+    job = prepare(Request(case, dict(values), coupling=coupling, options=options, in_process=True))
     return simulate(job.system, folder, sources=job.sources, facts=job.facts)
 
 
@@ -27,7 +27,7 @@ def test_spt_at_any_exchange_has_the_converged_set_and_makes_no_energy(tmp_path,
         done = run(
             tmp_path / f"{step}",
             "spt",
-            f"ground.quake={quake}",
+            {"ground.quake": quake},
             exchange_step=step,
             output_interval=1e-3,
         )
@@ -50,7 +50,7 @@ def test_the_plain_port_gives_the_same_set_below_its_limit(tmp_path):
 
 def test_the_plain_port_refuses_a_step_above_its_limit(tmp_path):
     with pytest.raises(InputRefused) as refusal:
-        run(tmp_path / "run", "spt", f"ground.quake={STIFF}", coupling="plain", exchange_step=1e-4)
+        run(tmp_path / "run", "spt", {"ground.quake": STIFF}, coupling="plain", exchange_step=1e-4)
     texts = [str(problem) for problem in refusal.value.problems]
     assert {text.split(":")[0] for text in texts} == {"ground", "rod"}
     assert all("exceeds step_limit = 1e-07 s" in text for text in texts)

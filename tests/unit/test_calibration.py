@@ -83,7 +83,7 @@ def test_the_model_with_the_smaller_error_is_chosen_and_the_other_kept():
     depth = np.linspace(0.002, 0.04, 20)
     measured = Measurement("curve", depth, 38e3 * depth)
     bent, straight = (
-        Calibration(name, (), [fit(measured, pushes(power=power))], ())
+        Calibration(name, {}, [fit(measured, pushes(power=power))], ())
         for name, power in (("bent", 1.3), ("straight", 1.0))
     )
     made, lost = by_misfit({"bent": lambda: bent, "straight": lambda: straight})
@@ -97,7 +97,7 @@ def test_a_model_that_cannot_have_the_load_leaves_it_to_the_other():
     def never():
         fit(measured, pushes(factor=0.0))
 
-    fine = Calibration("fine", (), [fit(measured, pushes())], ())
+    fine = Calibration("fine", {}, [fit(measured, pushes())], ())
     made, lost = by_misfit({"never": never, "fine": lambda: fine})
     assert ([c.rotation for c in made], list(lost)) == (["fine"], ["never"])
     with pytest.raises(Unreachable):
@@ -113,8 +113,7 @@ def sand(monkeypatch):
 
     def use(factor=1.0, exponent=1.0, status=COMPLETE, failed_at=None):
         def run(task, status=COMPLETE):
-            settings = dict(text.split("=") for text in task.request.settings)
-            made = push(float(settings["sand.modulus"]) / E_BAR, 1, factor, exponent)
+            made = push(float(task.request.values["sand.modulus"]) / E_BAR, 1, factor, exponent)
             series = {
                 "sand.penetration": made.curve.depth,
                 "sand.rock.force.y": made.curve.load,
@@ -180,11 +179,11 @@ def test_what_the_calibration_chooses_cannot_be_set():
     with pytest.raises(InputRefused) as refusal:
         calibrate(
             [of_stiffness(38e3, "k")],
-            settings=["sand.modulus=3e6", "sand.damping=0.1", "sand.seed=4"],
+            values={"sand.modulus": 3e6, "sand.damping": 0.1, "sand.seed": 4},
         )
     assert [problem.where for problem in refusal.value.problems] == [
-        "--set sand.modulus=3e6",
-        "--set sand.seed=4",
+        "--set sand.modulus",
+        "--set sand.seed",
     ]
 
 

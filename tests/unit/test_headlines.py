@@ -1,17 +1,20 @@
 """Headline figures and the table, from made-up results whose figures are known."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rockshed.cases import sonoda1993
-from rockshed.cases.registry import case, cases, changes_of, references_of
+from rockshed.cases.registry import case, cases, differences, references
 from rockshed.core.errors import InputRefused
 from rockshed.core.results.metric import Metric, Metrics
 from rockshed.core.results.reading import Run
 from rockshed.metrics import comparison
 from rockshed.metrics import headlines as h
+from rockshed.references import References
+from rockshed.runs.building import own_sizes
 from rockshed.runs.job import Request, prepare
 
 KGF = 9.80665
@@ -331,14 +334,26 @@ def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
 def test_every_test_of_the_paper_is_a_case_and_finds_its_references_again():
     assert len(cases()) == 26
     assert next(iter(cases())) == "lab-impact"
-    assert references_of({"case": "lab-impact-10"}).known[
-        h.PEAK_TRANSMITTED
-    ].experiment.value == pytest.approx(673.2 * KGF)
-    assert references_of({}).known == {}
+    found = references(case("lab-impact-10"), {})
+    measured = found.known[h.PEAK_TRANSMITTED].experiment
+    assert measured.value == pytest.approx(673.2 * KGF)
+    assert References.from_data(json.loads(json.dumps(found.as_data()))) == replace(
+        found, remarks=()
+    )
+    assert References.from_data({}).known == {}
 
 
 def of_lab_impact(changed, **sizes):
-    return {"case": "lab-impact", "changed": changed, "sizes": {"sand": sizes}}
+    """What a run of lab-impact with other values and sizes of the sand has other than the case."""
+    chosen = case("lab-impact")
+    own = own_sizes(chosen, {})
+    built = {**own, "sand": {**own["sand"], **sizes}}
+    base = chosen.make(chosen.models, built, "paper")
+    return differences(chosen, base, changed, built, own)
+
+
+def references_of(differing):
+    return references(case("lab-impact"), differing)
 
 
 @pytest.mark.parametrize(
@@ -394,11 +409,9 @@ def test_another_sand_is_compared_with_table_5_only():
 
 
 def test_changed_values_and_sizes_are_named():
-    assert changes_of(of_lab_impact({"rock.mass": 8, "rock.radius": 0.0495}, discs=740)) == {
-        "rock.mass": 8,
-        "sand.discs": 740,
-    }
-    assert changes_of({"changed": {"stop_time": 0.1}}) == {"stop_time": 0.1}
+    differing = of_lab_impact({"rock.mass": 8, "rock.radius": 0.0495}, discs=740)
+    assert differing == {"rock.mass": 8, "sand.discs": 740}
+    assert of_lab_impact({"stop_time": 0.1}) == {"stop_time": 0.1}
     run = made_up()
-    run.provenance.update(of_lab_impact({"rock.mass": 8}, discs=740), coupling="paper")
+    run.provenance.update(differences=differing, coupling="paper")
     assert "changed: rock.mass = 8, sand.discs = 740" in comparison.caption(run)

@@ -5,15 +5,15 @@ import math
 import pytest
 
 from rockshed.cases import sonoda1993
-from rockshed.cases.registry import case, cases, changes_of, model_changes
+from rockshed.cases.registry import case, cases, model_changes
 from rockshed.cases.sand_models import MODELS
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused
 from rockshed.runs.job import Request, prepare
 
 
-def prepared(target, model, *settings):
-    return prepare(Request(target, settings, model=model, in_process=True))
+def prepared(target, model, **values):
+    return prepare(Request(target, values, model=model, in_process=True))
 
 
 def test_the_literal_model_is_eq_1_to_the_letter():
@@ -54,7 +54,7 @@ def test_a_prepared_layer_is_as_thick_as_in_the_test_and_the_rock_meets_it_as_fa
 
 
 def test_another_state_of_the_soil_may_be_asked_for():
-    job = prepared("lab-impact", "one-law", "sand.solid_fraction=0.72", "sand.cohesion=0")
+    job = prepared("lab-impact", "one-law", **{"sand.solid_fraction": 0.72, "sand.cohesion": 0})
     sand = job.system.components["sand"].parameters
     assert (sand["solid_fraction"], sand["cohesion"]) == (0.72, 0)
     assert (
@@ -65,7 +65,7 @@ def test_another_state_of_the_soil_may_be_asked_for():
 
 def test_what_a_model_sets_is_no_change_of_the_test():
     for target in (name for name, listed in cases().items() if listed.layer):
-        assert changes_of(prepared(target, "one-law").facts) == {}
+        assert prepared(target, "one-law").facts["differences"] == {}
 
 
 def test_an_unknown_model_is_answered_with_the_known_ones():

@@ -97,7 +97,7 @@ SCHEMA = exactly(
 
 def task(seed=None):
     return Task(
-        Request("lab-impact", () if seed is None else (f"sand.seed={seed}",)), "calibrated", seed
+        Request("lab-impact", {} if seed is None else {"sand.seed": seed}), "calibrated", seed
     )
 
 

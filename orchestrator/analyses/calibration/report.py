@@ -15,6 +15,7 @@ from ...cases.sonoda1993 import tests
 from ...commands.screen import plain_table
 from ...core.errors import InputRefused, Problem
 from ...core.results.run_folder import write_json
+from ...core.system.system import Value
 from ...papers.running import Done
 from ...runs.building import Note
 from .measurement import Measurement, of_stiffness, read_curve, stiffness_from
@@ -45,7 +46,7 @@ class Asked:
 
     measurements: Sequence[Measurement]
     rotation: str
-    settings: Sequence[str]
+    values: Mapping[str, Value]
     printed: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -63,7 +64,7 @@ class Found:
 
 
 def asked_for(
-    target: str | None, stiffness: str | None, rotation: str, settings: Sequence[str]
+    target: str | None, stiffness: str | None, rotation: str, values: Mapping[str, Value]
 ) -> Asked:
     """The measurements that a command names: a curve, a spring constant, or the paper's tests.
 
@@ -95,9 +96,7 @@ def asked_for(
                 "give a load-penetration curve, or choose free or locked",
             )
         )
-    if rotation == BEST and any(
-        text.partition("=")[0].strip() == "sand.rotation" for text in settings
-    ):
+    if rotation == BEST and "sand.rotation" in values:
         problems.append(
             Problem(
                 "--set sand.rotation", "is what --rotation fit chooses", "leave one of them out"
@@ -107,7 +106,7 @@ def asked_for(
         raise InputRefused(problems)
     if stiffness is not None:
         return Asked(
-            [of_stiffness(stiffness_from(stiffness), f"k = {stiffness}")], rotation, settings
+            [of_stiffness(stiffness_from(stiffness), f"k = {stiffness}")], rotation, values
         )
     if target == PAPER:
         of_table = {
@@ -116,10 +115,10 @@ def asked_for(
         return Asked(
             [of_stiffness(test.static_stiffness, name) for name, test in of_table.items()],
             rotation,
-            settings,
+            values,
             {name: test.modulus for name, test in of_table.items()},
         )
-    return Asked([read_curve(Path(str(target)))], rotation, settings)
+    return Asked([read_curve(Path(str(target)))], rotation, values)
 
 
 def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Done) -> Found:
@@ -132,7 +131,7 @@ def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Done) 
     made, lost = by_misfit(
         {
             model: partial(
-                calibrate, asked.measurements, model, asked.settings, seeds, workers, note, done
+                calibrate, asked.measurements, model, asked.values, seeds, workers, note, done
             )
             for model in models
         }
@@ -180,7 +179,7 @@ def notes(found: Found) -> list[str]:
     """What a reader has to know of the figures."""
     best = found.calibrations[0]
     said = [
-        f"rotation {best.rotation}: {', '.join(best.settings)}; {len(best.pushes)} static tests, "
+        f"rotation {best.rotation}: {', '.join(_settings(best))}; {len(best.pushes)} static tests, "
         f"{len({push.seed for push in best.pushes})} samples",
         "±: standard deviation of the E_bar that single samples ask for"
         + (", and error of the curve, together" if best.fits[0].measured.is_curve else ""),
@@ -194,13 +193,17 @@ def notes(found: Found) -> list[str]:
     ]
 
 
+def _settings(calibration: Calibration) -> list[str]:
+    return [f"{name}={value}" for name, value in calibration.values.items()]
+
+
 def as_data(found: Found) -> dict[str, Any]:
     """For programs, in SI."""
     return {
         "calibrations": [
             {
                 "rotation": calibration.rotation,
-                "settings": list(calibration.settings),
+                "settings": _settings(calibration),
                 "tests": [
                     {"e_bar": push.modulus, "seed": push.seed} for push in calibration.pushes
                 ],

@@ -16,6 +16,7 @@ from rockshed.components.common.units import cm, kgf
 from ...cases.sonoda1993 import STATIC_RATIO
 from ...cases.static_loading import NAME, SPEED, rock_height
 from ...core.errors import InputRefused, Problem, RunFailed
+from ...core.system.system import Value
 from ...metrics.load_curve import LoadCurve, load_curve
 from ...papers.running import Done, run_all, run_here
 from ...papers.sonoda1993.laboratory import LATTICE_SHIFT, MODELS
@@ -26,7 +27,10 @@ from .measurement import Measurement
 
 LOWEST, HIGHEST = 1.0 * kgf / cm**2, 500.0 * kgf / cm**2
 """E_bar (Pa) between which it is sought."""
-ROTATIONS: Mapping[str, Sequence[str]] = {"locked": MODELS["calibrated"], "free": MODELS["literal"]}
+ROTATIONS: Mapping[str, Mapping[str, Value]] = {
+    "locked": MODELS["calibrated"],
+    "free": MODELS["literal"],
+}
 """Models of the sand by what their discs may do; ``free`` goes with stiffness factor 1."""
 _SOUGHT = ("sand.modulus", "sand.seed", "sand.internal_step", "rock.position0.y")
 """Parameters that the calibration sets itself."""
@@ -83,10 +87,10 @@ class Fit:
 
 @dataclass(frozen=True)
 class Calibration:
-    """Fits to all measurements with one model of the sand, from the same tests. settings: what is changed in the case."""
+    """Fits to all measurements with one model of the sand, from the same tests. values: what is changed in the case."""
 
     rotation: str
-    settings: Sequence[str]
+    values: Mapping[str, Value]
     fits: Sequence[Fit]
     pushes: Sequence[Push]
 
@@ -177,7 +181,7 @@ class _Bench:
     root: stable step (s) * sqrt(E_bar). surface: highest (m), depth: way (m) from there.
     """
 
-    settings: Sequence[str]
+    values: Mapping[str, Value]
     surface: float
     depth: float
     root: float
@@ -188,13 +192,13 @@ class _Bench:
         return Task(
             Request(
                 NAME,
-                (
-                    *self.settings,
-                    f"sand.modulus={modulus:.6g}",
-                    f"sand.seed={seed}",
-                    f"sand.internal_step={step:.3g}",
-                    f"rock.position0.y={rock_height(self.surface):.6g}",
-                ),
+                {
+                    **self.values,
+                    "sand.modulus": modulus,
+                    "sand.seed": seed,
+                    "sand.internal_step": step,
+                    "rock.position0.y": rock_height(self.surface),
+                },
                 options={"stop_time": round(self.depth / SPEED, 2)},
             ),
             seed=seed,
@@ -204,7 +208,7 @@ class _Bench:
 def calibrate(
     measurements: Sequence[Measurement],
     rotation: str = "locked",
-    settings: Sequence[str] = (),
+    values: Mapping[str, Value] | None = None,
     seeds: int = 5,
     workers: int | None = None,
     note: Note = lambda text: None,
@@ -212,21 +216,21 @@ def calibrate(
 ) -> Calibration:
     """Find E_bar for each measurement.
 
-    rotation: one of :data:`ROTATIONS`. settings: further changes of the case, ``component.parameter=value``. seeds: samples, at
+    rotation: one of :data:`ROTATIONS`. values: further changes of the case, by ``component.parameter``. seeds: samples, at
     least two.
 
     Raises:
-        InputRefused: settings that cannot be had, or (:class:`Unreachable`) loads that the sand does not have.
+        InputRefused: values that cannot be had, or (:class:`Unreachable`) loads that the sand does not have.
         RunFailed: a run could not go on.
         KeyboardInterrupt: Ctrl-C, also from a run that took it for itself.
     """
     if problems := [
-        Problem(f"--set {text}", "is chosen by the calibration", "leave it out")
-        for text in settings
-        if text.partition("=")[0].strip() in _SOUGHT
+        Problem(f"--set {name}", "is chosen by the calibration", "leave it out")
+        for name in values or {}
+        if name in _SOUGHT
     ]:
         raise InputRefused(problems)
-    chosen = (f"sand.lattice_shift={LATTICE_SHIFT:g}", *ROTATIONS[rotation], *settings)
+    chosen = {"sand.lattice_shift": LATTICE_SHIFT, **ROTATIONS[rotation], **(values or {})}
     bench = _bench(chosen, max(float(measured.depth[-1]) for measured in measurements), note)
     ordered = sorted(
         measurements, key=lambda measured: float(measured.load[-1] / measured.depth[-1])
@@ -256,18 +260,18 @@ def _around(low: float, high: float) -> list[float]:
     return [float(modulus) for modulus in np.geomspace(low / _SIDE, high * _SIDE, count)]
 
 
-def _bench(settings: Sequence[str], deepest: float, note: Note) -> _Bench:
+def _bench(values: Mapping[str, Value], deepest: float, note: Note) -> _Bench:
     """Look how high the sand stands and which step is stable: a run of one exchange, the rock far above."""
     modulus = 20.0 * kgf / cm**2
     probe = Task(
         Request(
             NAME,
-            (
-                *settings,
-                f"sand.modulus={modulus!r}",
-                f"sand.internal_step={_PROBE_STEP!r}",
-                f"rock.position0.y={_HIGH!r}",
-            ),
+            {
+                **values,
+                "sand.modulus": modulus,
+                "sand.internal_step": _PROBE_STEP,
+                "rock.position0.y": _HIGH,
+            },
             options={"stop_time": 1e-3},
         ),
         allow_unstable=True,
@@ -275,7 +279,7 @@ def _bench(settings: Sequence[str], deepest: float, note: Note) -> _Bench:
     outcome = _ended(run_here(probe, note))
     margin = _MARGIN if outcome.options["packing"] == "random" else 0.0
     return _Bench(
-        settings,
+        values,
         float(outcome.series["sand.surface_height"][0]) + margin,
         deepest + 2.0 * margin + 0.15 * cm,
         float(outcome.series["sand.stable_step"][0]) * math.sqrt(modulus),

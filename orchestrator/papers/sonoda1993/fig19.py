@@ -8,6 +8,7 @@ import numpy as np
 from rockshed.components.common.units import cm, kgf, ms
 
 from ...cases.sonoda1993 import DEFAULT_TEST, case_name
+from ...core.system.system import Value
 from ...metrics.headlines import IMPACT_ENERGY, PEAK_TRANSMITTED
 from ...runs.job import Request
 from ..statistics import power_law
@@ -21,32 +22,31 @@ SAME = 1.0
 _INTERNAL = ("sand", "rock", "beam")
 STEPS = (2e-5, 5e-5, 1e-4, 2e-4, 5e-4)
 """Exchange steps (s) of the study of convergence; sand and rock keep their 1e-5 s, the beam its 1e-6 s."""
-SCHEMES: Mapping[str, tuple[str, Sequence[str]]] = {
-    "paper": ("paper", ()),
-    "impulse": ("impulse", ()),
-    "jacobi": ("jacobi", ()),
-    "jacobi, extrapolated": ("jacobi", ("sand.kinematics=linear", "sand.forces=mean")),
+SCHEMES: Mapping[str, tuple[str, Mapping[str, Value]]] = {
+    "paper": ("paper", {}),
+    "impulse": ("impulse", {}),
+    "jacobi": ("jacobi", {}),
+    "jacobi, extrapolated": ("jacobi", {"sand.kinematics": "linear", "sand.forces": "mean"}),
 }
 """Schemes by name: the coupling of the case and what is changed in it."""
 
 
 def _single(step: float) -> Task:
     """One step for everything."""
-    settings = tuple(f"{name}.internal_step={step!r}" for name in _INTERNAL)
+    steps = {f"{name}.internal_step": step for name in _INTERNAL}
+    options = {"stop_time": STOP, "exchange_step": step}
     return Task(
-        Request(
-            case_name(DEFAULT_TEST), settings, options={"stop_time": STOP, "exchange_step": step}
-        ),
+        Request(case_name(DEFAULT_TEST), steps, options=options),
         f"single step {step:g} s",
         allow_unstable=True,
     )
 
 
 def _exchange(scheme: str, step: float) -> Task:
-    coupling, settings = SCHEMES[scheme]
+    coupling, values = SCHEMES[scheme]
     options = {"stop_time": STOP, "exchange_step": step, "output_interval": max(1e-4, step)}
     return Task(
-        Request(case_name(DEFAULT_TEST), settings, coupling=coupling, options=options), scheme
+        Request(case_name(DEFAULT_TEST), values, coupling=coupling, options=options), scheme
     )
 
 

@@ -1,14 +1,15 @@
 """Impacts at full scale as tasks: models of the sand, each with one assumption more or another than the one before, and seeds."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rockshed.components.common.units import cm, kgf, ms, tf
 
 from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
 from ...cases.sand_models import LOOSE
+from ...core.system.system import Value
 from ...metrics.headlines import SETTLED_CUT_OFF, low_pass
 from ...runs.job import Request
 from ..study import COMPLETE, Outcome, Task
@@ -23,37 +24,42 @@ if TYPE_CHECKING:
 class Model:
     """A model of the sand and of what stands on the girders.
 
-    settings: ``sand.parameter=value``. girders: ``beam.parameter=value``, on girders only. pack: discs are a random pack and a seed
+    values: by ``sand.parameter``. girders: values by ``beam.parameter``, on girders only. pack: discs are a random pack and a seed
     gives another one; if not, a seed shifts the lattice. quick: whether a quick reproduction has it. law: a model of the sand by
     name, which says where the rock starts.
     """
 
     name: str
-    settings: Sequence[str] = ()
-    girders: Sequence[str] = ()
+    values: Mapping[str, Value] = field(default_factory=dict)
+    girders: Mapping[str, Value] = field(default_factory=dict)
     pack: bool = True
     quick: bool = False
     law: str | None = None
 
 
-FREE = (
-    "sand.rotation=free",
-    "sand.stiffness_factor=1",
-    "sand.disc.spread=0.25",
-    "sand.settling.time=8",
-)
-PACK = (*FREE, "sand.packing=random")
+FREE: Mapping[str, Value] = {
+    "sand.rotation": "free",
+    "sand.stiffness_factor": 1.0,
+    "sand.disc.spread": 0.25,
+    "sand.settling.time": 8.0,
+}
+PACK: Mapping[str, Value] = {**FREE, "sand.packing": "random"}
 """A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
-ROLLING = (*PACK, "sand.rolling_resistance=0.3")
-POURED = (*FREE, "sand.packing=prepared", "sand.solid_fraction=0.74", "sand.rolling_resistance=0.3")
+ROLLING: Mapping[str, Value] = {**PACK, "sand.rolling_resistance": 0.3}
+POURED: Mapping[str, Value] = {
+    **FREE,
+    "sand.packing": "prepared",
+    "sand.solid_fraction": 0.74,
+    "sand.rolling_resistance": 0.3,
+}
 """The same brought to the solid fraction of poured sand, so that no pack is looser than another."""
-BULK = "sand.unit_weight_of=layer"
+BULK: Mapping[str, Value] = {"sand.unit_weight_of": "layer"}
 """0.0018 kgf/cm3 as the unit weight of the layer instead of that of a disc."""
-UNLOADING = "sand.unloading_ratio=3"
+UNLOADING: Mapping[str, Value] = {"sand.unloading_ratio": 3.0}
 """Unloading stiffness / loading stiffness of the contacts (Walton and Braun)."""
-COHESION = f"sand.cohesion={0.05 * kgf / cm**2:.6g}"
+COHESION: Mapping[str, Value] = {"sand.cohesion": 0.05 * kgf / cm**2}
 """0.05 kgf/cm2, by capillary bridges (Rumpf)."""
-DECK_AND_BOX = ("beam.deck.mass=200", "beam.box.mass=2000")
+DECK_AND_BOX: Mapping[str, Value] = {"beam.deck.mass": 200, "beam.box.mass": 2000}
 """Assumed; the paper says nothing of them."""
 
 MODELS = (
@@ -62,16 +68,16 @@ MODELS = (
     Model("random pack", PACK),
     Model("random pack, rolling", ROLLING),
     Model("poured", POURED, quick=True),
-    Model("poured, bulk weight", (*POURED, BULK)),
+    Model("poured, bulk weight", {**POURED, **BULK}),
     Model("poured, deck and box", POURED, DECK_AND_BOX),
-    Model("poured, unloading 3", (*POURED, UNLOADING)),
-    Model("poured, cohesion", (*POURED, COHESION)),
-    Model("poured, all together", (*POURED, BULK, UNLOADING, COHESION), DECK_AND_BOX),
+    Model("poured, unloading 3", {**POURED, **UNLOADING}),
+    Model("poured, cohesion", {**POURED, **COHESION}),
+    Model("poured, all together", {**POURED, **BULK, **UNLOADING, **COHESION}, DECK_AND_BOX),
     Model("one-law", law=ONE_LAW, quick=True),
-    Model("one-law, elastic", ("sand.unloading_ratio=1",), law=ONE_LAW),
-    Model("one-law, deck and box", (), DECK_AND_BOX, law=ONE_LAW),
-    Model("one-law, as poured", (f"sand.solid_fraction={LOOSE}",), law=ONE_LAW),
-    Model("one-law, dry", ("sand.cohesion=0",), law=ONE_LAW),
+    Model("one-law, elastic", {"sand.unloading_ratio": 1.0}, law=ONE_LAW),
+    Model("one-law, deck and box", {}, DECK_AND_BOX, law=ONE_LAW),
+    Model("one-law, as poured", {"sand.solid_fraction": LOOSE}, law=ONE_LAW),
+    Model("one-law, dry", {"sand.cohesion": 0.0}, law=ONE_LAW),
 )
 """One line a model."""
 SEEDS = range(1, 9)
@@ -103,15 +109,17 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
     on_girders = case.startswith("girders")
 
     def task(seed: int | None) -> Task:
-        higher = _above_pack() if model.pack and not model.law else ()
-        settings = [*model.settings, *(model.girders if on_girders else ()), *higher]
+        values = dict(model.values)
+        if on_girders:
+            values |= model.girders
+        if model.pack and not model.law:
+            values |= _above_pack()
         if seed is not None:
-            settings += [
-                f"sand.seed={seed}",
-                *([] if model.pack else [f"sand.lattice_shift={LATTICE_SHIFT:g}"]),
-            ]
+            values["sand.seed"] = seed
+        if seed is not None and not model.pack:
+            values["sand.lattice_shift"] = LATTICE_SHIFT
         request = Request(
-            case, settings, coupling="impulse", options={"stop_time": stop_time}, model=model.law
+            case, values, coupling="impulse", options={"stop_time": stop_time}, model=model.law
         )
         return Task(request, model.name, seed)
 
@@ -120,13 +128,13 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
     return [task(seed) for seed in SEEDS]
 
 
-def _above_pack() -> Sequence[str]:
+def _above_pack() -> dict[str, Value]:
     """The rock starts so high that it is above every pack, and so fast that it has its speed where the lattice ends."""
     fallen = 2.0 * GRAVITY * (_FREE_HEIGHT - LAYER)
-    return (
-        f"rock.position0.y={_FREE_HEIGHT + ROCK_RADIUS:.6g}",
-        f"rock.velocity0.y={-math.sqrt(ROCK_SPEED**2 - fallen):.8g}",
-    )
+    return {
+        "rock.position0.y": _FREE_HEIGHT + ROCK_RADIUS,
+        "rock.velocity0.y": -math.sqrt(ROCK_SPEED**2 - fallen),
+    }
 
 
 def plot_forces(axes: "Axes", outcome: Outcome) -> None:

@@ -1,21 +1,24 @@
 """Impacts of the laboratory as tasks: models of the sand, seeds."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from rockshed.components.common.units import cm
 
-from ...cases.sand_models import settings
+from ...cases.sand_models import model_values
 from ...cases.sonoda1993 import case_name
+from ...core.system.system import Value
 from ...runs.job import Request
 from ..study import Task
 
-MODELS: Mapping[str, Sequence[str]] = {name: settings(name) for name in ("calibrated", "literal")}
-"""Models of the paper's sand by name, and what is changed for them."""
+MODELS: Mapping[str, Mapping[str, Value]] = {
+    name: model_values(name) for name in ("calibrated", "literal")
+}
+"""Values, by ``sand.parameter``, of the models of the paper's sand by name."""
 STEEL_DISCS = "calibrated, steel discs"
-READINGS: Mapping[str, Sequence[str]] = {
+READINGS: Mapping[str, Mapping[str, Value]] = {
     **MODELS,
-    STEEL_DISCS: (f"sand.beam.disc_mass={math.pi * (2.5 * cm) ** 2 * 10 * cm * 7850.0:.4g}",),
+    STEEL_DISCS: {"sand.beam.disc_mass": math.pi * (2.5 * cm) ** 2 * 10 * cm * 7850.0},
 }
 """The same, and the calibrated sand with another reading of eq. (1) on the beam: in the dashpots there, m is the mass of a beam
 disc of steel, as deep as the cushion."""
@@ -37,16 +40,19 @@ SEED_NOTE = (
 def impact(
     test: int,
     model: str,
-    changes: Sequence[str] = (),
+    changes: Mapping[str, Value] | None = None,
     seed: int | None = None,
     coupling: str | None = None,
 ) -> Task:
     """The impact of a test of table 2 with one of :data:`ALL_MODELS`. A seed shifts the lattice, or gives another packing."""
-    shifted = () if seed is None else (*_lattice(model), f"sand.seed={seed}")
-    changed = READINGS.get(model, ())
+    values = {**READINGS.get(model, {}), **(changes or {})}
+    if seed is not None and model != ONE_LAW:
+        values["sand.lattice_shift"] = LATTICE_SHIFT
+    if seed is not None:
+        values["sand.seed"] = seed
     request = Request(
         case_name(test),
-        (*changed, *changes, *shifted),
+        values,
         coupling=coupling,
         options={"stop_time": STOP},
         model=model if model == ONE_LAW else None,
@@ -54,11 +60,9 @@ def impact(
     return Task(request, model, seed)
 
 
-def _lattice(model: str) -> Sequence[str]:
-    return (f"sand.lattice_shift={LATTICE_SHIFT:g}",) if model != ONE_LAW else ()
-
-
-def impacts(test: int, model: str, quick: bool, changes: Sequence[str] = ()) -> list[Task]:
+def impacts(
+    test: int, model: str, quick: bool, changes: Mapping[str, Value] | None = None
+) -> list[Task]:
     """One impact for each seed; in a quick study one, with few exchanges."""
     if quick:
         return [impact(test, model, changes, SEEDS[0], "impulse")]

@@ -1,7 +1,7 @@
 """One sand law: one contact law with one stiffness for static test, laboratory, rigid base and girders; what trades off in it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import mean, stdev
 from typing import Any
@@ -12,6 +12,7 @@ from ...cases import full_scale, sonoda1993
 from ...cases.sand_models import DENSE, LOOSE, ONE_LAW_MODULUS, ONE_LAW_UNLOADING, ROLLING
 from ...cases.static_loading import NAME as STATIC_TEST
 from ...cases.static_loading import SPEED
+from ...core.system.system import Value
 from ...metrics.headlines import (
     BEAM_SHARE_FROM_STRAIN,
     PEAK_TRANSMITTED,
@@ -37,23 +38,19 @@ _KGF_PER_CM2 = kgf / cm**2
 
 @dataclass(frozen=True)
 class Law:
-    """The law with something changed in it, for all tests alike. settings: ``sand.parameter=value``."""
+    """The law with something changed in it, for all tests alike. values: by ``sand.parameter``."""
 
     name: str
-    settings: Sequence[str] = ()
-
-
-def _modulus(value: float) -> str:
-    return f"sand.modulus={value * _KGF_PER_CM2!r}"
+    values: Mapping[str, Value] = field(default_factory=dict)
 
 
 LAWS = (
     Law(ONE_LAW),
-    Law("unloading ratio 1 (elastic)", ("sand.unloading_ratio=1",)),
-    Law("unloading ratio 2", ("sand.unloading_ratio=2",)),
-    Law("unloading ratio 6", ("sand.unloading_ratio=6",)),
-    Law("E_bar 50", (_modulus(50.0),)),
-    Law("rolling resistance 0.1", ("sand.rolling_resistance=0.1",)),
+    Law("unloading ratio 1 (elastic)", {"sand.unloading_ratio": 1.0}),
+    Law("unloading ratio 2", {"sand.unloading_ratio": 2.0}),
+    Law("unloading ratio 6", {"sand.unloading_ratio": 6.0}),
+    Law("E_bar 50", {"sand.modulus": 50.0 * _KGF_PER_CM2}),
+    Law("rolling resistance 0.1", {"sand.rolling_resistance": 0.1}),
 )
 """What is compared; one line each."""
 
@@ -74,15 +71,15 @@ def laws(quick: bool) -> Sequence[Law]:
 def static_tests(test: sonoda1993.Test, quick: bool) -> list[Task]:
     """The static test on the soil of a test, one for each packing; in a quick study faster."""
     state, faster = sonoda1993.soil(test), HASTE if quick else 1
-    settings = (
-        f"sand.cohesion={state.cohesion!r}",
-        f"sand.solid_fraction={state.solid_fraction}",
-        f"rock.velocity0.y={-SPEED * faster:g}",
-    )
+    values = {
+        "sand.cohesion": state.cohesion,
+        "sand.solid_fraction": state.solid_fraction,
+        "rock.velocity0.y": -SPEED * faster,
+    }
     options = {"stop_time": _STATIC_STOP / faster}
     return [
         Task(
-            Request(STATIC_TEST, (*settings, f"sand.seed={seed}"), options=options, model=ONE_LAW),
+            Request(STATIC_TEST, {**values, "sand.seed": seed}, options=options, model=ONE_LAW),
             ONE_LAW,
             seed,
         )
@@ -96,7 +93,7 @@ def impacts(case: str, law: Law, quick: bool, stop_time: float = STOP) -> list[T
         Task(
             Request(
                 case,
-                (*law.settings, f"sand.seed={seed}"),
+                {**law.values, "sand.seed": seed},
                 coupling="impulse",
                 options={"stop_time": stop_time},
                 model=ONE_LAW,

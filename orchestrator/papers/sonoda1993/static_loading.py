@@ -1,6 +1,6 @@
 """Figs 12 and 13, tables 3 and 4: the static loading test. Load over penetration, secant spring constant k, k against E_bar."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -11,6 +11,7 @@ from rockshed.components.common.units import cm, kgf
 
 from ...cases.sonoda1993 import LAYER, STATIC_RATIO, printed_rows
 from ...cases.static_loading import E_BAR, NAME, SPEED, STOP, rock_height
+from ...core.system.system import Value
 from ...metrics.headlines import STATIC_DEPARTURE, STATIC_LOAD, STATIC_STIFFNESS
 from ...metrics.load_curve import DEPTH, load_curve
 from ...runs.job import Request
@@ -32,21 +33,21 @@ PROPORTIONAL = 0.99
 class Sand:
     """A model of the sand in a packing.
 
-    model: one of :data:`MODELS`. settings: what else is changed. step: internal step (s) at the smallest E_bar, which falls with
+    model: one of :data:`MODELS`. values: what else is changed. step: internal step (s) at the smallest E_bar, which falls with
     its root, about 0.85 of the stable one. surface: the highest (m) that a sample may have; margin: how much lower (m) the lowest
     may be.
     """
 
     name: str
     model: str
-    settings: Sequence[str]
+    values: Mapping[str, Value]
     step: float
     surface: float = LAYER
     margin: float = 0.0
 
 
-_LATTICE = (f"sand.lattice_shift={LATTICE_SHIFT:g}",)
-_RANDOM = ("sand.packing=random", "sand.disc.spread=0.25")
+_LATTICE: Mapping[str, Value] = {"sand.lattice_shift": LATTICE_SHIFT}
+_RANDOM: Mapping[str, Value] = {"sand.packing": "random", "sand.disc.spread": 0.25}
 SANDS = (
     Sand("calibrated, square", "calibrated", _LATTICE, 1.38e-4),
     Sand("literal, square", "literal", _LATTICE, 7.5e-5),
@@ -59,20 +60,20 @@ SANDS = (
 def pushes(sand: Sand, e_bar: float, quick: bool) -> list[Task]:
     """The static test of a sand with E_bar (kgf/cm2), one for each seed; in a quick study one, faster."""
     faster = HASTE if quick else 1
-    changed = (
-        *MODELS[sand.model],
-        *sand.settings,
-        f"sand.modulus={e_bar * kgf / cm**2!r}",
-        f"sand.internal_step={sand.step * (E_BAR[0] / e_bar) ** 0.5:.3g}",
-        f"rock.position0.y={rock_height(sand.surface):.6g}",
-        f"rock.velocity0.y={-SPEED * faster:g}",
-    )
+    changed: dict[str, Value] = {
+        **MODELS[sand.model],
+        **sand.values,
+        "sand.modulus": e_bar * kgf / cm**2,
+        "sand.internal_step": sand.step * (E_BAR[0] / e_bar) ** 0.5,
+        "rock.position0.y": rock_height(sand.surface),
+        "rock.velocity0.y": -SPEED * faster,
+    }
     times = {
         "stop_time": round((STOP + sand.margin / SPEED) / faster, 2),
         "output_interval": 5e-3 if faster == 1 else 2e-3,
     }
     return [
-        Task(Request(NAME, (*changed, f"sand.seed={seed}"), options=times), sand.name, seed)
+        Task(Request(NAME, {**changed, "sand.seed": seed}, options=times), sand.name, seed)
         for seed in SEEDS[: 1 if quick else None]
     ]
 

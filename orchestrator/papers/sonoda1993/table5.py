@@ -28,7 +28,7 @@ def _impacts(row: TableFiveRow, model: str, quick: bool) -> list[Task]:
         DEFAULT_TEST,
         model,
         quick,
-        (f"sand.modulus={row.modulus!r}", f"sand.damping={row.damping!r}"),
+        {"sand.modulus": row.modulus, "sand.damping": row.damping},
     )
 
 

@@ -25,13 +25,13 @@ from rockshed.runs.job import Request, prepare
 
 RIGID = ("rigid-base-pit", "rigid-base-river", "rigid-base-crushed")
 GIRDERS = ("girders-8", "girders-10", "girders-12")
-LITERAL = ("sand.rotation=free", "sand.stiffness_factor=1")
+LITERAL = (("sand.rotation", "free"), ("sand.stiffness_factor", 1))
 
 
 @cache
-def run(name, coupling="paper", settings=(), in_process=True):
+def run(name, coupling="paper", values=(), in_process=True):
     """A case, run; its files are gone."""
-    job = prepare(Request(name, settings, coupling=coupling, in_process=in_process))
+    job = prepare(Request(name, dict(values), coupling=coupling, in_process=in_process))
     with TemporaryDirectory() as folder:
         return simulate(job.system, Path(folder) / "run", sources=job.sources)
 
@@ -89,8 +89,8 @@ def test_elastic_sand_puts_far_too_much_energy_into_the_girders():
         )
 
 
-def system(name, *settings):
-    return prepare(Request(name, settings, in_process=True)).system
+def system(name, **values):
+    return prepare(Request(name, values, in_process=True)).system
 
 
 @pytest.mark.parametrize("name", GIRDERS)
@@ -106,23 +106,27 @@ def test_girders_start_bent_under_the_sand_and_at_rest(name):
 
 
 def test_weight_of_the_cushion_follows_from_the_sand_unless_it_is_given():
-    def weight(*settings):
-        return system("girders-8", *settings).components["beam"].parameters["cushion.weight"]
+    def weight(**values):
+        return system("girders-8", **values).components["beam"].parameters["cushion.weight"]
 
     plain = weight()
     assert plain == pytest.approx(270 * 1800.0 * math.pi * 0.05**2 * 1.7 * 9.80665)
-    assert weight("sand.unit_weight=3600", "sand.depth=0.85") == pytest.approx(plain)
-    assert weight("sand.packing=random", "sand.disc.spread=0.3") == pytest.approx(1.03 * plain)
-    assert weight("sand.unit_weight=3600", "beam.cushion.weight=1000") == 1000.0
+    assert weight(**{"sand.unit_weight": 3600, "sand.depth": 0.85}) == pytest.approx(plain)
+    assert weight(**{"sand.packing": "random", "sand.disc.spread": 0.3}) == pytest.approx(
+        1.03 * plain
+    )
+    assert weight(**{"sand.unit_weight": 3600, "beam.cushion.weight": 1000}) == 1000.0
     assert (
-        system("girders-8", "sand.unit_weight=heavy").components["sand"].parameters["unit_weight"]
+        system("girders-8", **{"sand.unit_weight": "heavy"})
+        .components["sand"]
+        .parameters["unit_weight"]
         == "heavy"
     )
 
 
 def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_comparison():
     """Assumed 200 kg/m and 2 t, of which the paper says nothing."""
-    heavy = run("girders-8", "impulse", ("beam.deck.mass=200", "beam.box.mass=2000"))
+    heavy = run("girders-8", "impulse", (("beam.deck.mass", 200), ("beam.box.mass", 2000)))
     assert figure(heavy, h.BEAM_SHARE_FROM_STRAIN) < 0.95 * figure(
         run("girders-8", "impulse"), h.BEAM_SHARE_FROM_STRAIN
     )
@@ -133,7 +137,7 @@ def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_compariso
 
 def test_literal_model_puts_as_much_into_the_girders():
     """Measured 51 percent by (5), (6) at 8 m, ratio 1.06."""
-    done = run("girders-8", settings=LITERAL)
+    done = run("girders-8", values=LITERAL)
     assert figure(done, h.BEAM_SHARE) == pytest.approx(0.51, abs=0.03)
     assert figure(done, h.SETTLED_RATIO) == pytest.approx(1.06, abs=0.1)
 
@@ -179,9 +183,8 @@ def test_hertz_force_is_the_largest_of_a_sphere_that_is_stopped_by_its_half_spac
 def packed(name):
     """The random pack with rolling resistance of the studies, its first seed."""
     model = next(model for model in full_scale.MODELS if model.name == "random pack, rolling")
-    return run(
-        name, "impulse", tuple(full_scale.impacts(name, model, True, 0.15)[0].request.settings)
-    )
+    values = full_scale.impacts(name, model, True, 0.15)[0].request.values
+    return run(name, "impulse", tuple(values.items()))
 
 
 @pytest.mark.parametrize("name", ["girders-8", "girders-12", "rigid-base-crushed"])

@@ -1,0 +1,88 @@
+"""What others found for a metric: the data that a run is compared with, whoever compares."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A value to compare with.
+
+    Attributes
+    ----------
+    value : float
+        In SI units.
+    note : str
+        How the value was found if it is not printed as such; it then is only about right.
+    """
+
+    value: float
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Known:
+    """The references of one metric, by who found them.
+
+    Attributes
+    ----------
+    paper : Reference or None
+        Computed in the analysis of the paper.
+    experiment : Reference or None
+        Measured.
+    handbook : Reference or None
+        From the formula of a design handbook.
+    """
+
+    paper: Reference | None = None
+    experiment: Reference | None = None
+    handbook: Reference | None = None
+
+    def by(self) -> dict[str, Reference]:
+        """Return the references that there are, by who found them."""
+        return {who: reference for who, reference in vars(self).items() if reference}
+
+
+@dataclass(frozen=True)
+class References:
+    """The references of a run.
+
+    Attributes
+    ----------
+    known : mapping of str to Known
+        By the name of the metric in words.
+    remarks : sequence of str
+        Why something is not compared, a sentence each.
+    """
+
+    known: Mapping[str, Known] = field(default_factory=dict)
+    remarks: Sequence[str] = ()
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the references as plain data, as the provenance of a run keeps them."""
+        known = {
+            name: {who: vars(reference) for who, reference in entry.by().items()}
+            for name, entry in self.known.items()
+        }
+        return {"known": known, "remarks": list(self.remarks)}
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> "References":
+        """Read what :meth:`as_data` wrote.
+
+        Parameters
+        ----------
+        data : mapping
+            ``known`` and ``remarks``; what is missing is empty.
+
+        Returns
+        -------
+        References
+            Equal to those that were written.
+        """
+        known = {
+            name: Known(**{who: Reference(**reference) for who, reference in entry.items()})
+            for name, entry in data.get("known", {}).items()
+        }
+        return cls(known, tuple(data.get("remarks", ())))

@@ -1,0 +1,56 @@
+"""A request: what a person asks to be run, as plain data that the provenance of the run keeps."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from ..core.system.system import Value
+
+AUTO = "auto"
+"""In the place of a runtime: native FMUs where all are there and up to date, else Python."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """A case or a system file, and what is to be other than it is there.
+
+    Attributes
+    ----------
+    target : str
+        Name of a case, or path of a system file (TOML).
+    values : mapping of str to Value
+        By ``component.parameter`` or by the name of a shared value (SI units).
+    sizes : mapping of str to int
+        By ``component.size``; for cases.
+    coupling : str, optional
+        Scheme of exchange of a case; by default its first.
+    options : mapping
+        Keys of the system that are replaced, ``stop_time`` for instance.
+    in_process : bool
+        Components without FMUs, in this process; for cases.
+    load_cell : float, optional
+        Cut-off frequency (Hz) of a load cell through which the transmitted force is shown as well.
+    model : str, optional
+        Model of the sand of a case; ``values`` go before it.
+    runtime : str
+        Of the FMUs of a case: ``python``, ``native`` or ``auto``.
+    """
+
+    target: str
+    values: Mapping[str, Value] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    coupling: str | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    in_process: bool = False
+    load_cell: float | None = None
+    model: str | None = None
+    runtime: str = AUTO
+
+    @property
+    def is_file(self) -> bool:
+        """Whether the target is meant as a system file and not as the name of a case."""
+        return self.target.endswith(".toml") or "/" in self.target or "\\" in self.target
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the request as plain data, for the provenance of the run."""
+        return asdict(self)
