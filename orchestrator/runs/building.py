@@ -287,7 +287,8 @@ def _build(
     """Make the content of all FMUs, then write them."""
     from rockshed.fmus.build import Fmi, fmu_content, folder_name, store
 
-    fmi, made = Fmi(export.fmi), []
+    fmi = Fmi(export.fmi)
+    made = []
     for runtime in runtimes:
         for name in names:
             built = component(name)

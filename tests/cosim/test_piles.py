@@ -63,18 +63,18 @@ def test_waves_refuse_a_step_longer_than_the_rod(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("setting", "words"),
+    ("values", "words"),
     [
-        ("ground.quake=0", "ground.quake: 0: allowed is"),
-        ("ground.quake=nan", "ground.quake: nan: must be a finite number"),
-        ("ground.ultimate_resistance=-1", "ground.ultimate_resistance: -1: allowed is"),
-        ("rod.section.area[1]=0", "rod.section.area[1]: 0: allowed is"),
-        ("hammer.mass=-1", "hammer.mass: -1: allowed is"),
+        ({"ground.quake": 0}, "ground.quake: 0: allowed is"),
+        ({"ground.quake": np.nan}, "ground.quake: nan: must be a finite number"),
+        ({"ground.ultimate_resistance": -1}, "ground.ultimate_resistance: -1: allowed is"),
+        ({"rod.section.area[1]": 0}, "rod.section.area[1]: 0: allowed is"),
+        ({"hammer.mass": -1}, "hammer.mass: -1: allowed is"),
     ],
 )
-def test_values_that_are_none_are_refused(tmp_path, setting, words):
+def test_values_that_are_none_are_refused(tmp_path, values, words):
     with pytest.raises(InputRefused) as refusal:
-        run(tmp_path / "run", "spt", setting)
+        run(tmp_path / "run", "spt", values)
     assert any(words in str(problem) for problem in refusal.value.problems), refusal.value.problems
 
 
@@ -119,17 +119,17 @@ def test_the_shed_keeps_its_energy_and_settles(shed):
 
 def test_the_shed_on_stiff_strong_ground_is_the_one_on_rigid_supports(tmp_path):
     """Thick piles on ground that hardly gives: forces and deflection as on the girders of 8 m."""
-    stiff = [
-        setting
+    stiff = {
+        name: value
         for side in ("left", "right")
-        for setting in (
-            f"ground_{side}.quake=1e-6",
-            f"ground_{side}.ultimate_resistance=1e7",
-            f"rod_{side}.section.area[1]=20.0",
-            f"rod_{side}.section.density[1]=2400.0",
+        for name, value in (
+            (f"ground_{side}.quake", 1e-6),
+            (f"ground_{side}.ultimate_resistance", 1e7),
+            (f"rod_{side}.section.area[1]", 20.0),
+            (f"rod_{side}.section.density[1]", 2400.0),
         )
-    ]
-    piles = run(tmp_path / "piles", "shed-on-piles", *stiff, stop_time=0.022, output_interval=1e-3)
+    }
+    piles = run(tmp_path / "piles", "shed-on-piles", stiff, stop_time=0.022, output_interval=1e-3)
     rigid = run(
         tmp_path / "rigid",
         "girders-8",
