@@ -15,6 +15,7 @@ from filelock import FileLock
 
 from rockshed.components.catalogue import component as catalogued
 from rockshed.components.common.component import Component
+from rockshed.files import write_file
 
 from .description.fmi2 import model_description
 from .native.fmu import native_files
@@ -29,7 +30,6 @@ from .parts import (
     digest,
     documentation,
     picture,
-    replace,
 )
 from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, folder_name, native_is_fresh
 from .python.script import SCRIPT
@@ -160,7 +160,7 @@ def store(
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
             if not (keep and file.is_file() and file.read_bytes() == content):
-                replace(file, content)
+                write_file(file, content)
     except OSError as error:
         remedy = (
             f"name a folder that can be written in the environment variable {FOLDER_VARIABLE}"

@@ -2,8 +2,6 @@
 
 import hashlib
 import io
-import os
-import tempfile
 import zipfile
 from enum import IntEnum, StrEnum
 from pathlib import Path
@@ -86,16 +84,3 @@ def archive(files: Files) -> bytes:
             entry.external_attr = 0o100644 << 16
             target.writestr(entry, files[path])
     return buffer.getvalue()
-
-
-def replace(file: Path, content: bytes) -> None:
-    """Write a file as a whole or not at all."""
-    handle, temporary = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, file)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise

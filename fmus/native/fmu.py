@@ -18,7 +18,6 @@ import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
@@ -26,6 +25,8 @@ from pathlib import Path
 from rockshed.components.common.component import HEADER, Component, Instance, allowed_range
 from rockshed.components.common.kernels import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
+from rockshed.files import write_file
+from rockshed.versions import version_of
 
 from ..parts import (
     DESCRIPTION,
@@ -201,7 +202,7 @@ def _described(component: Component, sizes: Sizes, guid: str, fmi: Fmi) -> Files
 
 @cache
 def _versions(*packages: str) -> list[str]:
-    return [f"{package} {version(package)}" for package in packages]
+    return [f"{package} {version_of(package)}" for package in packages]
 
 
 # --- kernels
@@ -236,7 +237,7 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
             )
         objects = {name: (Path(work) / f"{name}.o").read_bytes() for name in platforms}
         for name, path in kept.items():
-            os.replace(shutil.copy(Path(work) / f"{name}.o", f"{path}.{os.getpid()}"), path)
+            write_file(path, objects[name])
     return objects
 
 

@@ -1,7 +1,9 @@
 """Errors of a co-simulation, made for the person who has to act on them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -41,3 +43,26 @@ class UnknownName(KeyError):  # noqa: N818
 
     def __str__(self) -> str:
         return str(self.args[0])
+
+
+@contextmanager
+def refusing_unwritable(place: Path, remedy: str = "name another folder") -> Iterator[None]:
+    """Turn an error of the file system into a refusal of the folder or file that is written.
+
+    Parameters
+    ----------
+    place : Path
+        Folder or file.
+    remedy : str
+        For the person who has to act.
+
+    Raises
+    ------
+    InputRefused
+        The block has raised an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        what = f"cannot be written: {error.strerror or error}"
+        raise InputRefused([Problem(str(place), what, remedy)]) from error

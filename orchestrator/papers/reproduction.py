@@ -1,21 +1,20 @@
 """A reproduction: the studies of a paper, their runs, and the files that tell of them."""
 
 import os
-import platform
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
-from importlib.metadata import version
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
-from ..core.errors import InputRefused, Problem
-from ..core.results.run_folder import write_json
+from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.system.names import nearest
+from ..files import write_file, write_json
 from ..runs.building import Note
+from ..versions import versions
 from .page import page
 from .report import Part, as_data
 from .running import Done, run_all
@@ -29,7 +28,7 @@ PAPERS = {
 }
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
-_PACKAGES = ("rockshed", "numpy", "numba", "fmpy", "pythonfmu")
+_PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
 
 @dataclass(frozen=True)
@@ -113,14 +112,11 @@ def reproduce(
         "quick": quick,
         "workers": workers or os.cpu_count() or 1,
         "wall_time": time.perf_counter() - began,
-        "versions": {
-            "python": platform.python_version(),
-            **{package: version(package) for package in _PACKAGES},
-        },
+        "versions": versions(*_PACKAGES),
     }
     content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, **facts)
     write_json(folder / DATA, content)
-    _write(folder / PAGE, page(parts, content))
+    write_file(folder / PAGE, page(parts, content))
     return Reproduction(parts, content, [folder / DATA, folder / PAGE])
 
 
@@ -130,22 +126,5 @@ def _part(study: Study, outcomes: Outcomes, figures: Path) -> Part:
 
 
 def _make(folder: Path) -> None:
-    try:
+    with refusing_unwritable(folder, "name another folder with --output-dir"):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputRefused(
-            [
-                Problem(
-                    str(folder),
-                    f"cannot be written: {error.strerror or error}",
-                    "name another folder with --output-dir",
-                )
-            ]
-        ) from error
-
-
-def _write(file: Path, text: str) -> None:
-    """As a whole or not at all."""
-    beside = file.with_name(f".{file.name}")
-    beside.write_text(text, encoding="utf-8")
-    os.replace(beside, file)

@@ -8,7 +8,7 @@ from tempfile import TemporaryFile
 
 from rockshed.components.common.component import ComponentError
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, refusing_unwritable
 from ..core.results.reading import Run
 from ..metrics.comparison import known_of
 from ..metrics.headlines import driven, named, roles
@@ -136,16 +136,6 @@ def _pictures(run: Run) -> list[_Picture]:
 
 
 def _make(folder: Path) -> None:
-    try:
+    with refusing_unwritable(folder, "name another folder with --output-dir"):
         folder.mkdir(parents=True, exist_ok=True)
         TemporaryFile(dir=folder).close()
-    except OSError as error:
-        raise InputRefused(
-            [
-                Problem(
-                    str(folder),
-                    f"cannot be written: {error.strerror or error}",
-                    "name another folder with --output-dir",
-                )
-            ]
-        ) from error

@@ -1,6 +1,5 @@
 """The look of all pictures: sizes, colours, a caption that says what was run, and how a file is written."""
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ..core.results.reading import Run
+from ..files import whole_file
 from ..metrics.comparison import caption
 
 WIDTH = 7.2
@@ -62,9 +62,8 @@ def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> 
     """A figure (inches) with these lines below, written to ``file`` at the end, as a whole or not at all."""
     with styled(lines, width, height) as made:
         yield made
-        beside = file.with_name(f".{file.name}")
-        made.savefig(beside, format="png", metadata={"Software": "rockshed"})
-        os.replace(beside, file)
+        with whole_file(file) as temporary:
+            made.savefig(temporary, format="png", metadata={"Software": "rockshed"})
 
 
 @contextmanager

@@ -6,7 +6,7 @@ from typing import Any
 
 import tomli_w
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.system.system import Connection, System
 
 SYSTEM = "system.toml"
@@ -44,7 +44,7 @@ def export_system(system: System, folder: Path) -> Path:
             ]
         )
     specs: dict[str, Any] = {}
-    try:
+    with refusing_unwritable(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name, spec in system.components.items():
             file = Path(spec.fmu)
@@ -56,14 +56,4 @@ def export_system(system: System, folder: Path) -> Path:
         (folder / SYSTEM).write_text(
             system_text(system.model_copy(update={"components": specs})), encoding="utf-8"
         )
-    except OSError as error:
-        raise InputRefused(
-            [
-                Problem(
-                    str(folder),
-                    f"cannot be written: {error.strerror or error}",
-                    "name another folder",
-                )
-            ]
-        ) from error
     return folder / SYSTEM

@@ -153,7 +153,7 @@ def test_nothing_half_written_is_left_when_a_build_is_interrupted(monkeypatch, t
 
     file = build("FallingRock", destination=tmp_path)
     before = file.read_bytes()
-    monkeypatch.setattr("rockshed.fmus.parts.os.replace", interrupt)
+    monkeypatch.setattr("rockshed.files.os.replace", interrupt)
     with pytest.raises(KeyboardInterrupt):
         build("FallingRock", destination=tmp_path)
     assert file.read_bytes() == before

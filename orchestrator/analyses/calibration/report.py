@@ -14,8 +14,8 @@ from rockshed.components.common.units import cm, kgf
 from ...cases.sonoda1993 import tests
 from ...commands.screen import plain_table
 from ...core.errors import InputRefused, Problem
-from ...core.results.run_folder import write_json
 from ...core.system.system import Value
+from ...files import write_json
 from ...papers.running import Done
 from ...runs.building import Note
 from .measurement import Measurement, of_stiffness, read_curve, stiffness_from

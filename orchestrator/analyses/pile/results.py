@@ -13,7 +13,6 @@ figures/              pictures
 import platform
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +20,13 @@ import numpy as np
 
 from ...core.results.columns import Column, result_column, result_table
 from ...core.results.metric import Metric
-from ...core.results.run_folder import RUN, SUMMARY, write_json
+from ...core.results.run_folder import RUN, SUMMARY
+from ...files import write_json
+from ...versions import versions
 from .blows import TRACES, Blow, blow_figures
 from .preparation import Prepared
 
-_PACKAGES = ("rockshed", "numpy", "numba", "pyarrow")
+_PACKAGES = ("numpy", "numba", "pyarrow")
 _WORDS = {
     "head.contact_force": "force at the head, compression positive",
     "head.zv": "impedance times velocity of the head, downwards",
@@ -89,10 +90,7 @@ def write(
             "time": made.time,
             "wall_time": wall_time,
             "platform": platform.platform(),
-            "versions": {
-                "python": platform.python_version(),
-                **{package: version(package) for package in _PACKAGES},
-            },
+            "versions": versions(*_PACKAGES),
         },
     )
     return found

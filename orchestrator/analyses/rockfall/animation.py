@@ -1,6 +1,5 @@
 """Animations as MP4 or GIF: a figure of which a few parts move. The file is written as a whole or not at all."""
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ...core.errors import InputRefused, Problem
+from ...files import whole_file
 
 FRAMES_PER_SECOND = 25
 KINDS = ("mp4", "gif")
@@ -73,14 +73,9 @@ def write_animation(
 
     moving: what ``draw`` changes, in the order in which it is drawn; everything else stands still and is drawn once.
     """
-    beside = file.with_name(f".{file.name}")
-    try:
-        (_write_mp4 if file.suffix == ".mp4" else _write_gif)(
-            beside, _pictures(figure, frames, draw, moving, done)
-        )
-        os.replace(beside, file)
-    finally:
-        beside.unlink(missing_ok=True)
+    write = _write_mp4 if file.suffix == ".mp4" else _write_gif
+    with whole_file(file) as temporary:
+        write(temporary, _pictures(figure, frames, draw, moving, done))
 
 
 def _pictures(

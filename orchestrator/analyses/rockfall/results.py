@@ -13,7 +13,6 @@ import platform
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -34,9 +33,11 @@ from rockshed.components.slope_rockfall.trajectory import (
 
 from ...core.results.columns import result_column, result_table
 from ...core.results.metric import Metric
-from ...core.results.run_folder import RUN, SUMMARY, write_json
+from ...core.results.run_folder import RUN, SUMMARY
+from ...files import write_json
 from ...sites.rockfall.materials import described
 from ...sites.rockfall.profile import surface
+from ...versions import versions
 from .campaign import Campaign, Records
 from .preparation import Prepared
 from .statistics import CONFIDENCE, SHARES, Percentile, envelope, percentile, proportion
@@ -51,7 +52,7 @@ ENDS = {
     STOPPED: "stopped by a barrier",
 }
 """How a trial ends, in words."""
-_PACKAGES = ("rockshed", "numpy", "numba", "scipy", "pyarrow")
+_PACKAGES = ("numpy", "numba", "scipy", "pyarrow")
 
 
 @dataclass(frozen=True)
@@ -234,10 +235,7 @@ def _facts(made: Prepared, wall_time: float, crew: Mapping[str, Any]) -> dict[st
         "wall_time": wall_time,
         **crew,
         "platform": platform.platform(),
-        "versions": {
-            "python": platform.python_version(),
-            **{package: version(package) for package in _PACKAGES},
-        },
+        "versions": versions(*_PACKAGES),
     }
 
 

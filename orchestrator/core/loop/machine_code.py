@@ -6,12 +6,13 @@ import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
 
+from ...files import write_file
+from ...versions import version_of
 from .tables import CRASHED, ENTRY, REPORTER, REPORTER_LENGTH, Integers
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
@@ -107,9 +108,7 @@ def _code(target: llvm.TargetMachine) -> bytes:
     code = object_code(target)
     with suppress(OSError):  # then it is compiled again next time
         file.parent.mkdir(parents=True, exist_ok=True)
-        beside = file.with_name(f"{file.name}.{os.getpid()}")
-        beside.write_bytes(code)
-        os.replace(beside, file)
+        write_file(file, code)
     return code
 
 
@@ -134,8 +133,8 @@ def _stamp() -> str:
     digest.update(
         repr(
             [
-                version("numba"),
-                version("llvmlite"),
+                version_of("numba"),
+                version_of("llvmlite"),
                 llvm.get_default_triple(),
                 llvm.get_host_cpu_name(),
                 _features(),

@@ -3,16 +3,16 @@
 import platform
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
 
+from ...versions import versions
 from ..fmu.slave import Slave, Source
 from ..system.plan import Plan
 from ..system.values import written
 
-_PACKAGES = ("rockshed", "numpy", "numba", "llvmlite", "fmpy", "pythonfmu", "pyarrow", "h5py")
+_PACKAGES = ("numpy", "numba", "llvmlite", "fmpy", "pythonfmu", "pyarrow", "h5py")
 
 
 def describe_run(
@@ -24,10 +24,7 @@ def describe_run(
         "started": datetime.now(UTC).isoformat(),
         "components": {name: _component(plan, sources[name], slaves[name]) for name in plan.order},
         "system": plan.system.model_dump(mode="json"),
-        "versions": {
-            "python": platform.python_version(),
-            **{package: _version(package) for package in _PACKAGES},
-        },
+        "versions": versions(*_PACKAGES),
         "platform": platform.platform(),
     }
 
@@ -56,10 +53,3 @@ def _parameters(plan: Plan, slave: Slave) -> dict[str, Any]:
             slave.get(np.array([port.reference], np.uint32), value, port.kind)
             found[port.name] = {"value": written(port, float(value[0])), "unit": port.unit_name}
     return found
-
-
-def _version(package: str) -> str | None:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...files import write_json
 from ..errors import InputRefused, Problem, UnknownName
 from ..system.names import nearest
 from .metric import Metric, Metrics
@@ -28,7 +29,6 @@ from .run_folder import (
     running_folder,
     schema,
     streamed_frames,
-    write_json,
 )
 from .series import Series
 

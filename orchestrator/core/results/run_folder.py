@@ -16,7 +16,6 @@ states.h5           per component: ``time`` (n,), and serialized states ``state/
 
 import csv
 import json
-import os
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -29,6 +28,7 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
+from ...files import write_json
 from ..errors import InputRefused, Problem
 from .metric import Metric
 
@@ -248,15 +248,6 @@ def schema(columns: Sequence[Column]) -> Any:
             for c in columns
         ]
     )
-
-
-def write_json(path: Path, content: Any) -> None:
-    """Write a file that is complete at any moment."""
-    beside = path.with_name(path.name + ".new")
-    beside.write_text(
-        json.dumps(content, indent=2, default=str, ensure_ascii=False) + "\n", encoding="utf-8"
-    )
-    os.replace(beside, path)
 
 
 def batches(path: Path) -> Iterator[Any]:

@@ -1,0 +1,60 @@
+"""Files that appear as a whole or not at all, whatever happens while they are written."""
+
+import json
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+
+@contextmanager
+def whole_file(file: Path) -> Iterator[Path]:
+    """Write a file elsewhere and put it into its place when the block ends.
+
+    Parameters
+    ----------
+    file : Path
+        Its folder has to exist. A file that is there already is replaced in one step.
+
+    Yields
+    ------
+    Path
+        Where to write: a name in the same folder that ends alike. After an exception it is removed
+        and ``file`` stays as it was.
+    """
+    temporary = file.with_name(f".{file.stem}.{secrets.token_hex(4)}{file.suffix}")
+    try:
+        yield temporary
+        os.replace(temporary, file)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def write_file(file: Path, content: str | bytes) -> None:
+    """Write a file as a whole or not at all.
+
+    Parameters
+    ----------
+    file : Path
+        Its folder has to exist.
+    content : str or bytes
+        Text is written as UTF-8.
+    """
+    with whole_file(file) as temporary:
+        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def write_json(file: Path, content: Any) -> None:
+    """Write data as JSON, as a whole or not at all.
+
+    Parameters
+    ----------
+    file : Path
+        Its folder has to exist.
+    content : object
+        What JSON has no form for is written as its ``str``.
+    """
+    write_file(file, json.dumps(content, indent=2, default=str, ensure_ascii=False) + "\n")
