@@ -14,6 +14,9 @@ from ..core.system.system import Value
 
 _KGF_PER_CM2 = kgf / cm**2
 
+LATTICE_SHIFT = 1e-3
+"""Random displacement of the discs of a lattice, in diameters, where samples are to differ."""
+
 
 @dataclass(frozen=True)
 class Soil:

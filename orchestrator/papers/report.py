@@ -8,7 +8,8 @@ from typing import Any
 from rich.table import Table
 
 from ..commands.screen import plain_table
-from .study import Outcome, Row, Study, Task
+from ..runs.batch import Outcome, Task
+from .study import Row, Study
 
 FORMAT = "rockshed reproduction 1"
 """Name and version of the form of ``reproduction.json``."""

@@ -13,12 +13,12 @@ from typing import Any
 from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.system.names import nearest
 from ..files import write_file, write_json
+from ..runs.batch import INTERRUPTED, Done, run_all
 from ..runs.building import Note
 from ..versions import versions
 from .page import page
 from .report import Part, as_data
-from .running import Done, run_all
-from .study import INTERRUPTED, Outcomes, Study
+from .study import Outcomes, Study
 
 PAPERS = {
     "sonoda1993": "Sonoda, Satoh, Ishikawa, Ohta 1993",

@@ -3,64 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ..runs.job import Request
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-COMPLETE, FAILED, INTERRUPTED = "complete", "failed", "interrupted"
-
-
-@dataclass(frozen=True)
-class Task:
-    """A run that a study needs. Studies share runs: two tasks with the same content are carried out once.
-
-    model: name of the set of model options, for the reader.
-    seed: that of the random lattice shift; None if the lattice is undisturbed.
-    """
-
-    request: Request
-    model: str = ""
-    seed: int | None = None
-    allow_unstable: bool = False
-
-    @property
-    def settings(self) -> list[str]:
-        """Values of the request that differ from the case, as ``name=value``."""
-        return [f"{name}={value}" for name, value in self.request.values.items()]
-
-    @property
-    def key(self) -> str:
-        """Case and everything that is changed in it, on one line."""
-        options = [f"{name}={value}" for name, value in self.request.options.items()]
-        coupling = [f"coupling={self.request.coupling}"] if self.request.coupling else []
-        model = [f"model={self.request.model}"] if self.request.model else []
-        unstable = ["unstable"] if self.allow_unstable else []
-        return " ".join(
-            [self.request.target, *model, *self.settings, *coupling, *options, *unstable]
-        )
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a run gave. A run that failed has the rows until then, and no figures.
-
-    figures: summary and headlines (SI) by name. series: columns of the results by name. fmus: SHA-256 by component.
-    options: parameters of sand and beam that make up the model. failed_at: time (s) of a failure in the run.
-    """
-
-    key: str
-    status: str
-    error: str = ""
-    failed_at: float | None = None
-    figures: Mapping[str, float] = field(default_factory=dict)
-    series: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
-    options: Mapping[str, Any] = field(default_factory=dict)
-    fmus: Mapping[str, str] = field(default_factory=dict)
-    wall_time: float = 0.0
+from ..runs.batch import COMPLETE, Outcome, Task
 
 
 @dataclass(frozen=True)

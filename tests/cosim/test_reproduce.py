@@ -6,9 +6,8 @@ import pytest
 from typer.testing import CliRunner
 
 from rockshed.commands.app import app
-from rockshed.papers.running import run_all
 from rockshed.papers.sonoda1993.fig19 import COARSE, _single
-from rockshed.papers.study import COMPLETE, FAILED, Task
+from rockshed.runs.batch import COMPLETE, FAILED, Task, run_all
 from rockshed.runs.job import Request
 
 

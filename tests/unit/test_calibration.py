@@ -18,7 +18,7 @@ from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.metrics.load_curve import LoadCurve
-from rockshed.papers.study import COMPLETE, FAILED, INTERRUPTED, Outcome
+from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome
 
 E_BAR = kgf / cm**2
 PLACES = np.linspace(0.0, 0.05, 501)

@@ -9,7 +9,6 @@ from jsonschema import validate
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
 from rockshed.metrics import headlines as h
-from rockshed.papers import running
 from rockshed.papers.reproduction import DATA, PAGE, chosen, reproduce, studies
 from rockshed.papers.sonoda1993 import girders, rigid_base, section2, table2
 from rockshed.papers.sonoda1993.fig19 import order
@@ -20,16 +19,9 @@ from rockshed.papers.statistics import (
     mean_absolute_error,
     power_law,
 )
-from rockshed.papers.study import (
-    COMPLETE,
-    FAILED,
-    INTERRUPTED,
-    Outcome,
-    Outcomes,
-    Row,
-    Task,
-    row_of_runs,
-)
+from rockshed.papers.study import Outcomes, Row, row_of_runs
+from rockshed.runs import batch
+from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome, Task
 from rockshed.runs.job import Request
 
 NUMBER, TEXT = {"type": ["number", "null"]}, {"type": "string"}
@@ -159,14 +151,14 @@ def test_every_study_makes_its_rows_and_figures_when_no_run_ends(tmp_path):
 
 
 def test_tasks_that_are_the_same_are_one_run(monkeypatch):
-    monkeypatch.setattr(running, "_order", lambda task, note: running._Order(task.key, None, False))
+    monkeypatch.setattr(batch, "_order", lambda task, note: batch._Order(task.key, None, False))
     monkeypatch.setattr(
-        running,
+        batch,
         "_carry_out",
         lambda orders, workers: iter([Outcome(order.key, COMPLETE) for order in orders]),
     )
     told = []
-    found = running.run_all(
+    found = batch.run_all(
         [task(1), task(2), task(1)], 1, print, lambda done, total: told.append((done, total))
     )
     assert len(found) == 2
@@ -178,9 +170,9 @@ def test_ctrl_c_keeps_what_was_computed(monkeypatch):
         yield Outcome(orders[0].key, COMPLETE)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running, "_order", lambda task, note: running._Order(task.key, None, False))
-    monkeypatch.setattr(running, "_carry_out", carry_out)
-    found = running.run_all([task(1), task(2)], 1, lambda text: None, lambda done, total: None)
+    monkeypatch.setattr(batch, "_order", lambda task, note: batch._Order(task.key, None, False))
+    monkeypatch.setattr(batch, "_carry_out", carry_out)
+    found = batch.run_all([task(1), task(2)], 1, lambda text: None, lambda done, total: None)
     assert [outcome.status for outcome in found.values()] == [COMPLETE, INTERRUPTED]
 
 

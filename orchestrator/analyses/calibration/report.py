@@ -16,7 +16,7 @@ from ...commands.screen import plain_table
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...files import write_json
-from ...papers.running import Done
+from ...runs.batch import Done
 from ...runs.building import Note
 from .measurement import Measurement, of_stiffness, read_curve, stiffness_from
 from .run import ROTATIONS, Calibration, Fit, Unreachable, by_misfit, calibrate

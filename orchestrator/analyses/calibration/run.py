@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 
 from rockshed.components.common.units import cm, kgf
 
+from ...cases.sand_models import LATTICE_SHIFT, model_values
 from ...cases.sonoda1993 import STATIC_RATIO
 from ...cases.static_loading import NAME, SPEED, rock_height
 from ...core.errors import InputRefused, Problem, RunFailed
 from ...core.system.system import Value
 from ...metrics.load_curve import LoadCurve, load_curve
-from ...papers.running import Done, run_all, run_here
-from ...papers.sonoda1993.laboratory import LATTICE_SHIFT, MODELS
-from ...papers.study import COMPLETE, INTERRUPTED, Outcome, Task
+from ...runs.batch import COMPLETE, INTERRUPTED, Done, Outcome, Task, run_all, run_here
 from ...runs.building import Note
 from ...runs.job import Request
 from .measurement import Measurement
@@ -28,8 +27,8 @@ from .measurement import Measurement
 LOWEST, HIGHEST = 1.0 * kgf / cm**2, 500.0 * kgf / cm**2
 """E_bar (Pa) between which it is sought."""
 ROTATIONS: Mapping[str, Mapping[str, Value]] = {
-    "locked": MODELS["calibrated"],
-    "free": MODELS["literal"],
+    "locked": model_values("calibrated"),
+    "free": model_values("literal"),
 }
 """Models of the sand by what their discs may do; ``free`` goes with stiffness factor 1."""
 _SOUGHT = ("sand.modulus", "sand.seed", "sand.internal_step", "rock.position0.y")

@@ -10,9 +10,10 @@ from rockshed.components.common.units import cm, kgf, ms
 from ...cases.sonoda1993 import DEFAULT_TEST, case_name
 from ...core.system.system import Value
 from ...metrics.headlines import IMPACT_ENERGY, PEAK_TRANSMITTED
+from ...runs.batch import COMPLETE, FAILED, Outcome, Task
 from ...runs.job import Request
 from ..statistics import power_law
-from ..study import COMPLETE, FAILED, Outcome, Outcomes, Row, Study, Task, origin, verdict
+from ..study import Outcomes, Row, Study, origin, verdict
 from .laboratory import STOP
 
 COARSE, FINE = 1e-5, 1e-6

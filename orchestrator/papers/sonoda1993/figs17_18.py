@@ -13,7 +13,8 @@ from ...metrics.headlines import (
     BEAM_SHARE_FROM_STRAIN,
     PEAK_TRANSMITTED,
 )
-from ..study import COMPLETE, Outcomes, Row, Study, Task, row_of_runs, verdict
+from ...runs.batch import COMPLETE, Task
+from ..study import Outcomes, Row, Study, row_of_runs, verdict
 from .laboratory import ALL_MODELS, impact
 
 TESTS = (4, 10)

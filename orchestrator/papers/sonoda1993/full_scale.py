@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from rockshed.components.common.units import cm, kgf, ms, tf
 
 from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
-from ...cases.sand_models import LOOSE
+from ...cases.sand_models import LATTICE_SHIFT, LOOSE
 from ...core.system.system import Value
 from ...metrics.headlines import SETTLED_CUT_OFF, low_pass
+from ...runs.batch import COMPLETE, Outcome, Task
 from ...runs.job import Request
-from ..study import COMPLETE, Outcome, Task
-from .laboratory import LATTICE_SHIFT, ONE_LAW
 from .laboratory import MODELS as LABORATORY
+from .laboratory import ONE_LAW
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,7 +15,8 @@ from ...metrics.headlines import (
     SETTLED_ROCK,
     SETTLED_TRANSMITTED,
 )
-from ..study import Outcome, Outcomes, Row, Study, Task, detail, origin, row_of_runs
+from ...runs.batch import Outcome, Task
+from ..study import Outcomes, Row, Study, detail, origin, row_of_runs
 from . import full_scale
 from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 
 from rockshed.components.common.units import cm
 
-from ...cases.sand_models import model_values
+from ...cases.sand_models import LATTICE_SHIFT, model_values
 from ...cases.sonoda1993 import case_name
 from ...core.system.system import Value
+from ...runs.batch import Task
 from ...runs.job import Request
-from ..study import Task
 
 MODELS: Mapping[str, Mapping[str, Value]] = {
     name: model_values(name) for name in ("calibrated", "literal")
@@ -26,8 +26,6 @@ ONE_LAW = "one-law"
 """The model with one contact law for all tests."""
 ALL_MODELS = (*MODELS, ONE_LAW)
 SEEDS = range(1, 11)
-LATTICE_SHIFT = 1e-3
-"""Random displacement of the discs of the lattice, in diameters."""
 STOP = 0.03
 """End of the runs (s): force and penetration have had their peaks."""
 

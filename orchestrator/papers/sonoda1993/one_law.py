@@ -20,8 +20,9 @@ from ...metrics.headlines import (
     STATIC_DEPARTURE,
     STATIC_STIFFNESS,
 )
+from ...runs.batch import COMPLETE, Task
 from ...runs.job import Request
-from ..study import COMPLETE, Outcomes, Row, Study, Task, detail, origin, row_of_runs
+from ..study import Outcomes, Row, Study, detail, origin, row_of_runs
 from .laboratory import ONE_LAW, STOP
 from .static_loading import HASTE
 from .twelve import BOX_TESTS, error, exponent, twelve

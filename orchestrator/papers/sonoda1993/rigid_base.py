@@ -22,7 +22,8 @@ from ...metrics.headlines import (
     SETTLED_ROCK,
     SETTLED_TRANSMITTED,
 )
-from ..study import COMPLETE, Outcomes, Row, Study, Task, detail, row_of_runs
+from ...runs.batch import COMPLETE, Task
+from ..study import Outcomes, Row, Study, detail, row_of_runs
 from . import full_scale
 from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces, sands
 

@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 from rockshed.components.common.units import cm, kgf
 
+from ...cases.sand_models import LATTICE_SHIFT
 from ...cases.sonoda1993 import LAYER, STATIC_RATIO, printed_rows
 from ...cases.static_loading import E_BAR, NAME, SPEED, STOP, rock_height
 from ...core.system.system import Value
 from ...metrics.headlines import STATIC_DEPARTURE, STATIC_LOAD, STATIC_STIFFNESS
 from ...metrics.load_curve import DEPTH, load_curve
+from ...runs.batch import COMPLETE, Task
 from ...runs.job import Request
 from ..statistics import line_through_origin
-from ..study import COMPLETE, Outcomes, Row, Study, Task, origin, row_of_runs, verdict
-from .laboratory import LATTICE_SHIFT, MODELS, SEEDS
+from ..study import Outcomes, Row, Study, origin, row_of_runs, verdict
+from .laboratory import MODELS, SEEDS
 
 if TYPE_CHECKING:
     import numpy as np

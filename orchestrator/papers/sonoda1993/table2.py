@@ -9,6 +9,7 @@ from rockshed.components.common.units import cm, kgf
 from ...cases import sonoda1993
 from ...cases.sonoda1993 import Test
 from ...metrics.headlines import PEAK_TRANSMITTED, load_cell
+from ...runs.batch import Outcome, Task
 from ..statistics import (
     by_power_law,
     constant,
@@ -17,7 +18,7 @@ from ..statistics import (
     mean_absolute_error,
     power_law,
 )
-from ..study import Outcome, Outcomes, Row, Study, Task, origin, row_of_runs
+from ..study import Outcomes, Row, Study, origin, row_of_runs
 from .laboratory import ALL_MODELS, ONE_LAW, SEED_NOTE, impacts
 from .twelve import BOX_TESTS, error, exponent, twelve
 

@@ -8,7 +8,8 @@ from rockshed.components.common.units import cm, kgf
 
 from ...cases.sonoda1993 import DEFAULT_TEST, TableFiveRow, table_5
 from ...metrics.headlines import PEAK_TRANSMITTED, PENETRATION
-from ..study import Outcomes, Row, Study, Task, origin, row_of_runs, verdict
+from ...runs.batch import Task
+from ..study import Outcomes, Row, Study, origin, row_of_runs, verdict
 from .laboratory import READINGS, SEED_NOTE, impacts
 
 _UNITS = {PENETRATION: ("cm", cm), PEAK_TRANSMITTED: ("kgf", kgf)}
