@@ -7,6 +7,7 @@ The life of an instance is that of an FMI slave: set parameters and inputs, :met
 import hashlib
 import re
 import struct
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ports import Bond, Causality, Kind, Layout, NextEvent, Variable
+from .shown import Picture
 
 OK = 0
 """Status of a kernel that did what it was asked for. Every other value is a key of :attr:`Component.faults`."""
@@ -56,6 +58,9 @@ class Component:
     check: everything that is wrong with parameters which are in range one by one, in words.
     bonds: mechanical power bonds to other components.
     next_event: where the component tells when it meets its next event, if it does.
+    contents: what a serialized state holds, for readers that know how to draw or measure it, ``granular.discs``; empty where
+        none does.
+    pictures: pictures of its outputs, as data.
     """
 
     name: str
@@ -72,6 +77,8 @@ class Component:
     default_stop_time: float = 0.02
     bonds: tuple[Bond, ...] = ()
     next_event: NextEvent | None = None
+    contents: str = ""
+    pictures: tuple[Picture, ...] = ()
 
     def __post_init__(self) -> None:
         for bond in self.bonds:
@@ -148,15 +155,30 @@ class Instance:
 
     def __getitem__(self, name: str) -> Any:
         """Value of a scalar or array element (float), or a view of a whole array."""
+        name = self._present(name)
         if name in self.references:
             return float(self.w[self.references[name]])
         return self.w[self._slices[name]]
 
     def __setitem__(self, name: str, value: Any) -> None:
         """Set a scalar, an array element or a whole array; a choice may be given by its word."""
+        name = self._present(name)
         if isinstance(value, str):
             value = self._choice(name, value)
         self.w[self.references[name] if name in self.references else self._slices[name]] = value
+
+    def _present(self, name: str) -> str:
+        """Return the present name of a variable; an older one is taken with a warning."""
+        if name in self.references or name in self._slices:
+            return name
+        base, bracket, element = name.partition("[")
+        if base not in self.component.layout.renamed:
+            return name
+        present = self.component.layout.renamed[base]
+        warnings.warn(
+            f"{self.component.name}: {base} is called {present} now", FutureWarning, stacklevel=3
+        )
+        return present + bracket + element
 
     def _choice(self, name: str, word: str) -> float:
         variable = next(v for v in self.component.layout.variables if v.name == name)

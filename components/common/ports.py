@@ -20,6 +20,8 @@ from enum import StrEnum
 from typing import Any
 
 from .kernels import inlined
+from .roles import Role
+from .shown import Reported
 from .units import UNITS
 
 Sizes = Mapping[str, int]
@@ -50,13 +52,39 @@ class Kind(StrEnum):
 class Variable:
     """One variable of a component, scalar or array.
 
-    name: structured name without index, ``rock.position.x``.
-    unit: key of :data:`rockshed.components.common.units.UNITS`.
-    minimum, maximum: allowed range, ends included; None where there is no bound.
-    size: name of the size that gives an array its length; None for a scalar. Elements are named ``name[1]``, ``name[2]``, ...
-    initial_dependencies: for outputs, names of the parameters and inputs that the value at the end of the
-        initialisation depends on. None means: all of them. No output changes with an input between two steps.
-    source: paper and equation or table the variable or its start value comes from.
+    Attributes
+    ----------
+    name : str
+        Structured name without index, ``rock.position.x``.
+    causality : Causality
+        Parameter, input or output.
+    description : str
+        Its meaning with direction and sign.
+    unit : str
+        Key of :data:`rockshed.components.common.units.UNITS`.
+    start : float or callable
+        Start value; of an array also a function of the element's number and the sizes.
+    minimum, maximum : float, optional
+        Allowed range, ends included; None where there is no bound.
+    kind : Kind
+        FMI type.
+    choices : tuple of str
+        Words of an enumeration.
+    size : str, optional
+        Name of the size that gives an array its length; None for a scalar. Elements are named ``name[1]``, ``name[2]``, ...
+    initial_dependencies : tuple of str, optional
+        For outputs, names of the parameters and inputs that the value at the end of the initialisation depends on. None
+        means: all of them. No output changes with an input between two steps.
+    source : str
+        Paper and equation or table the variable or its start value comes from.
+    role : Role, optional
+        Its meaning to metrics, balance of energy, tables and pictures.
+    label : str
+        Its short name in legends; energies of one label are drawn as one layer of the balance.
+    reported : tuple of Reported
+        Figures that are reported of it.
+    formerly : tuple of str
+        Older names under which a user's value is still taken, with a warning.
     """
 
     name: str
@@ -71,6 +99,10 @@ class Variable:
     size: str | None = None
     initial_dependencies: tuple[str, ...] | None = None
     source: str = ""
+    role: Role | None = None
+    label: str = ""
+    reported: tuple[Reported, ...] = ()
+    formerly: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.unit not in UNITS:
@@ -219,12 +251,20 @@ class Layout:
             raise ValueError(
                 f"declared twice: {sorted(n for n in set(names) if names.count(n) > 1)}"
             )
+        older = [name for v in self.variables for name in v.formerly]
+        if taken := {name for name in older if name in names or older.count(name) > 1}:
+            raise ValueError(f"older names that are taken: {sorted(taken)}")
         scalars = [v.name for v in self.variables if v.size is None]
         arrays = [v.name for v in self.variables if v.size is not None] + [
             s.name for s in self.states
         ]
         object.__setattr__(self, "scalar", _constants("Scalar", scalars, 1))
         object.__setattr__(self, "array", _constants("Array", arrays, 2))
+
+    @property
+    def renamed(self) -> dict[str, str]:
+        """Present names of variables by their older ones."""
+        return {old: v.name for v in self.variables for old in v.formerly}
 
     @property
     def ordered(self) -> list[Variable]:

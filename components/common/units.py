@@ -60,3 +60,34 @@ UNITS: dict[str, Unit] = {
     "Pa": Unit("Pressure", {"kg": 1, "m": -1, "s": -2}),
 }
 """The units that a port may name. A port with another unit is refused when it is declared."""
+
+SCREEN_UNITS: dict[str, float] = {
+    "1": 1.0,
+    "%": 0.01,
+    "s": 1.0,
+    "ms": ms,
+    "Hz": 1.0,
+    "m": 1.0,
+    "cm": cm,
+    "mm": mm,
+    "m/s": 1.0,
+    "rad": 1.0,
+    "deg": deg,
+    "kg": 1.0,
+    "N": 1.0,
+    "kN": kN,
+    "kgf": kgf,
+    "N s": 1.0,
+    "N m": 1.0,
+    "kN m": kN,
+    "N/m": 1.0,
+    "kN/m": kN,
+    "kgf/cm": kgf / cm,
+    "Pa": 1.0,
+    "kPa": 1e3,
+    "MPa": 1e6,
+    "J": 1.0,
+    "kJ": kJ,
+    "kgf cm": kgf * cm,
+}
+"""Units in which tables and pictures show values, with their size in SI."""

@@ -14,6 +14,7 @@ from rockshed.components.common.units import UNITS
 
 from ..parts import Runtime
 from ..python.slave import LOG_CATEGORIES
+from . import annotations
 
 _CAPABILITIES = {
     "canHandleVariableCommunicationStepSize": "true",
@@ -71,6 +72,7 @@ def model_description(
     unit_definitions(root, component)
     _type_definitions(root, component)
     log_categories_and_experiment(root, component)
+    _annotate(root, "VendorAnnotations", annotations.of_component(component))
     _model_variables(root, component, sizes)
     _model_structure(root, component, sizes)
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
@@ -184,6 +186,14 @@ def _variable(
     if variable.causality is not Causality.OUTPUT:
         attributes["start"] = literal(variable.kind, start)
     etree.SubElement(scalar, variable.kind.value, attributes)
+    _annotate(scalar, "Annotations", annotations.of_variable(variable))
+
+
+def _annotate(parent: etree._Element, name: str, annotation: etree._Element | None) -> None:
+    """Add an annotation, if there is one."""
+    if annotation is not None:
+        tools = etree.SubElement(parent, name)
+        etree.SubElement(tools, "Tool", name=annotations.TOOL).append(annotation)
 
 
 def initial(variable: Variable) -> dict[str, str]:

@@ -9,6 +9,7 @@ from rockshed.components.common.ports import Bond, Causality, Kind, Sizes, Varia
 from rockshed.components.common.units import UNITS
 
 from ..parts import Files, Runtime, picture
+from . import annotations
 from .fmi2 import (
     add_items,
     enumeration_name,
@@ -73,6 +74,7 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
     references = value_references(component, sizes)
     _model_variables(root, component, sizes, references)
     _model_structure(root, component, references)
+    _annotate(root, annotations.of_component(component))
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
 
 
@@ -127,6 +129,7 @@ def _model_variables(
                 **_start(variable, sizes),
             },
         )
+        _annotate(element, annotations.of_variable(variable))
         if variable.size is not None:
             etree.SubElement(element, "Dimension", start=str(sizes[variable.size]))
     for name, value in sizes.items():
@@ -153,6 +156,13 @@ def _model_variables(
         variability="continuous",
         unit="s",
     )
+
+
+def _annotate(parent: etree._Element, annotation: etree._Element | None) -> None:
+    """Add an annotation, if there is one."""
+    if annotation is not None:
+        entries = etree.SubElement(parent, "Annotations")
+        etree.SubElement(entries, "Annotation", type=annotations.TOOL).append(annotation)
 
 
 def _start(variable: Variable, sizes: Sizes) -> dict[str, str]:

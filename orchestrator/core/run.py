@@ -80,6 +80,7 @@ class _Session:
         self.slaves = instantiate(self.plan, self.sources, self.journal.prepares)
         state = State(self.plan, self.journal.entries)
         self.warnings = [
+            *facts.get("warnings", ()),
             *self.plan.warnings,
             *initialise(self.plan, self.slaves, state, allow_unstable, self.journal.prepares),
         ]

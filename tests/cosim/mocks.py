@@ -28,6 +28,8 @@ class Port:
     unit: str = ""
     kind: str = "Real"
     extra: str = ""
+    formerly: str = ""
+    role: str = ""
 
     def xml(self, reference: int) -> str:
         start = (
@@ -39,9 +41,14 @@ class Port:
             self.causality, "continuous" if self.kind == "Real" else "discrete"
         )
         unit = f"unit={quoteattr(self.unit)}" if self.unit else ""
+        told = f"role={quoteattr(self.role)} formerly={quoteattr(self.formerly)}"
+        annotation = (
+            f"<Annotations><Tool name='org.rockshed'><Variable {told}/></Tool></Annotations>"
+        )
         return (
             f"<ScalarVariable name={quoteattr(self.name)} valueReference='{reference}' causality='{self.causality}' "
-            f"variability='{variability}'><{self.kind} {start} {unit} {self.extra}/></ScalarVariable>"
+            f"variability='{variability}'><{self.kind} {start} {unit} {self.extra}/>"
+            f"{annotation if self.formerly or self.role else ''}</ScalarVariable>"
         )
 
 

@@ -2,7 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
+from .annotations import NOTHING, Annotation
 from .slave import STRING
 
 UNIT_TOLERANCE = 1e-12
@@ -40,6 +43,7 @@ class Port:
     kind: the family of FMI calls that moves it: Real, Integer, Boolean or String.
     causality: parameter, input, output, local, ... as in the model description.
     items: names of an enumeration's values; empty for anything else.
+    annotation: role, older names and figures, where the description tells them.
     """
 
     name: str
@@ -52,6 +56,7 @@ class Port:
     items: Mapping[str, int] = field(default_factory=dict)
     start: str | None = None
     description: str = ""
+    annotation: Annotation = NOTHING
 
     @property
     def unit_name(self) -> str:
@@ -69,6 +74,8 @@ class Description:
     """The model description of an FMU.
 
     warnings: where it does not keep to the standard, without being useless.
+    contents: what a serialized state holds; empty where the description does not tell.
+    pictures: pictures of the outputs, as data.
     """
 
     model: str
@@ -79,6 +86,17 @@ class Description:
     serializes_state: bool
     ports: Mapping[str, Port]
     warnings: tuple[str, ...] = ()
+    contents: str = ""
+    pictures: tuple[Mapping[str, Any], ...] = ()
+
+    @cached_property
+    def renamed_bases(self) -> dict[str, str]:
+        """Present names of variables by their older ones; of arrays without the number of an element."""
+        return {
+            old: port.name.partition("[")[0]
+            for port in self.ports.values()
+            for old in port.annotation.formerly
+        }
 
     def named(self, causality: str) -> list[Port]:
         """The ports of this causality, in the order of the description."""

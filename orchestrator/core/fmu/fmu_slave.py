@@ -41,6 +41,7 @@ from fmpy.model_description import (
 )
 
 from ..errors import InputRefused, Problem
+from .annotations import NOTHING, Annotation, read_annotations
 from .description import Description, Port, Unit
 from .slave import (
     BOOLEAN,
@@ -132,7 +133,7 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
     Raises:
         ValueError: it is for another version of FMI or no co-simulation, or cannot be understood.
     """
-    _check_kind(xml, versions)
+    root = _checked_root(xml, versions)
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as file:
         file.writestr(_DESCRIPTION_FILE, xml)
@@ -146,6 +147,7 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation
+    told = read_annotations(root)
     return Description(
         model.modelName,
         model.guid,
@@ -153,12 +155,19 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         model.generationTool or "",
         interface.canBeInstantiatedOnlyOncePerProcess,
         interface.canGetAndSetFMUstate and interface.canSerializeFMUstate,
-        {port.name: port for v in model.modelVariables for port in _ports(v, units)},
+        {
+            port.name: port
+            for v in model.modelVariables
+            for port in _ports(v, units, told.variables.get(v.name, NOTHING))
+        },
         warnings,
+        told.contents,
+        told.pictures,
     )
 
 
-def _check_kind(xml: bytes, versions: tuple[str, ...]) -> None:
+def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
+    """Return the root of a description, after a look at its version and kind."""
     try:
         root = ElementTree.fromstring(xml)
     except ElementTree.ParseError as error:
@@ -168,6 +177,7 @@ def _check_kind(xml: bytes, versions: tuple[str, ...]) -> None:
         raise ValueError(f"is FMI {root.get('fmiVersion')}; this program {what}")
     if root.find("CoSimulation") is None:
         raise ValueError("is for model exchange only; co-simulation is needed")
+    return root
 
 
 def _version(xml: bytes) -> str:
@@ -207,9 +217,11 @@ _KINDS_OF_FMI_3 = {
 }
 
 
-def _ports(variable: ModelVariable, units: dict[str, Unit]) -> Iterator[Port]:
+def _ports(
+    variable: ModelVariable, units: dict[str, Unit], annotation: Annotation
+) -> Iterator[Port]:
     """One port, or as many as an array of fixed size has elements."""
-    port = _port(variable, units)
+    port = replace(_port(variable, units), annotation=annotation)
     lengths = [int(dimension.start or 1) for dimension in variable.dimensions]
     if not lengths:
         yield port

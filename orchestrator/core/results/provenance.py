@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...versions import versions
+from ..fmu.description import Description
 from ..fmu.slave import Slave, Source
 from ..system.plan import Plan
 from ..system.values import written
@@ -36,7 +37,19 @@ def _component(plan: Plan, source: Source, slave: Slave) -> dict[str, Any]:
         "model": description.model,
         "guid": description.guid,
         "generation_tool": description.generation_tool,
+        "contents": description.contents,
+        "pictures": list(description.pictures),
+        "variables": _variables(description),
         "parameters": _parameters(plan, slave),
+    }
+
+
+def _variables(description: Description) -> dict[str, Any]:
+    """Return roles, labels and figures of the variables that have any; of an array once, without the number of an element."""
+    return {
+        port.name.partition("[")[0]: data
+        for port in description.ports.values()
+        if (data := port.annotation.as_data())
     }
 
 

@@ -18,8 +18,9 @@ from ..fmu.slave import REAL, Source
 from . import schedule
 from .clock import to_seconds
 from .names import expand, nearest, select
+from .renaming import present_name, renaming_warning
 from .schedule import Schedule
-from .system import Connection, PowerBond, System, Value
+from .system import ComponentSpec, Connection, PowerBond, System, Value
 from .timing import Timing, make_timing
 from .values import value_for
 
@@ -275,7 +276,7 @@ class _Planner:
         if component not in self.descriptions:
             return []
         ports = self.descriptions[component].ports
-        names = expand(name, ports)
+        names = expand(self._present(component, name), ports)
         unknown = [n for n in names if n not in ports] if names else [name]
         if unknown:
             more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
@@ -286,6 +287,14 @@ class _Planner:
             )
             return []
         return [End(component, ports[n]) for n in names]
+
+    def _present(self, component: str, name: str) -> str:
+        """Return the present name of a variable, and warn once of an older one."""
+        present = present_name(self.descriptions[component], name)
+        if present != name:
+            text = renaming_warning(component, name, present)
+            self.warnings += [] if text in self.warnings else [text]
+        return present
 
     def _of_causality(self, where: str, ends: list[End], causality: str) -> list[End]:
         wrong = [end for end in ends if end.port.causality != causality]
@@ -313,7 +322,8 @@ class _Planner:
         ends = {end.name: end for end in every if end.port.is_number}
         outputs = [name for name, end in ends.items() if end.port.causality == "output"]
         chosen: dict[str, End] = {}
-        for pattern in patterns:
+        for given in patterns:
+            pattern = self._present_pattern(given)
             names = [pattern] if pattern in ends and key == "record" else select(pattern, outputs)
             if (
                 not names
@@ -323,6 +333,12 @@ class _Planner:
                 self._refuse(key, f"{pattern!r} selects no output", nearest(pattern, outputs))
             chosen |= {name: ends[name] for name in names}
         return list(chosen.values())
+
+    def _present_pattern(self, pattern: str) -> str:
+        component, name = _split(pattern)
+        if component not in self.descriptions:
+            return pattern
+        return f"{component}.{self._present(component, name)}"
 
     def _sorted(self, order: tuple[str, ...], ends: Iterable[End]) -> tuple[End, ...]:
         unique = {end.name: end for end in ends}
@@ -406,7 +422,7 @@ class _Planner:
         """What to set in each component, shared values included."""
         given: dict[str, tuple[End, str, Value]] = {}
         for name, spec in self.system.components.items():
-            for key, value in spec.parameters.items():
+            for key, value in self._parameters(name, spec).items():
                 self._give(
                     given, f"{name}.{key}", f"components.{name}.parameters", value, connected
                 )
@@ -426,6 +442,18 @@ class _Planner:
                     f"set {end.name} ({end.port.description}) to another value",
                 )
         return starts
+
+    def _parameters(self, name: str, spec: ComponentSpec) -> dict[str, Value]:
+        """Return the values of a component; one under an older name takes the place of that under the present one."""
+        if name not in self.descriptions:
+            return spec.parameters
+        present = {key: present_name(self.descriptions[name], key) for key in spec.parameters}
+        replaced = {new for old, new in present.items() if new != old}
+        return {
+            key: value
+            for key, value in spec.parameters.items()
+            if key not in replaced or present[key] != key
+        }
 
     def _give(
         self,

@@ -1,0 +1,64 @@
+"""Annotations of a model description: roles, older names, figures and pictures, which FMI has no words for.
+
+Each variable that has any, and the component, carry an element with the name of this program; other tools pass it over.
+"""
+
+from dataclasses import fields
+from typing import Any
+
+from lxml import etree
+
+from rockshed.components.common.component import Component
+from rockshed.components.common.ports import Variable
+
+TOOL = "org.rockshed"
+"""Name of the tool that the annotations are for."""
+_OF_VARIABLES = ("role", "label", "formerly", "reported")
+_OF_COMPONENTS = ("contents", "pictures")
+
+
+def of_variable(variable: Variable) -> etree._Element | None:
+    """Return the annotation of a variable, or None where nothing is to be told.
+
+    Parameters
+    ----------
+    variable : Variable
+        Its declaration.
+    """
+    return _filled(etree.Element("Variable"), variable, _OF_VARIABLES)
+
+
+def of_component(component: Component) -> etree._Element | None:
+    """Return the annotation of a component, or None where nothing is to be told.
+
+    Parameters
+    ----------
+    component : Component
+        Its declaration.
+    """
+    return _filled(etree.Element("Component"), component, _OF_COMPONENTS)
+
+
+def _filled(element: etree._Element, declared: Any, names: tuple[str, ...]) -> Any:
+    """Fill in the fields that are set: text as attributes, declarations as children; None if there are none."""
+    for name in names:
+        value = getattr(declared, name)
+        if isinstance(value, tuple) and not all(isinstance(entry, str) for entry in value):
+            element.extend(_child(entry) for entry in value)
+        elif value:
+            element.set(name, _text(value))
+    return element if element.attrib or len(element) else None
+
+
+def _child(declared: Any) -> etree._Element:
+    """Return the element of a declaration, which is named after its class."""
+    names = tuple(field.name for field in fields(declared))
+    element = etree.Element(type(declared).__name__)
+    _filled(element, declared, names)
+    return element
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, tuple):
+        return " ".join(value)
+    return "true" if value is True else str(value)

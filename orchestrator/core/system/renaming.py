@@ -1,0 +1,71 @@
+"""Older names of variables: values given under them are taken for the present ones, with a warning."""
+
+from collections.abc import Mapping
+
+from ..fmu.description import Description
+from .system import Value
+
+
+def present_name(description: Description, name: str) -> str:
+    """Return the name that a variable has now; a name that is no older one stays.
+
+    Parameters
+    ----------
+    description : Description
+        Description of the component.
+    name : str
+        Name of a variable without the component; may be an array shorthand.
+    """
+    base, bracket, element = name.partition("[")
+    if name in description.ports or base in description.ports:
+        return name
+    return description.renamed_bases.get(base, base) + bracket + element
+
+
+def renaming_warning(component: str, old: str, new: str) -> str:
+    """Return the sentence that tells a user of a name that has changed.
+
+    Parameters
+    ----------
+    component : str
+        Name of the component in the system.
+    old, new : str
+        Names of the variable.
+    """
+    return (
+        f"{component}.{old} is called {component}.{new} now: use the new name, the old one will go"
+    )
+
+
+def with_present_names(
+    values: Mapping[str, Value], descriptions: Mapping[str, Description]
+) -> tuple[dict[str, Value], list[str]]:
+    """Return values under the present names of their variables, and a warning for each name that has changed.
+
+    Parameters
+    ----------
+    values : mapping of str to value
+        By ``component.variable``; other names stay as they are.
+    descriptions : mapping of str to Description
+        Descriptions of the components by their names in the system.
+
+    Returns
+    -------
+    values : dict
+        The same values in the same order. What is given under a present name goes before what is given under an older one.
+    warnings : list of str
+        A sentence for each older name.
+    """
+    present: dict[str, Value] = {}
+    warnings = []
+    for name, value in values.items():
+        component, _, variable = name.partition(".")
+        new = variable
+        if component in descriptions:
+            new = present_name(descriptions[component], variable)
+        if new == variable:
+            present[name] = value
+            continue
+        warnings.append(renaming_warning(component, variable, new))
+        present.setdefault(f"{component}.{new}", value)
+    return present, warnings
