@@ -4,6 +4,7 @@ import math
 
 from .kernels import kernel
 from .ports import Variable, out, param
+from .roles import Role
 
 _ROUNDING = 1e-9
 """A quotient of two steps that exceeds a whole number by less than this is that number."""
@@ -18,6 +19,7 @@ def internal_step(start: float) -> Variable:
         start,
         "s",
         minimum=1e-12,
+        role=Role.INTERNAL_STEP,
     )
 
 

@@ -1,6 +1,7 @@
 """Variables of the falling rock. Equations, frame and signs: README.md beside this file."""
 
 from ..common.ports import Layout, choice, inp, out, param
+from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm
 
@@ -35,8 +36,16 @@ LAYOUT = Layout(
             ("free", "driven"),
             "free",
             source="driven: Sonoda et al. 1993, fig. 12",
+            role=Role.DRIVEN,
         ),
-        param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
+        param(
+            "gravity",
+            "acceleration of gravity, downwards",
+            9.80665,
+            "m/s2",
+            minimum=0.0,
+            role=Role.GRAVITY,
+        ),
         param("position0.x", "position of the centre at the start, to the right", 0.0, "m"),
         param("position0.y", "position of the centre at the start, upwards", 1.0, "m"),
         param("angle0", "angle at the start, counter-clockwise", 0.0, "rad"),
@@ -71,22 +80,37 @@ LAYOUT = Layout(
             initial_dependencies=("angular_velocity0",),
         ),
         stable_step(),
-        out("energy.kinetic", "kinetic energy, translation and rotation", "J"),
-        out("energy.gravity", "potential energy in gravity, zero at y = 0", "J"),
+        out(
+            "energy.kinetic",
+            "kinetic energy, translation and rotation",
+            "J",
+            role=Role.STRIKING,
+            label="rock, kinetic",
+        ),
+        out(
+            "energy.gravity",
+            "potential energy in gravity, zero at y = 0",
+            "J",
+            role=Role.GRAVITY_ENERGY,
+            label="gravity, above its least",
+        ),
         out(
             "energy.work.contact",
             "work that the inputs force and torque have done on the rock",
             "J",
+            role=Role.WORK_INSIDE,
         ),
         out(
             "energy.work.drive",
             "work that the machine has done on a driven rock: against its weight, force and torque",
             "J",
+            role=Role.MACHINE_WORK,
         ),
         out(
             "energy.residual",
             "kinetic + gravity - works, minus their sum at the start: the error of the integration",
             "J",
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + gravity at the start", "J"),
     )

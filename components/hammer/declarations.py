@@ -1,6 +1,7 @@
 """Variables of the hammer. Equations, frame and signs: README.md beside this file."""
 
 from ..common.ports import Layout, State, choice, inp, out, param, switch
+from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2
 
@@ -20,7 +21,9 @@ LAYOUT = Layout(
             minimum=0.0,
             maximum=1.0,
         ),
-        param("gravity", "acceleration of gravity", 9.80665, "m/s2", minimum=0.0),
+        param(
+            "gravity", "acceleration of gravity", 9.80665, "m/s2", minimum=0.0, role=Role.GRAVITY
+        ),
         switch("weight", "whether the ram's weight acts during the blow too", True),
         param(
             "cushion.stiffness",
@@ -124,25 +127,47 @@ LAYOUT = Layout(
         ),
         out("blows", "number of blows that have begun", initial_dependencies=()),
         stable_step(),
-        out("energy.kinetic", "kinetic energy of the ram", "J"),
-        out("energy.gravity", "potential energy of the ram, zero at position 0", "J"),
-        out("energy.cushion", "elastic energy in the cushion", "J"),
+        out("energy.kinetic", "kinetic energy of the ram", "J", role=Role.STRIKING, label="hammer"),
+        out(
+            "energy.gravity",
+            "potential energy of the ram, zero at position 0",
+            "J",
+            role=Role.GRAVITY_ENERGY,
+            label="hammer",
+        ),
+        out(
+            "energy.cushion",
+            "elastic energy in the cushion",
+            "J",
+            role=Role.ELASTIC,
+            label="hammer",
+        ),
         out("energy.supplied", "energy supplied by the blows after the first", "J"),
-        out("energy.cushion_loss", "energy dissipated in the cushion", "J"),
+        out(
+            "energy.cushion_loss",
+            "energy dissipated in the cushion",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost in the hammer",
+        ),
         out(
             "energy.contact",
             "energy lost between rigid ram and head: the error of the scheme when they separate",
             "J",
+            role=Role.DISSIPATED,
+            label="lost in the hammer",
         ),
         out(
             "energy.work.head",
             "work that the head has done on the hammer: negative where it is driven",
             "J",
+            role=Role.WORK_INSIDE,
         ),
         out(
             "energy.residual",
             "energies + losses - work - supplied, minus their sum at the start",
             "J",
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + gravity at the start", "J"),
     ),

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..common.component import Component
+from ..common.shown import Curve, Panel, Picture
 from . import kernel
 from .declarations import LAYOUT
 
@@ -21,4 +22,18 @@ COMPONENT = Component(
         "m/s, toe.wave = {toe.wave} N): reduce the exchange step or the step of the component that computes them",
     },
     default_step=1e-5,
+    pictures=(
+        Picture(
+            "piles",
+            (
+                Panel(
+                    "settlement of the toe",
+                    "mm",
+                    (Curve("settlement"), Curve("permanent_set", "set", dashed=True)),
+                    downwards=True,
+                    common=True,
+                ),
+            ),
+        ),
+    ),
 )

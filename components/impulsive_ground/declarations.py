@@ -3,6 +3,8 @@
 from collections import namedtuple
 
 from ..common.ports import Layout, State, choice, inp, out, param
+from ..common.roles import Role
+from ..common.shown import Reported, Statistic
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2, deg, kgf, mm
 
@@ -210,12 +212,14 @@ LAYOUT = Layout(
             "settlement of the plate (smith: of the toe) since the start, downwards",
             "m",
             initial_dependencies=(),
+            reported=(Reported("largest settlement", unit="mm", decimals=3),),
         ),
         out(
             "permanent_set",
             "what of the settlement would stay without load: all of a plate's, of Smith's soil what it slid",
             "m",
             initial_dependencies=(),
+            reported=(Reported("permanent set", Statistic.LAST, "mm", 3),),
         ),
         out(
             "toe.force",
@@ -254,34 +258,57 @@ LAYOUT = Layout(
             "limits it",
             "s",
         ),
-        out("energy.kinetic", "kinetic energy of plate and sand", "J"),
-        out("energy.elastic", "energy of the springs", "J"),
+        out(
+            "energy.kinetic",
+            "kinetic energy of plate and sand",
+            "J",
+            role=Role.KINETIC,
+            label="ground, kinetic and elastic",
+        ),
+        out(
+            "energy.elastic",
+            "energy of the springs",
+            "J",
+            role=Role.ELASTIC,
+            label="ground, kinetic and elastic",
+        ),
         out(
             "energy.preload",
             "potential energy of the static load, zero at the start",
             "J",
             initial_dependencies=(),
+            role=Role.ELASTIC,
+            label="ground, kinetic and elastic",
         ),
         out(
             "energy.plastic",
             "energy that sliding against the resistance has dissipated",
             "J",
             initial_dependencies=(),
+            role=Role.DISSIPATED,
+            label="lost at shaft and toe",
         ),
         out(
-            "energy.damping", "energy that the damping has dissipated", "J", initial_dependencies=()
+            "energy.damping",
+            "energy that the damping has dissipated",
+            "J",
+            initial_dependencies=(),
+            role=Role.DISSIPATED,
+            label="lost at shaft and toe",
         ),
         out(
             "energy.work.contact",
             "work that the ports' force has done on the ground",
             "J",
             initial_dependencies=(),
+            role=Role.WORK_INSIDE,
         ),
         out(
             "energy.residual",
             "energies + dissipated - work, minus their sum at the start: error of the integration",
             "J",
             initial_dependencies=(),
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + elastic + preload at the start", "J"),
     ),

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..common.component import Component
+from ..common.shown import Curve, Panel, Picture
 from . import kernel
 from .declarations import LAYOUT, SIZES
 
@@ -33,4 +34,20 @@ COMPONENT = Component(
         "{stable_step} s: reduce internal_step below that, or, if it is, the exchange step of what acts on it",
     },
     default_step=1e-5,
+    pictures=(
+        Picture(
+            "piles",
+            (
+                Panel(
+                    "force",
+                    "kN",
+                    (
+                        Curve("head.contact_force", "force at the head"),
+                        Curve("head.zv", "Z v there", dashed=True),
+                        Curve("toe.contact_force", "force at the toe"),
+                    ),
+                ),
+            ),
+        ),
+    ),
 )

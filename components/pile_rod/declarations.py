@@ -4,6 +4,8 @@ from collections import namedtuple
 
 from ..common.component import Size
 from ..common.ports import Layout, Sizes, State, choice, inp, out, param
+from ..common.roles import Role
+from ..common.shown import Reported, Statistic
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm2, mm
 
@@ -109,6 +111,7 @@ LAYOUT = Layout(
             "part of head.force that the rod carries at rest at the start; it is left out of everything else",
             0.0,
             "N",
+            role=Role.LOAD_AT_REST,
         ),
         param(
             "head.partner.stiffness",
@@ -222,6 +225,7 @@ LAYOUT = Layout(
             0.0,
             "m/s2",
             minimum=0.0,
+            role=Role.GRAVITY,
         ),
         param("gauge.depth", "depth of the gauge below the head", 0.0, "m", minimum=0.0),
         choice(
@@ -243,6 +247,7 @@ LAYOUT = Layout(
             "displacement of the head, in head.direction",
             "m",
             initial_dependencies=(),
+            role=Role.LOADED_POSITION,
         ),
         out(
             "head.velocity",
@@ -261,6 +266,7 @@ LAYOUT = Layout(
             "force on the head in the last internal step, compression positive",
             "N",
             initial_dependencies=(),
+            reported=(Reported("largest force at the head", unit="kN"),),
         ),
         out(
             "head.zv",
@@ -281,6 +287,7 @@ LAYOUT = Layout(
             "force of the ground on the toe in the last internal step, compression positive",
             "N",
             initial_dependencies=(),
+            reported=(Reported("largest force at the toe", unit="kN"),),
         ),
         out(
             "toe.set",
@@ -362,6 +369,7 @@ LAYOUT = Layout(
             "Pa",
             size="segments",
             initial_dependencies=(),
+            reported=(Reported("largest compressive stress", Statistic.LAST, "MPa"),),
         ),
         out(
             "stress.tension",
@@ -369,6 +377,7 @@ LAYOUT = Layout(
             "Pa",
             size="segments",
             initial_dependencies=(),
+            reported=(Reported("largest tensile stress", Statistic.LAST, "MPa"),),
         ),
         out(
             "shaft.force",
@@ -377,35 +386,79 @@ LAYOUT = Layout(
             size="segments",
             initial_dependencies=(),
         ),
-        out("energy.kinetic", "kinetic energy of the rod", "J"),
-        out("energy.elastic", "elastic energy of the rod", "J"),
-        out("energy.ram", "kinetic energy of the ram", "J"),
-        out("energy.soil", "elastic energy in the soil at shaft and toe", "J"),
+        out(
+            "energy.kinetic",
+            "kinetic energy of the rod",
+            "J",
+            role=Role.KINETIC,
+            label="rods, kinetic and elastic",
+        ),
+        out(
+            "energy.elastic",
+            "elastic energy of the rod",
+            "J",
+            role=Role.ELASTIC,
+            label="rods, kinetic and elastic",
+        ),
+        out(
+            "energy.ram", "kinetic energy of the ram", "J", role=Role.KINETIC, label="ram, kinetic"
+        ),
+        out(
+            "energy.soil",
+            "elastic energy in the soil at shaft and toe",
+            "J",
+            role=Role.ELASTIC,
+            label="ground, kinetic and elastic",
+        ),
         out(
             "energy.ground",
             "energy in the ground as a rod, or in the spring that stands for it",
             "J",
+            role=Role.ELASTIC,
+            label="ground, kinetic and elastic",
         ),
         out("energy.ground.elastic", "elastic part of energy.ground", "J"),
-        out("energy.radiated", "energy that has left through the toe for good", "J"),
-        out("energy.plastic", "energy dissipated by the static resistance of the soil", "J"),
-        out("energy.damping", "energy dissipated by the damping of the soil", "J"),
+        out(
+            "energy.radiated",
+            "energy that has left through the toe for good",
+            "J",
+            role=Role.DISSIPATED,
+            label="left through the toe",
+        ),
+        out(
+            "energy.plastic",
+            "energy dissipated by the static resistance of the soil",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost at shaft and toe",
+        ),
+        out(
+            "energy.damping",
+            "energy dissipated by the damping of the soil",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost at shaft and toe",
+        ),
         out(
             "energy.contact",
             "energy lost between ram and head: the error of the scheme when they separate",
             "J",
+            role=Role.DISSIPATED,
+            label="lost at shaft and toe",
         ),
-        out("energy.work.head", "work of head.force", "J"),
+        out("energy.work.head", "work of head.force", "J", role=Role.WORK_INSIDE),
         out(
             "energy.work.toe",
             "work of toe.force on the rod, negative where the rod drives the ground",
             "J",
+            role=Role.WORK_INSIDE,
         ),
-        out("energy.work.gravity", "work of the weight", "J"),
+        out("energy.work.gravity", "work of the weight", "J", role=Role.WORK_OUTSIDE),
         out(
             "energy.transferred",
             "largest value so far of the work done on the head, by the ram or head.force",
             "J",
+            reported=(Reported("transferred energy", Statistic.LAST, "J"),),
         ),
         out("energy.head", "work done on the head, by the ram or head.force", "J"),
         out(
@@ -418,6 +471,7 @@ LAYOUT = Layout(
             "energy.residual",
             "energies + losses - works, minus their sum at the start: the error of the balance",
             "J",
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + elastic at the start", "J"),
     ),

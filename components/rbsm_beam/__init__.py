@@ -4,6 +4,7 @@ from pathlib import Path
 
 from ..common.component import Component
 from ..common.ports import Bond
+from ..common.shown import Curve, Panel, Picture
 from . import kernel
 from .declarations import LAYOUT, SIZES
 
@@ -29,5 +30,25 @@ COMPONENT = Component(
     bonds=(
         Bond("beam", "motion of the discs, force on them"),
         Bond("support", "motion of the supports, force on them", "support."),
+    ),
+    pictures=(
+        Picture(
+            "beam",
+            (
+                Panel("deflection", "mm", (Curve("midspan.deflection"),), downwards=True),
+                Panel(
+                    "energy of the beam",
+                    "J",
+                    (
+                        Curve("energy.elastic", "elastic, all: the paper's eqs (5), (6)"),
+                        Curve("energy.bending", "of it in bending", dashed=True),
+                        Curve("energy.axial", "of it axial"),
+                        Curve("energy.strain_estimate", "from the midspan strain: its eq. (7)"),
+                    ),
+                    second_unit="kgf cm",
+                    references="peak_beam_energy_from_the_midspan_strain",
+                ),
+            ),
+        ),
     ),
 )

@@ -2,6 +2,7 @@
 
 from ..common.component import Size
 from ..common.ports import Layout, Sizes, State, choice, inp, out, param
+from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2, cm4, kgf
 
@@ -127,6 +128,7 @@ LAYOUT = Layout(
             0.0,
             "N",
             minimum=0.0,
+            role=Role.CUSHION_WEIGHT,
         ),
         param(
             "gravity",
@@ -135,6 +137,7 @@ LAYOUT = Layout(
             0.0,
             "m/s2",
             minimum=0.0,
+            role=Role.GRAVITY,
         ),
         param(
             "damping.mass", "Rayleigh damping, factor of the mass matrix", 0.0, "1/s", minimum=0.0
@@ -163,7 +166,14 @@ LAYOUT = Layout(
         ),
         inp("support.velocity.y", "velocity of the support, upwards", "m/s", size="support_count"),
         _per_element("position.x", "position of the disc's centre, to the right", "m", *_GEOMETRY),
-        _per_element("position.y", "position of the disc's centre, upwards", "m", *_AT_REST),
+        out(
+            "position.y",
+            "position of the disc's centre, upwards",
+            "m",
+            size="elements",
+            initial_dependencies=_AT_REST,
+            role=Role.STRUCTURE,
+        ),
         _per_element(
             "angle",
             "angle of the disc, counter-clockwise: mean of the two bars beside it",
@@ -222,15 +232,24 @@ LAYOUT = Layout(
             "midspan.deflection",
             "deflection of the midspan from the unloaded axis, positive downwards",
             "m",
+            role=Role.DEFLECTION,
         ),
         out("midspan.moment", "bending moment at midspan, positive with tension below", "N.m"),
         out("midspan.strain", "strain at the lower flange at midspan, positive in tension", "1"),
-        out("energy.kinetic", "kinetic energy", "J"),
+        out(
+            "energy.kinetic",
+            "kinetic energy",
+            "J",
+            role=Role.KINETIC,
+            label="beam, kinetic and elastic",
+        ),
         out(
             "energy.elastic",
             "elastic energy, axial + bending",
             "J",
             source="Sonoda et al. 1993, eq. (5)",
+            role=Role.ELASTIC,
+            label="beam, kinetic and elastic",
         ),
         out(
             "energy.axial",
@@ -254,19 +273,39 @@ LAYOUT = Layout(
             "elastic energy as estimated from what the strain at midspan has gained since the start",
             "J",
             source="Sonoda et al. 1993, eq. (7)",
+            role=Role.ESTIMATED,
         ),
-        out("energy.gravity", "potential energy in gravity, zero for the unloaded axis", "J"),
-        out("energy.damping", "energy that the damping has dissipated", "J"),
+        out(
+            "energy.gravity",
+            "potential energy in gravity, zero for the unloaded axis",
+            "J",
+            role=Role.GRAVITY_ENERGY,
+            label="gravity, above its least",
+        ),
+        out(
+            "energy.damping",
+            "energy that the damping has dissipated",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost in the beam",
+        ),
         out(
             "energy.work.contact",
             "work that the inputs force and torque have done on the beam",
             "J",
+            role=Role.WORK_INSIDE,
         ),
-        out("energy.work.support", "work that the moving supports have done on the beam", "J"),
+        out(
+            "energy.work.support",
+            "work that the moving supports have done on the beam",
+            "J",
+            role=Role.WORK_INSIDE,
+        ),
         out(
             "energy.residual",
             "energies + damping - works, minus their sum at the start: error of the integration",
             "J",
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + elastic + gravity at the start", "J"),
     ),

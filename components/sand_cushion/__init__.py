@@ -46,4 +46,5 @@ COMPONENT = Component(
         Bond("rock", "motion of the rock, force on it", "rock."),
         Bond("beam", "motion of the beam's discs, force on them", "beam."),
     ),
+    contents="granular.discs",
 )

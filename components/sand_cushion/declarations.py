@@ -5,6 +5,7 @@ from collections import namedtuple
 
 from ..common.component import Size
 from ..common.ports import Layout, Sizes, State, choice, count, inp, out, param
+from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.threads import MOST
 from ..common.units import cm, deg, kgf
@@ -156,6 +157,7 @@ LAYOUT = Layout(
             "m",
             minimum=1e-9,
             source="Sonoda et al. 1993, sec. 3 (2): diameter 1.0 cm",
+            role=Role.GRAIN_RADIUS,
         ),
         param(
             "disc.spread",
@@ -195,7 +197,14 @@ LAYOUT = Layout(
             minimum=0.5,
             maximum=0.9,
         ),
-        param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=0.0),
+        param(
+            "gravity",
+            "acceleration of gravity, downwards",
+            9.80665,
+            "m/s2",
+            minimum=0.0,
+            role=Role.GRAVITY,
+        ),
         choice(
             "packing",
             "arrangement of the discs at the start; random: as they settle, prepared: settled until they have "
@@ -416,7 +425,7 @@ LAYOUT = Layout(
         ),
         # outputs
         out("rock.force.x", "contact force on the rock, to the right", "N"),
-        out("rock.force.y", "contact force on the rock, upwards", "N"),
+        out("rock.force.y", "contact force on the rock, upwards", "N", role=Role.ON_BODY),
         out(
             "rock.torque",
             "torque of the contact forces on the rock about its centre, counter-clockwise",
@@ -435,13 +444,20 @@ LAYOUT = Layout(
             "force of sand and rock on base (and on walls that stand on the beam), positive downwards",
             "N",
             source="Sonoda et al. 1993, eq. (4)",
+            role=Role.TRANSMITTED,
         ),
         out(
             "penetration",
             "depth of the rock's lowest point under the sand's surface at the start; negative above it",
             "m",
+            role=Role.PENETRATION,
         ),
-        out("surface_height", "height of the sand's surface at the start, under the rock", "m"),
+        out(
+            "surface_height",
+            "height of the sand's surface at the start, under the rock",
+            "m",
+            role=Role.SURFACE,
+        ),
         out(
             "layer.solid_fraction",
             "part of the layer that discs fill at the start; its height is twice that of their centre of "
@@ -457,37 +473,89 @@ LAYOUT = Layout(
             "unrest",
             "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
             "that is more; settling ends at 1e-6, or when settling.time is over",
+            role=Role.UNBALANCED,
         ),
         stable_step(),
-        out("energy.kinetic", "kinetic energy of the discs", "J"),
         out(
-            "energy.elastic", "elastic energy of all contacts, normal, tangential and rolling", "J"
+            "energy.kinetic",
+            "kinetic energy of the discs",
+            "J",
+            role=Role.KINETIC,
+            label="sand, kinetic",
         ),
-        out("energy.gravity", "potential energy of the discs in gravity, zero at y = 0", "J"),
-        out("energy.normal_dashpot", "energy dissipated in normal dashpots", "J"),
-        out("energy.tangential_dashpot", "energy dissipated in tangential dashpots", "J"),
-        out("energy.sliding", "energy dissipated in sliding contacts", "J"),
-        out("energy.rolling", "energy dissipated by rolling resistance", "J"),
+        out(
+            "energy.elastic",
+            "elastic energy of all contacts, normal, tangential and rolling",
+            "J",
+            role=Role.ELASTIC,
+            label="sand, elastic and capillary",
+        ),
+        out(
+            "energy.gravity",
+            "potential energy of the discs in gravity, zero at y = 0",
+            "J",
+            role=Role.GRAVITY_ENERGY,
+            label="gravity, above its least",
+        ),
+        out(
+            "energy.normal_dashpot",
+            "energy dissipated in normal dashpots",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost in normal dashpots",
+        ),
+        out(
+            "energy.tangential_dashpot",
+            "energy dissipated in tangential dashpots",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost in tangential dashpots",
+        ),
+        out(
+            "energy.sliding",
+            "energy dissipated in sliding contacts",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost in sliding",
+        ),
+        out(
+            "energy.rolling",
+            "energy dissipated by rolling resistance",
+            "J",
+            role=Role.DISSIPATED,
+            label="lost in rolling",
+        ),
         out(
             "energy.plastic",
             "energy lost in contacts that do not spring back, less what their capillary bridges gained",
             "J",
+            role=Role.DISSIPATED,
+            label="lost in yielding contacts",
         ),
         out(
             "energy.capillary",
             "potential energy of the capillary bridges, zero where there is none",
             "J",
+            role=Role.ELASTIC,
+            label="sand, elastic and capillary",
         ),
-        out("energy.work.rock", "work that the rock has done on the sand", "J"),
+        out(
+            "energy.work.rock",
+            "work that the rock has done on the sand",
+            "J",
+            role=Role.WORK_INSIDE,
+        ),
         out(
             "energy.work.beam",
             "work that the beam has done on the sand (and on the walls standing on it)",
             "J",
+            role=Role.WORK_INSIDE,
         ),
         out(
             "energy.residual",
             "kinetic + elastic + capillary + gravity + dissipated - work, minus the sum at the start",
             "J",
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + elastic + capillary + gravity at the start", "J"),
     ),

@@ -4,6 +4,7 @@ from collections import namedtuple
 
 from ..common.component import Size
 from ..common.ports import Kind, Layout, Sizes, State, choice, count, inp, out, param, switch
+from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import kN
 
@@ -132,7 +133,14 @@ LAYOUT = Layout(
             "kg.m2",
             minimum=1e-15,
         ),
-        param("gravity", "acceleration of gravity, downwards", 9.80665, "m/s2", minimum=1e-3),
+        param(
+            "gravity",
+            "acceleration of gravity, downwards",
+            9.80665,
+            "m/s2",
+            minimum=1e-3,
+            role=Role.GRAVITY,
+        ),
         param(
             "position0.x",
             "position of the centre at the start, to the right",
@@ -353,34 +361,69 @@ LAYOUT = Layout(
             "s",
         ),
         out("impacts", "number of impacts so far", kind=Kind.INTEGER),
-        out("received", "the rock is handed over: it is in the receiver", kind=Kind.BOOLEAN),
+        out(
+            "received",
+            "the rock is handed over: it is in the receiver",
+            kind=Kind.BOOLEAN,
+            role=Role.HANDED_OVER,
+        ),
         out("handover.time", "time of the last hand-over; 1e30 before the first", "s"),
         out("handovers", "number of hand-overs so far", kind=Kind.INTEGER),
         stable_step(),
-        out("energy.kinetic", "kinetic energy, translation and rotation", "J"),
+        out(
+            "energy.kinetic",
+            "kinetic energy, translation and rotation",
+            "J",
+            role=Role.STRIKING,
+            label="rock, kinetic",
+        ),
         out(
             "energy.gravity",
             "potential energy in gravity, zero at y = 0",
             "J",
             initial_dependencies=None,
+            role=Role.GRAVITY_ENERGY,
+            label="gravity, above its least",
         ),
-        out("energy.impact", "energy dissipated in impacts", "J"),
-        out("energy.friction", "energy dissipated by sliding friction in line motion", "J"),
-        out("energy.roughness", "energy dissipated by roughness in line motion", "J"),
+        out(
+            "energy.impact",
+            "energy dissipated in impacts",
+            "J",
+            role=Role.LEFT_BEHIND,
+            label="lost on the slope, in the run",
+        ),
+        out(
+            "energy.friction",
+            "energy dissipated by sliding friction in line motion",
+            "J",
+            role=Role.LEFT_BEHIND,
+            label="lost on the slope, in the run",
+        ),
+        out(
+            "energy.roughness",
+            "energy dissipated by roughness in line motion",
+            "J",
+            role=Role.LEFT_BEHIND,
+            label="lost on the slope, in the run",
+        ),
         out(
             "energy.resistance",
             "energy dissipated by the resistance of the surface in line motion",
             "J",
+            role=Role.LEFT_BEHIND,
+            label="lost on the slope, in the run",
         ),
         out(
             "energy.work.contact",
             "work that the inputs force and torque have done on the rock",
             "J",
+            role=Role.WORK_INSIDE,
         ),
         out(
             "energy.residual",
             "kinetic + gravity + dissipated - work, minus their sum at the start",
             "J",
+            role=Role.RESIDUAL,
         ),
         out("energy.start", "kinetic + gravity at the start of the trial", "J"),
         out(
