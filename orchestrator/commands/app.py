@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from functools import partial
 from io import TextIOWrapper
 from pathlib import Path
 from shlex import quote as quoted
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import Problem
+from ..core.supervisor import announce, supervised
 
 if TYPE_CHECKING:
     from ..core.results.reading import Run
@@ -349,7 +351,6 @@ def _simulate(
     """Prepare and carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
         from ..core.errors import RunFailed
-        from ..core.loop.journal import reported
         from ..core.results.metric import Metrics
         from ..core.results.reading import add_metrics, read_run
         from ..core.run import simulate
@@ -365,17 +366,15 @@ def _simulate(
         if is_cold(job.components):
             progress.describe(COLD_START)
         try:
-            with reported(
-                [sys.executable, "-m", f"{__package__}.app", "crashed", str(folder.absolute())]
-            ):
-                done = simulate(
-                    job.system,
-                    folder,
-                    sources=job.sources,
-                    allow_unstable=allow_unstable,
-                    progress=progress,
-                    facts=job.facts,
-                )
+            announce(folder)
+            done = simulate(
+                job.system,
+                folder,
+                sources=job.sources,
+                allow_unstable=allow_unstable,
+                progress=progress,
+                facts=job.facts,
+            )
         except RunFailed:
             done = read_run(folder)  # status and reason are in it
     figures = comparison.figures(done, comparison.known_of(done))
@@ -383,19 +382,21 @@ def _simulate(
     return replace(done, metrics=Metrics([*done.metrics.values(), *figures]))
 
 
-@app.command(hidden=True)
-def crashed(folder: Path, signal: int) -> None:
-    """What `rockshed run` becomes when the code of an FMU crashes: tell which, and keep what was computed."""
+def _report_crash(folder: Path | None, reason: str) -> int:
+    """Say which component has crashed, and keep what was computed; return the exit code."""
     from ..core.loop.journal import last_entry
     from ..core.results.run_folder import keep_crashed, running_folder
     from .screen import RUN_FAILED
 
     with _screen() as screen:
-        error = last_entry(running_folder(folder), signal)
+        if folder is None or not running_folder(folder).is_dir():
+            screen.fail(f"the command crashed ({reason})")
+            return RUN_FAILED
+        error = last_entry(running_folder(folder), reason)
         kept = keep_crashed(folder, error, warnings=[])
         screen.fail(error)
         screen.say(f"results in {folder}" if kept else "nothing was computed")
-    raise typer.Exit(RUN_FAILED)
+    return RUN_FAILED
 
 
 def _finish(done: "Run", screen: "Screen", with_figures: bool) -> bool:
@@ -764,7 +765,11 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a terminal that knows no Greek shows ? in its place
             stream.reconfigure(errors="replace")
-    app(prog_name="rockshed")
+    work = partial(app, prog_name="rockshed")
+    if sys.argv[1:2] == ["run"]:  # the code of FMUs may crash
+        supervised(work, [sys.executable, "-m", f"{__package__}.app", *sys.argv[1:]], _report_crash)
+    else:
+        work()
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from numba.extending import intrinsic
 from ..fmu.slave import WARNING
 from ..system.clock import TICKS_PER_SECOND
 from ..system.schedule import Action
-from .tables import CRASHED, ENTRY, KINDS, NOT_FINITE, NUMBERS, REPORTER, REPORTER_LENGTH, Tables
+from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
 
 _SET, _STEP = int(Action.SET), int(Action.STEP)
 _WARNING = WARNING
@@ -229,10 +229,9 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     advance.compile(signature)
     compiled = advance.overloads[signature]
     whole = llvm.parse_assembly(compiled.library.get_llvm_str())
-    for module in (_entry(compiled), _handler()):
-        whole.link_in(llvm.parse_assembly(str(module)))
+    whole.link_in(llvm.parse_assembly(str(_entry(compiled))))
     for function in whole.functions:
-        if not function.is_declaration and function.name not in (ENTRY, CRASHED):
+        if not function.is_declaration and function.name != ENTRY:
             function.linkage = "internal"
             function.add_function_attribute(
                 "alwaysinline"
@@ -290,32 +289,4 @@ def _entry(compiled: Any) -> ir.Module:
     for place in range(3):
         builder.store(builder.extract_value(found, place), number(outcome, place))
     builder.ret(integer(0))
-    return module
-
-
-def _handler() -> ir.Module:
-    """The handler of signals: ``void rockshed_crashed(int signal)``. It calls nothing that a handler may not call."""
-    module, integer, short = ir.Module(), ir.IntType(64), ir.IntType(32)
-    table = ir.GlobalVariable(module, ir.ArrayType(integer, REPORTER_LENGTH), REPORTER)
-    table.initializer = ir.Constant(table.value_type, [0] * REPORTER_LENGTH)
-    handler = ir.Function(module, ir.FunctionType(ir.VoidType(), [short]), CRASHED)
-    builder = ir.IRBuilder(handler.append_basic_block())
-    execve, *arguments, digits, leave = (
-        builder.load(builder.gep(table, [short(0), short(i)])) for i in range(REPORTER_LENGTH)
-    )
-    for place, digit in enumerate(
-        (builder.sdiv(handler.args[0], short(10)), builder.srem(handler.args[0], short(10)))
-    ):
-        text = builder.inttoptr(digits, ir.IntType(8).as_pointer())
-        builder.store(
-            builder.trunc(builder.add(digit, short(ord("0"))), ir.IntType(8)),
-            builder.gep(text, [short(place)]),
-        )
-    builder.call(
-        builder.inttoptr(execve, ir.FunctionType(short, [integer] * 3).as_pointer()), arguments
-    )
-    builder.call(
-        builder.inttoptr(leave, ir.FunctionType(ir.VoidType(), [short]).as_pointer()), [short(1)]
-    )
-    builder.ret_void()
     return module

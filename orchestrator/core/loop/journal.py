@@ -1,30 +1,27 @@
-"""What a run is doing, in a file that outlives the process: which component has the word when the code of an FMU crashes.
+"""The call that a run is making, in a file that outlives the process.
 
-A crash (SIGSEGV, ...) ends a process without a word. The loop therefore notes each call before it makes it, in memory that is a
-file; and where :func:`reported` says so, the process then becomes another one, which reads the file.
+A crash (SIGSEGV, ...) ends a process without a word. The loop therefore notes each call before it
+makes it, in memory that is a file; the :mod:`~rockshed.core.supervisor` reads it after a crash.
 """
 
-import ctypes
 import json
 import os
-import signal
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..system.clock import to_seconds
 from ..system.schedule import Action, Operation
-from .machine_code import crash_handler
 from .tables import Integers
 
 FILE, LEGEND = "journal.bin", "journal.json"
 EXCHANGE, OPERATION = range(2)
 """Places in a journal."""
 _NOTHING = -1
-_REPORTS = os.name == "posix"
-_CRASHES = ("SIGSEGV", "SIGBUS", "SIGILL", "SIGFPE", "SIGABRT")
+_IS_FILE = os.name == "posix"
+"""Whether memory that is a file can be removed while it is in use."""
 
 
 class Journal:
@@ -38,7 +35,7 @@ class Journal:
         self._folder, self._components = folder, list(components)
         self.entries: Integers = (
             np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
-            if _REPORTS
+            if _IS_FILE
             else np.zeros(2, np.int64)
         )
         self.entries[:] = _NOTHING
@@ -74,51 +71,48 @@ class Journal:
             (self._folder / name).unlink(missing_ok=True)
 
 
-def last_entry(folder: Path, number_of_signal: int) -> str:
-    """What a run that a signal has ended was doing: component, time, call and signal; no component if it was none."""
-    how = f"crashed ({signal.Signals(number_of_signal).name})"
+def last_entry(folder: Path, reason: str) -> str:
+    """Say what a run was doing when its process ended.
+
+    Parameters
+    ----------
+    folder : Path
+        In which the run was writing.
+    reason : str
+        Name of the signal or exception that ended it.
+
+    Returns
+    -------
+    str
+        Component, time, call and reason; no component if the code of none was running.
+    """
+    how = f"was killed ({reason})" if reason == "SIGKILL" else f"crashed ({reason})"
     try:
         entries = np.fromfile(folder / FILE, np.int64)
         legend = json.loads((folder / LEGEND).read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        return f"the run has {how}"
-    number, exchange = int(entries[OPERATION]), int(entries[EXCHANGE])
-    if number < _NOTHING:
-        return (
-            f"{legend['components'][_NOTHING - 1 - number]}: its code {how} while it was made ready"
-        )
-    if number == _NOTHING:
-        return f"the run has {how}"
-    component, action, begin, length = legend["operations"][number]
+        return f"the run {how}"
+    operation = int(entries[OPERATION])
+    if operation < _NOTHING:
+        component = legend["components"][_NOTHING - 1 - operation]
+        return f"{component}: its code {how} while it was made ready"
+    if operation == _NOTHING:
+        return f"the run {how}"
+    return _call(legend, operation, int(entries[EXCHANGE]), how)
+
+
+def _call(legend: dict[str, Any], operation: int, exchange: int, how: str) -> str:
+    component, action, begin, length = legend["operations"][operation]
     period = exchange // legend["period"] * legend["period"]
-    at = {
-        Action.STEP: legend["start"] + period * legend["exchange"] + begin,
-        Action.RECORD: legend["start"] + (exchange + 1) * legend["exchange"],
-    }.get(Action(action), legend["start"] + exchange * legend["exchange"])
+    ticks = {
+        Action.STEP: period * legend["exchange"] + begin,
+        Action.RECORD: (exchange + 1) * legend["exchange"],
+    }.get(Action(action), exchange * legend["exchange"])
     what = {
         Action.SET: "when its inputs were set",
         Action.STEP: f"in the step by {to_seconds(length):.6g} s",
         Action.GET: "when its outputs were read",
         Action.RECORD: "when its outputs were read",
     }[Action(action)]
-    return f"{component} at t = {to_seconds(at):.9g} s: its code {how} {what}"
-
-
-@contextmanager
-def reported(command: Sequence[str]) -> Iterator[None]:
-    """While this lasts, the process becomes this command when native code crashes, with the number of the signal as one argument
-    more. Nothing is done where there is no such thing."""
-    if not _REPORTS:
-        yield
-        return
-    handler, libc = crash_handler(command), ctypes.CDLL(None)
-    libc.signal.restype, libc.signal.argtypes = ctypes.c_void_p, [ctypes.c_int, ctypes.c_void_p]
-    before = [
-        (number, libc.signal(number, handler))
-        for number in (getattr(signal, name) for name in _CRASHES)
-    ]
-    try:
-        yield
-    finally:
-        for number, earlier in before:
-            libc.signal(number, earlier)
+    at = to_seconds(legend["start"] + ticks)
+    return f"{component} at t = {at:.9g} s: its code {how} {what}"

@@ -3,7 +3,7 @@
 import ctypes
 import hashlib
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -13,7 +13,7 @@ import llvmlite.binding as llvm
 
 from ...files import write_file
 from ...versions import version_of
-from .tables import CRASHED, ENTRY, REPORTER, REPORTER_LENGTH, Integers
+from .tables import ENTRY, Integers
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
 """Environment variable that moves the folder in which machine code is kept, by default ``~/.cache/rockshed``."""
@@ -61,37 +61,6 @@ def advance() -> Advance:
         return outcome[0], outcome[1], outcome[2]
 
     return call
-
-
-def crash_handler(command: Sequence[str]) -> int:
-    """Address of a handler of signals by which the process becomes this command, with the number of the signal as one argument
-    more. There is one in a process: the newest command counts."""
-    libc, digits = ctypes.CDLL(None), ctypes.create_string_buffer(b"00")
-    texts = [ctypes.create_string_buffer(os.fsencode(part)) for part in command]
-    arguments = (ctypes.c_void_p * (len(command) + 2))(
-        *map(ctypes.addressof, [*texts, digits]), None
-    )
-    table = (ctypes.c_int64 * REPORTER_LENGTH).from_address(
-        _engine().get_global_value_address(REPORTER)
-    )
-    execve, leave = (
-        ctypes.cast(function, ctypes.c_void_p).value or 0 for function in (libc.execve, libc._exit)
-    )
-    environment = ctypes.c_void_p.in_dll(libc, "environ").value or 0
-    table[:] = [
-        execve,
-        arguments[0] or 0,
-        ctypes.addressof(arguments),
-        environment,
-        ctypes.addressof(digits),
-        leave,
-    ]
-    _held[:] = [libc, digits, texts, arguments]
-    return int(_engine().get_function_address(CRASHED))
-
-
-_held: list[Any] = []
-"""What the handler points to."""
 
 
 def _features() -> str:

@@ -87,10 +87,8 @@ KINDS = {
 }
 """Types of the arrays among the :class:`Tables`, in their order."""
 
-ENTRY, CRASHED, REPORTER = "rockshed_advance", "rockshed_crashed", "rockshed_reporter"
-"""Names in the object code: the loop as a C function; a handler of signals, which makes the process another one; the addresses that
-the handler needs: execve, its three arguments, two digits for the number of the signal, and _exit."""
-REPORTER_LENGTH = 6
+ENTRY = "rockshed_advance"
+"""Name of the loop as a C function in the object code."""
 
 
 def head(tables: Tables) -> Integers:
