@@ -14,8 +14,8 @@ from rockshed import components
 from rockshed.components.common.component import Component
 from rockshed.fmus.build import Runtime, build_component
 
-from ..core.fmu.initialisation import free, initialise, instantiate
 from ..core.loop.exchange import State, make_driver
+from ..core.loop.initialisation import free, initialise, instantiate
 from ..core.run import sources_of
 from ..core.system.plan import make_plan
 from ..core.system.system import system_from

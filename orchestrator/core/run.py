@@ -9,16 +9,16 @@ from typing import Any
 
 from .errors import RunFailed
 from .fmu.fmu_slave import FmuFile
-from .fmu.initialisation import free, initialise, instantiate
 from .fmu.slave import FATAL, Slave, Source
 from .loop.exchange import State, make_driver
+from .loop.initialisation import free, initialise, instantiate
 from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Master, Progress
+from .loop.recording import Recorder
 from .results.metric import Metric
 from .results.provenance import describe_run
 from .results.reading import Run, read_run
-from .results.recording import Recorder
 from .results.run_folder import RunFolder
 from .system.clock import to_seconds
 from .system.plan import Plan, make_plan

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from rockshed.bench.exchange import relay
-from rockshed.core.fmu.initialisation import free, initialise, instantiate
 from rockshed.core.fmu.slave import BOOLEAN, INTEGER, REAL, Addresses
 from rockshed.core.loop import compiled as loop
 from rockshed.core.loop.exchange import CompiledDriver, PlainDriver, State
+from rockshed.core.loop.initialisation import free, initialise, instantiate
 from rockshed.core.loop.tables import NOT_FINITE
 from rockshed.core.run import sources_of
 from rockshed.core.system.plan import make_plan

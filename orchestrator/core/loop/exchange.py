@@ -6,13 +6,13 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ..fmu.blocks import make_blocks
 from ..fmu.slave import REAL, WARNING, Slave
-from ..results.snapshots import Snapshots
 from ..system.clock import to_seconds
 from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
+from .blocks import make_blocks
 from .machine_code import advance
+from .snapshots import Snapshots
 from .tables import (
     CHANNEL,
     MOVE,

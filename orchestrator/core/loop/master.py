@@ -9,11 +9,11 @@ from typing import Any
 
 from ..errors import RunFailed
 from ..fmu.slave import FATAL, STATUS_NAMES, Slave
-from ..results.recording import Recorder, last_words
 from ..system.clock import to_seconds
 from ..system.plan import Plan
 from ..system.schedule import Action, Operation
 from .exchange import Driver, Fault, State
+from .recording import Recorder, last_words
 from .tables import NOT_FINITE
 
 _MOST_AT_ONCE = 1000

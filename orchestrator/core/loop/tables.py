@@ -47,7 +47,7 @@ class Tables(NamedTuple):
     inputs, outputs: the two buses. source: for each input, the place of the output that feeds it; unsigned, so that numba does not
     look whether it counts from the end.
     integers: buffer for values on their way as integers, as long as any row of them.
-    snapshots: rows of :class:`rockshed.core.results.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges, the
+    snapshots: rows of :class:`rockshed.core.loop.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges, the
     next one in ``row``. journal: exchange and operation under way, -1 while none is.
     """
 

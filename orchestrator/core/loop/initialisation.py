@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 
 from ..errors import InputRefused, Problem
-from ..loop.exchange import State
+from ..fmu.description import Port
+from ..fmu.slave import ERROR, STATUS_NAMES, WARNING, Slave, Source, without_name
 from ..system.plan import Plan
-from .description import Port
-from .slave import ERROR, STATUS_NAMES, WARNING, Slave, Source, without_name
+from .exchange import State
 
 _ROUNDS = 20
 """How often outputs are passed on at the start; a chain of components needs one round for each of them."""

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu.blocks import make_blocks
 from ..system.plan import End, Plan
+from .blocks import make_blocks
 
 _MOST_ROWS, _MOST_NUMBERS = 1000, 4_000_000
 """Rows, and numbers in them, that may wait before they are worked on."""

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..errors import RunFailed
 from ..fmu.slave import Slave, without_name
-from ..loop.ledger import Accounts
+from ..results.run_folder import Column
 from ..system.plan import Plan
-from .run_folder import Column
+from .ledger import Accounts
 from .snapshots import Snapshots
 
 _SECONDS_TOGETHER = 1.0

@@ -7,8 +7,8 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
+from ..fmu.slave import References
 from ..system.plan import End
-from .slave import References
 
 _WORTH_A_CALL = 16
 """So many consecutive value references go in a call of their own: our slaves take them as one slice. What lies between goes
