@@ -22,12 +22,15 @@ class Table:
         Titles of the columns whose cells end flush right, as numbers do.
     title : str
         Shown above the table.
+    notes : list of str
+        Lines shown below the table.
     """
 
     columns: Sequence[str]
     rows: list[Sequence[str]] = field(default_factory=list)
     right: Sequence[str] = ()
     title: str = ""
+    notes: list[str] = field(default_factory=list)
 
     def add(self, *cells: str) -> None:
         """Append a row.
@@ -52,7 +55,7 @@ class Table:
         lines = [self.columns, *self.rows]
         widths = [max(len(line[place]) for line in lines) for place in range(len(self.columns))]
         texts = ["  ".join(self._padded(line, widths)).rstrip() for line in lines]
-        return "\n".join([self.title, *texts] if self.title else texts)
+        return "\n".join([*filter(None, [self.title]), *texts, *self.notes])
 
     def _padded(self, line: Sequence[str], widths: Sequence[int]) -> Iterator[str]:
         for title, cell, width in zip(self.columns, line, widths, strict=True):
@@ -62,7 +65,9 @@ class Table:
         head = "".join(f"<th>{escape(title)}</th>" for title in self.columns)
         body = "".join("<tr>" + "".join(self._html_cells(row)) + "</tr>" for row in self.rows)
         caption = f"<caption>{escape(self.title)}</caption>" if self.title else ""
-        return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        notes = "".join(f"<p>{escape(note)}</p>" for note in self.notes)
+        table = f"{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"
+        return f"<table>{table}</table>{notes}"
 
     def _html_cells(self, row: Sequence[str]) -> Iterator[str]:
         for title, cell in zip(self.columns, row, strict=True):

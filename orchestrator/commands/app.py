@@ -575,7 +575,6 @@ def reproduce(
     from .screen import INTERRUPTED
 
     with _screen(quiet, as_json) as screen:
-        from ..papers.report import table
         from ..papers.reproduction import reproduce
 
         folder = output_dir or RESULTS / paper
@@ -584,7 +583,7 @@ def reproduce(
         if as_json:
             screen.dump(made.content)
         else:
-            screen.show(table(made.parts))
+            screen.show(*made.tables())
             for part in made.parts:
                 for text in part.study.notes:
                     screen.say(f"{part.study.name}: {text}")

@@ -1,14 +1,12 @@
-"""Rows of studies as a table for the screen and as data."""
+"""Rows of studies as tables and as plain data."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
-
-from ..commands.screen import plain_table
 from ..runs.batch import Outcome, Task
+from ..tables import Table
 from .study import Row, Study
 
 FORMAT = "rockshed reproduction 1"
@@ -29,7 +27,7 @@ NUMBERS = HEADINGS[2:8]
 
 @dataclass(frozen=True)
 class Part:
-    """What a study gave."""
+    """Result of a study: its rows, and its figures as files."""
 
     study: Study
     rows: Sequence[Row]
@@ -37,7 +35,18 @@ class Part:
 
 
 def cells(row: Row) -> tuple[str, ...]:
-    """A row as text, in the order of :data:`HEADINGS`. A claim has its verdict in the place of the deviations' model."""
+    """Return a row as text.
+
+    Parameters
+    ----------
+    row : Row
+        A claim has its verdict behind the model.
+
+    Returns
+    -------
+    tuple of str
+        In the order of :data:`HEADINGS`.
+    """
     return (
         row.quantity,
         "" if row.unit == "1" else row.unit,
@@ -52,7 +61,7 @@ def cells(row: Row) -> tuple[str, ...]:
 
 
 def is_empty(row: Row) -> bool:
-    """Whether a row that should have a computed figure has none: its note then says why."""
+    """Tell whether a row that should have a computed value has none; its note then says why."""
     return row.computed is None and not row.verdict
 
 
@@ -66,26 +75,27 @@ def _percent(deviation: float | None) -> str:
     return "" if deviation is None else f"{100.0 * deviation:+.0f} %"
 
 
-def table(parts: Sequence[Part]) -> Table:
-    """All studies in one table, details left out; a row without a result says why below."""
-    made = plain_table(*HEADINGS, right=NUMBERS)
-    for number, part in enumerate(parts):
-        made.add_row(
-            f"[bold]{part.study.title}[/]" if number == 0 else f"\n[bold]{part.study.title}[/]"
-        )
-        for row in part.rows:
-            if row.detail:
-                continue
-            made.add_row(*cells(row))
-            if is_empty(row) or row.verdict:
-                made.add_row(f"[dim]  {_plain(row.note)}[/]")
+def table(part: Part) -> Table:
+    """Return the table of a study without the details.
+
+    Parameters
+    ----------
+    part : Part
+        Rows of the study.
+
+    Returns
+    -------
+    Table
+        The notes of rows without a value, and of claims, are the notes of the table.
+    """
+    made = Table(HEADINGS, right=NUMBERS, title=part.study.title)
+    for row in part.rows:
+        if row.detail:
+            continue
+        made.add(*cells(row))
+        if row.note and (is_empty(row) or row.verdict):
+            made.notes.append(f"{row.quantity}: {row.note}")
     return made
-
-
-def _plain(text: str) -> str:
-    from rich.markup import escape
-
-    return escape(text)
 
 
 def as_data(
@@ -93,29 +103,49 @@ def as_data(
     tasks: Sequence[Task],
     outcomes: Sequence[Outcome],
     folder: Path,
-    **facts: Any,
+    facts: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """Everything of a reproduction as plain data: studies with their rows, and what was run."""
+    """Return a reproduction as plain data.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        Studies with rows and figures.
+    tasks : sequence of Task
+        Runs that were asked for.
+    outcomes : sequence of Outcome
+        Their outcomes.
+    folder : Path
+        Folder from which the paths of figures count.
+    facts : mapping
+        Paper, time, versions.
+
+    Returns
+    -------
+    dict
+        Content of ``reproduction.json``.
+    """
     by_key = {task.key: task for task in tasks}
     return {
         "format": FORMAT,
         **facts,
-        "studies": [
-            {
-                "name": p.study.name,
-                "title": p.study.title,
-                "notes": list(p.study.notes),
-                "figures": [file.relative_to(folder).as_posix() for file in p.figures],
-                "rows": [row_data(row) for row in p.rows],
-            }
-            for p in parts
-        ],
-        "runs": [_run(by_key[outcome.key], outcome) for outcome in outcomes],
+        "studies": [_study_data(part, folder) for part in parts],
+        "runs": [_run_data(by_key[outcome.key], outcome) for outcome in outcomes],
+    }
+
+
+def _study_data(part: Part, folder: Path) -> dict[str, Any]:
+    return {
+        "name": part.study.name,
+        "title": part.study.title,
+        "notes": list(part.study.notes),
+        "figures": [file.relative_to(folder).as_posix() for file in part.figures],
+        "rows": [row_data(row) for row in part.rows],
     }
 
 
 def row_data(row: Row) -> dict[str, Any]:
-    """A row as plain data."""
+    """Return a row as plain data."""
     return {
         "quantity": row.quantity,
         "unit": row.unit,
@@ -135,7 +165,7 @@ def row_data(row: Row) -> dict[str, Any]:
     }
 
 
-def _run(task: Task, outcome: Outcome) -> dict[str, Any]:
+def _run_data(task: Task, outcome: Outcome) -> dict[str, Any]:
     return {
         "name": task.key,
         "case": task.request.target,

@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
@@ -13,11 +13,12 @@ from typing import Any
 from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.system.names import nearest
 from ..files import write_file, write_json
-from ..runs.batch import INTERRUPTED, Done, run_all
-from ..runs.building import Note
+from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
+from ..runs.building import Note, silent
+from ..tables import Table
 from ..versions import versions
 from .page import page
-from .report import Part, as_data
+from .report import Part, as_data, table
 from .study import Outcomes, Study
 
 PAPERS = {
@@ -33,7 +34,17 @@ _PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came of it. content: that of ``reproduction.json``."""
+    """A paper's studies, carried out.
+
+    Attributes
+    ----------
+    parts : sequence of Part
+        Studies with rows and figures.
+    content : dict
+        Content of ``reproduction.json``.
+    files : sequence of Path
+        ``reproduction.json`` and ``reproduction.html``.
+    """
 
     parts: Sequence[Part]
     content: dict[str, Any]
@@ -44,33 +55,60 @@ class Reproduction:
         """Whether Ctrl-C has ended it before all runs were carried out."""
         return any(run["status"] == INTERRUPTED for run in self.content["runs"])
 
+    def tables(self) -> list[Table]:
+        """Return a table for each study, without the details."""
+        return [table(part) for part in self.parts]
+
 
 def studies(paper: str) -> list[Study]:
-    """The studies of a paper, in its order.
+    """Return the studies of a paper, in its order.
 
-    Raises:
-        InputRefused: there is no such paper.
+    Parameters
+    ----------
+    paper : str
+        Key of :data:`PAPERS`.
+
+    Returns
+    -------
+    list of Study
+        ``STUDY`` of every module in the folder of the paper that has one.
+
+    Raises
+    ------
+    InputRefused
+        There is no such paper.
     """
     if paper not in PAPERS:
-        raise InputRefused(
-            [Problem(paper, "there are no studies of such a paper", nearest(paper, PAPERS))]
-        )
+        problem = Problem(paper, "there are no studies of such a paper", nearest(paper, PAPERS))
+        raise InputRefused([problem])
     package = import_module(f".{paper}", __package__)
     modules = [
-        import_module(f".{found.name}", package.__name__)
-        for found in iter_modules(package.__path__)
+        import_module(f".{entry.name}", package.__name__)
+        for entry in iter_modules(package.__path__)
     ]
-    return sorted(
-        (module.STUDY for module in modules if hasattr(module, "STUDY")),
-        key=lambda study: study.place,
-    )
+    known = (module.STUDY for module in modules if hasattr(module, "STUDY"))
+    return sorted(known, key=lambda study: study.place)
 
 
 def chosen(paper: str, only: Sequence[str]) -> list[Study]:
-    """The studies asked for, or all.
+    """Return the studies of these names, or all.
 
-    Raises:
-        InputRefused: unknown names, all of them.
+    Parameters
+    ----------
+    paper : str
+        Key of :data:`PAPERS`.
+    only : sequence of str
+        Names of studies; none for all.
+
+    Returns
+    -------
+    list of Study
+        In the order of the paper.
+
+    Raises
+    ------
+    InputRefused
+        Unknown paper, or unknown names, all of them.
     """
     known = studies(paper)
     names = [study.name for study in known]
@@ -90,21 +128,45 @@ def reproduce(
     only: Sequence[str] = (),
     quick: bool = False,
     workers: int | None = None,
-    note: Note = lambda text: None,
-    done: Done = lambda count, total: None,
-    drawing: Callable[[], None] = lambda: None,
+    note: Note = silent,
+    counted: Counted = uncounted,
 ) -> Reproduction:
-    """Carry out studies and write ``reproduction.json``, ``reproduction.html`` and figures into ``folder``.
+    """Carry out studies; write ``reproduction.json``, ``reproduction.html`` and figures.
 
-    Raises:
-        InputRefused: unknown paper or study, or a folder that cannot be written; nothing has been run.
+    Parameters
+    ----------
+    paper : str
+        Key of :data:`PAPERS`.
+    folder : Path
+        Folder of the results; made where it is missing.
+    only : sequence of str
+        Names of studies; none for all.
+    quick : bool
+        One run where the full reproduction has a run for each seed.
+    workers : int, optional
+        Number of processes, by default that of the cores.
+    note : callable
+        Called with a line for each FMU that is built.
+    counted : callable
+        Called with the number of runs that have ended, and of all.
+
+    Returns
+    -------
+    Reproduction
+        Rows, figures and files.
+
+    Raises
+    ------
+    InputRefused
+        Unknown paper or study, or a folder that cannot be written; nothing has been run.
     """
     selected = chosen(paper, only)
-    _make(folder / FIGURES)
-    began, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
+    with refusing_unwritable(folder / FIGURES, "name another folder with --output-dir"):
+        (folder / FIGURES).mkdir(parents=True, exist_ok=True)
+    began = time.perf_counter()
+    started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
-    outcomes = Outcomes(run_all(tasks, workers, note, done), quick)
-    drawing()
+    outcomes = Outcomes(run_all(tasks, workers, note, counted), quick)
     parts = [_part(study, outcomes, folder / FIGURES) for study in selected]
     facts = {
         "paper": PAPERS[paper],
@@ -114,7 +176,7 @@ def reproduce(
         "wall_time": time.perf_counter() - began,
         "versions": versions(*_PACKAGES),
     }
-    content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, **facts)
+    content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, facts)
     write_json(folder / DATA, content)
     write_file(folder / PAGE, page(parts, content))
     return Reproduction(parts, content, [folder / DATA, folder / PAGE])
@@ -123,8 +185,3 @@ def reproduce(
 def _part(study: Study, outcomes: Outcomes, figures: Path) -> Part:
     rows = study.rows(outcomes)
     return Part(study, rows, study.draw(outcomes, rows, figures))
-
-
-def _make(folder: Path) -> None:
-    with refusing_unwritable(folder, "name another folder with --output-dir"):
-        folder.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,6 @@
-"""What a study is made of: tasks (runs), their outcomes, rows, and figures."""
+"""Study: a part of a paper that is reproduced, with its tasks, rows and figures."""
 
+import statistics
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -10,24 +11,47 @@ from ..runs.batch import COMPLETE, Outcome, Task
 
 @dataclass(frozen=True)
 class Outcomes:
-    """The outcomes of all runs."""
+    """Outcomes of all runs of a reproduction.
+
+    Attributes
+    ----------
+    by_key : mapping of str to Outcome
+        By the key of the task.
+    quick : bool
+        Whether one run stands for all seeds.
+    """
 
     by_key: Mapping[str, Outcome]
     quick: bool = False
 
     def of(self, task: Task) -> Outcome:
-        """The outcome of a task."""
+        """Return the outcome of a task."""
         return self.by_key[task.key]
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the report, in the units of the paper.
+    """Line of the report, in the units of the paper.
 
-    computed, spread: mean and standard deviation over the runs (spread: None for one run).
-    verdict: for a claim: whether it holds. note: how the row was found, or why there is nothing in it.
-    runs, seeds, options, fmus: where ``computed`` comes from.
-    detail: left out of the table on the screen.
+    Attributes
+    ----------
+    quantity, unit : str
+        Name and unit; ``1`` where there is none.
+    paper, experiment : float, optional
+        References.
+    computed, spread : float, optional
+        Mean and standard deviation over the runs; no spread for one run.
+    model : str
+        Set of model options.
+    verdict : str
+        Of a claim: whether it holds.
+    note : str
+        How the row was computed, or why there is nothing in it.
+    runs, seeds, options, fmus
+        Origin of ``computed``: keys of the tasks, their seeds, parameters of the model, SHA-256 of
+        the FMUs by component.
+    detail : bool
+        Left out of the table on the screen.
     """
 
     quantity: str
@@ -46,12 +70,14 @@ class Row:
     detail: bool = False
 
     def deviation(self, reference: float | None) -> float | None:
-        """computed / reference - 1."""
-        return None if self.computed is None or not reference else self.computed / reference - 1.0
+        """Return computed / reference - 1, or None without a value or a reference."""
+        if self.computed is None or not reference:
+            return None
+        return self.computed / reference - 1.0
 
 
 def verdict(holds: bool) -> str:
-    """In words."""
+    """Return in words whether a claim holds."""
     return "holds" if holds else "does not"
 
 
@@ -59,17 +85,28 @@ def _no_tasks(quick: bool) -> list[Task]:
     return []
 
 
-def _no_figures(found: Outcomes, rows: Sequence[Row], folder: Path) -> list[Path]:
+def _no_figures(outcomes: Outcomes, rows: Sequence[Row], folder: Path) -> list[Path]:
     return []
 
 
 @dataclass(frozen=True)
 class Study:
-    """A part of a paper that is reproduced.
+    """Part of a paper that is reproduced.
 
-    place: where in the paper; the studies are listed by it.
-    tasks(quick): the runs. rows(outcomes): the lines of the report. draw(outcomes, rows, folder): figures, as files.
-    notes: what a reader has to know, one sentence each.
+    Attributes
+    ----------
+    name, title : str
+        On the command line; in the report.
+    place : float
+        Where in the paper; studies are listed in this order.
+    rows : callable
+        From the outcomes to the lines of the report.
+    tasks : callable
+        From ``quick`` to the runs.
+    draw : callable
+        From outcomes, rows and a folder to the figures, as files.
+    notes : sequence of str
+        Remarks for the reader, one sentence each.
     """
 
     name: str
@@ -81,70 +118,114 @@ class Study:
     notes: Sequence[str] = ()
 
 
+@dataclass(frozen=True)
+class Measure:
+    """Quantity of the report that outcomes have.
+
+    Attributes
+    ----------
+    quantity, unit : str
+        Name and unit, as in the paper.
+    scale : float
+        Size of the unit in SI.
+    metric : str or callable
+        Name of a metric, or the function of a complete outcome that computes it (SI).
+    """
+
+    quantity: str
+    unit: str
+    scale: float
+    metric: str | Callable[[Outcome], float]
+
+    def of(self, outcome: Outcome) -> float | None:
+        """Return the value for an outcome, in the unit of the paper; None where it has none."""
+        if isinstance(self.metric, str):
+            value = outcome.metrics.get(self.metric)
+        else:
+            value = self.metric(outcome)
+        return None if value is None else value / self.scale
+
+
 def row_of_runs(
-    quantity: str,
-    unit: str,
-    scale: float,
-    figure: str | Callable[[Outcome], float],
+    measure: Measure,
     tasks: Sequence[Task],
-    found: Outcomes,
+    outcomes: Outcomes,
     paper: float | None = None,
     experiment: float | None = None,
     note: str = "",
 ) -> Row:
-    """A figure of one or several runs (seeds of one model) beside its references.
+    """Return the row of a quantity over one or several runs (seeds of one model).
 
-    figure: name of the figure, or what finds it (SI) in an outcome that is complete.
-    scale: size of ``unit`` in SI; references are given in ``unit``. Runs that failed, or have no such figure, are left out and
-    named in the note.
+    Parameters
+    ----------
+    measure : Measure
+        The quantity.
+    tasks : sequence of Task
+        Runs over which the mean is taken. Runs that failed, or do not have the quantity, are left
+        out and named in the note.
+    outcomes : Outcomes
+        Outcomes of all runs.
+    paper, experiment : float, optional
+        References, in the unit of the measure.
+    note : str
+        How the row was computed.
+
+    Returns
+    -------
+    Row
+        Mean and standard deviation beside the references.
     """
-    outcomes = [found.of(task) for task in tasks]
-    ended = [outcome for outcome in outcomes if outcome.status == COMPLETE]
-    each = [
-        outcome.figures.get(figure) if isinstance(figure, str) else figure(outcome)
-        for outcome in ended
-    ]
-    values = [value / scale for value in each if value is not None]
-    failures = list(
-        dict.fromkeys(
-            f"{o.status}: {o.error}".removesuffix(": ") for o in outcomes if o.status != COMPLETE
-        )
-    )
-    failed = (
-        [
-            f"{len(outcomes) - len(ended)} of {len(outcomes)} runs did not end ({'; '.join(failures)})"
-        ]
-        if failures
-        else []
-    )
-    failed += (
-        [f"{len(ended) - len(values)} of {len(ended)} runs have no such figure"]
-        if len(values) < len(ended)
-        else []
-    )
-    mean = sum(values) / len(values) if values else None
-    said = "; ".join([note] * bool(note) + failed)
+    every = [outcomes.of(task) for task in tasks]
+    complete = [outcome for outcome in every if outcome.status == COMPLETE]
+    values = [value for outcome in complete if (value := measure.of(outcome)) is not None]
+    remarks = [note] if note else []
+    if len(complete) < len(every):
+        remarks.append(_failures(every))
+    if len(values) < len(complete):
+        missing = len(complete) - len(values)
+        remarks.append(f"{missing} of {len(complete)} runs have no such metric")
     return Row(
-        quantity,
-        unit,
+        measure.quantity,
+        measure.unit,
         paper,
         experiment,
-        mean,
-        _spread(values),
+        sum(values) / len(values) if values else None,
+        statistics.stdev(values) if len(values) > 1 else None,
         tasks[0].model,
-        note=said,
-        **origin(tasks, found),
+        note="; ".join(remarks),
+        **origin(tasks, outcomes),
     )
+
+
+def _failures(outcomes: Sequence[Outcome]) -> str:
+    """Return in words how many runs did not end, and why; each reason once."""
+    failed = [outcome for outcome in outcomes if outcome.status != COMPLETE]
+    reasons = dict.fromkeys(f"{o.status}: {o.error}".removesuffix(": ") for o in failed)
+    return f"{len(failed)} of {len(outcomes)} runs did not end ({'; '.join(reasons)})"
 
 
 def detail(row: Row) -> Row:
-    """The row, left out of the table on the screen."""
+    """Return the row, left out of the table on the screen."""
     return replace(row, detail=True)
 
 
-def origin(tasks: Sequence[Task], found: Outcomes) -> dict[str, Any]:
-    """Where a row's figure comes from: runs, seeds, model options and FMUs."""
-    first = next((found.of(task) for task in tasks if found.of(task).fmus), found.of(tasks[0]))
+def origin(tasks: Sequence[Task], outcomes: Outcomes) -> dict[str, Any]:
+    """Return the origin of a row's value.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        Runs of the row; the first one with FMUs tells the options of the model.
+    outcomes : Outcomes
+        Outcomes of all runs.
+
+    Returns
+    -------
+    dict
+        Keywords of :class:`Row`: runs, seeds, options and fmus.
+    """
+    every = [outcomes.of(task) for task in tasks]
+    first = next((outcome for outcome in every if outcome.fmus), every[0])
     options = {name: value for name, value in first.options.items() if name != "seed"}
     return {
         "runs": [task.key for task in tasks],
@@ -152,10 +233,3 @@ def origin(tasks: Sequence[Task], found: Outcomes) -> dict[str, Any]:
         "options": options,
         "fmus": dict(first.fmus),
     }
-
-
-def _spread(values: Sequence[float]) -> float | None:
-    if len(values) < 2:
-        return None
-    mean = sum(values) / len(values)
-    return float((sum((value - mean) ** 2 for value in values) / (len(values) - 1)) ** 0.5)

@@ -1,4 +1,7 @@
-"""Runs of studies, in parallel over processes. Each process keeps its FMUs' code compiled from run to run."""
+"""Many runs, in parallel over processes.
+
+Each process keeps its FMUs' code compiled from run to run.
+"""
 
 import os
 import signal
@@ -14,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.system.system import System
-from .building import Note
+from .building import Note, silent
 from .job import prepare
 from .request import Request
 
@@ -22,17 +25,77 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ..core.errors import RunFailed
     from ..core.results.reading import Run
 
-COMPLETE, FAILED, INTERRUPTED = "complete", "failed", "interrupted"
+COMPLETE = "complete"
+FAILED = "failed"
+INTERRUPTED = "interrupted"
+
+Counted = Callable[[int, int], None]
+"""Called with the number of runs that have ended, and of all."""
+
+COLUMNS = (
+    "sand.transmitted_force",
+    "sand.rock.force.y",
+    "sand.penetration",
+    "sand.surface_height",
+    "sand.stable_step",
+    "beam.midspan.deflection",
+    "beam.energy.elastic",
+    "beam.energy.strain_estimate",
+    "rock.energy.kinetic",
+)
+"""Variables that are recorded of a run, besides the energy of its interfaces."""
+
+_MODEL = {
+    "sand": (
+        "modulus",
+        "damping",
+        "rotation",
+        "stiffness_factor",
+        "base",
+        "base.shape",
+        "beam.disc_mass",
+        "rolling_resistance",
+        "unloading_ratio",
+        "cohesion",
+        "packing",
+        "disc.spread",
+        "solid_fraction",
+        "unit_weight",
+        "unit_weight_of",
+        "lattice_shift",
+        "seed",
+        "kinematics",
+        "forces",
+        "internal_step",
+    ),
+    "beam": ("deck.mass", "box.mass"),
+}
+"""Parameters of sand and beam that make up the model."""
+
+
+def uncounted(ended: int, total: int) -> None:
+    """Count nothing: the default of every ``counted``."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A run that a study needs. Studies share runs: two tasks with the same content are carried out once.
+    """Run that a study or a calibration needs.
 
-    model: name of the set of model options, for the reader.
-    seed: that of the random lattice shift; None if the lattice is undisturbed.
+    Tasks with the same content are one run.
+
+    Attributes
+    ----------
+    request : Request
+        Case, and everything that is changed in it.
+    model : str
+        Name of the set of model options, for the reader.
+    seed : int, optional
+        Seed of the sample; None if the lattice is undisturbed.
+    allow_unstable : bool
+        Whether a step may be longer than the stable one.
     """
 
     request: Request
@@ -59,69 +122,44 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run gave. A run that failed has the rows until then, and no figures.
+    """Result of a task. A run that failed has the series until then, and no metrics.
 
-    figures: summary and headlines (SI) by name. series: columns of the results by name. fmus: SHA-256 by component.
-    options: parameters of sand and beam that make up the model. failed_at: time (s) of a failure in the run.
+    Attributes
+    ----------
+    key : str
+        Key of the task.
+    status : str
+        ``complete``, ``failed`` or ``interrupted``.
+    error : str
+        Reason of a failure.
+    failed_at : float, optional
+        Time (s) of a failure in the run.
+    metrics : mapping of str to float
+        Values (SI) by the names of the metrics.
+    series : mapping of str to array, shape (rows,)
+        Columns of the results by name.
+    options : mapping
+        Parameters of sand and beam that make up the model.
+    fmus : mapping of str to str
+        SHA-256 by component.
+    wall_time : float
+        Seconds.
     """
 
     key: str
     status: str
     error: str = ""
     failed_at: float | None = None
-    figures: Mapping[str, float] = field(default_factory=dict)
+    metrics: Mapping[str, float] = field(default_factory=dict)
     series: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
     fmus: Mapping[str, str] = field(default_factory=dict)
     wall_time: float = 0.0
 
 
-Done = Callable[[int, int], None]
-"""Told the number of runs that have ended, and of all."""
-
-COLUMNS = (
-    "sand.transmitted_force",
-    "sand.rock.force.y",
-    "sand.penetration",
-    "sand.surface_height",
-    "sand.stable_step",
-    "beam.midspan.deflection",
-    "beam.energy.elastic",
-    "beam.energy.strain_estimate",
-    "rock.energy.kinetic",
-)
-"""What is recorded of a run, besides the energy of its interfaces."""
-_MODEL = {
-    "sand": (
-        "modulus",
-        "damping",
-        "rotation",
-        "stiffness_factor",
-        "base",
-        "base.shape",
-        "beam.disc_mass",
-        "rolling_resistance",
-        "unloading_ratio",
-        "cohesion",
-        "packing",
-        "disc.spread",
-        "solid_fraction",
-        "unit_weight",
-        "unit_weight_of",
-        "lattice_shift",
-        "seed",
-        "kinematics",
-        "forces",
-        "internal_step",
-    ),
-    "beam": ("deck.mass", "box.mass"),
-}
-"""Parameters of sand and beam that say which model was computed."""
-
-
 @dataclass(frozen=True)
 class _Order:
-    """A run as it is sent to a process."""
+    """Run as it is sent to a process."""
 
     key: str
     system: System
@@ -129,55 +167,92 @@ class _Order:
 
 
 def run_all(
-    tasks: Sequence[Task], workers: int | None, note: Note, done: Done
+    tasks: Sequence[Task],
+    workers: int | None = None,
+    note: Note = silent,
+    counted: Counted = uncounted,
 ) -> dict[str, Outcome]:
-    """Carry out all tasks, each different one once; outcomes by key. A run that fails is an outcome too.
+    """Carry out all tasks, each different one once.
 
-    workers: number of processes, by default that of the cores. Ctrl-C ends the runs; those without a result are "interrupted".
+    Parameters
+    ----------
+    tasks : sequence of Task
+        Runs. Ctrl-C ends them; those without a result are interrupted.
+    workers : int, optional
+        Number of processes, by default that of the cores.
+    note : callable
+        Called with a line for each FMU that is built.
+    counted : callable
+        Called with the number of runs that have ended, and of all.
 
-    Raises:
-        InputRefused: a task that cannot be prepared.
+    Returns
+    -------
+    dict of str to Outcome
+        By the key of the task. A run that fails is an outcome too.
+
+    Raises
+    ------
+    InputRefused
+        A task cannot be prepared.
     """
     orders = [_order(task, note) for task in {task.key: task for task in tasks}.values()]
-    found: dict[str, Outcome] = {}
+    outcomes: dict[str, Outcome] = {}
+    processes = min(workers or os.cpu_count() or 1, max(len(orders), 1))
     try:
-        for outcome in _carry_out(orders, min(workers or os.cpu_count() or 1, max(len(orders), 1))):
-            found[outcome.key] = outcome
-            done(len(found), len(orders))
+        for outcome in _carry_out(orders, processes):
+            outcomes[outcome.key] = outcome
+            counted(len(outcomes), len(orders))
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
     return {
-        order.key: found.get(order.key, Outcome(order.key, INTERRUPTED, "not run"))
+        order.key: outcomes.get(order.key, Outcome(order.key, INTERRUPTED, "not run"))
         for order in orders
     }
 
 
-def run_here(task: Task, note: Note = lambda text: None) -> Outcome:
+def run_here(task: Task, note: Note = silent) -> Outcome:
     """Carry out one task in this process.
 
-    Raises:
-        InputRefused: a task that cannot be prepared.
+    Parameters
+    ----------
+    task : Task
+        The run.
+    note : callable
+        Called with a line for each FMU that is built.
+
+    Returns
+    -------
+    Outcome
+        Also of a run that fails.
+
+    Raises
+    ------
+    InputRefused
+        The task cannot be prepared.
     """
     return run_one(_order(task, note))
 
 
 def _order(task: Task, note: Note) -> _Order:
-    """The system of a task with a short output and no states."""
+    """Return the system of a task, with the recorded variables only and no states."""
     system = prepare(task.request, note).system
-    parts = {
+    components = {
         name: spec.model_copy(update={"record_states": False})
         for name, spec in system.components.items()
     }
-    short = {
-        "components": parts,
-        "record": [c for c in COLUMNS if c.partition(".")[0] in parts],
+    changes = {
+        "components": components,
+        "record": [column for column in COLUMNS if column.partition(".")[0] in components],
         "state_interval": None,
     }
-    return _Order(task.key, system.model_copy(update=short), task.allow_unstable)
+    return _Order(task.key, system.model_copy(update=changes), task.allow_unstable)
 
 
 def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
-    """Outcomes in the order in which they come. An FMU may take its process with it: what is lost so is run again, alone."""
+    """Yield outcomes in the order in which they come.
+
+    An FMU may take its process with it: runs that are lost so are made again, each alone.
+    """
     if not orders:
         return
     lost = []
@@ -202,7 +277,7 @@ def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
 
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes that start afresh; left early, runs that have not begun are dropped."""
+    """Yield processes that start afresh; left early, runs that have not begun are dropped."""
     pool = ProcessPoolExecutor(
         workers, mp_context=get_context("spawn"), initializer=_leave_interrupts_to_the_run
     )
@@ -213,12 +288,15 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _leave_interrupts_to_the_run() -> None:
-    """Ctrl-C reaches every process: a run takes it for itself while it goes on, between two runs the parent does."""
+    """Ignore Ctrl-C between two runs.
+
+    It reaches every process: a run takes it for itself while it goes on, between runs the parent.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run_one(order: _Order) -> Outcome:
-    """One run, in the process in which this is called."""
+    """Carry out one run in the process in which this is called."""
     from ..core.errors import InputRefused, RunFailed
     from ..core.results.reading import read_run
     from ..core.run import simulate
@@ -226,39 +304,26 @@ def run_one(order: _Order) -> Outcome:
     began = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="rockshed-") as folder:
         place = Path(folder) / "run"
+        failure = None
         try:
-            run, error, at = (
-                simulate(order.system, place, allow_unstable=order.allow_unstable),
-                "",
-                None,
-            )
-        except RunFailed as failure:
-            run, error, at = read_run(place), str(failure), failure.time
+            run = simulate(order.system, place, allow_unstable=order.allow_unstable)
+        except RunFailed as reason:
+            failure = reason
+            run = read_run(place)
         except InputRefused as refusal:
-            return Outcome(order.key, FAILED, str(refusal), wall_time=time.perf_counter() - began)
-        return _outcome(order.key, run, error, at, began)
+            wall_time = time.perf_counter() - began
+            return Outcome(order.key, FAILED, str(refusal), wall_time=wall_time)
+        return _outcome(order.key, run, failure, began)
 
 
-def _outcome(key: str, run: "Run", error: str, failed_at: float | None, began: float) -> Outcome:
-    from ..metrics.headlines import headlines
-
-    complete = run.status == COMPLETE
-    figures = (
-        {
-            f.name: float(f.value)
-            for f in [*run.metrics.values(), *headlines(run)]
-            if not isinstance(f.value, str)
-        }
-        if complete
-        else {}
-    )
+def _outcome(key: str, run: "Run", failure: "RunFailed | None", began: float) -> Outcome:
     components = run.provenance["components"]
     return Outcome(
         key,
         run.status,
-        error,
-        failed_at,
-        figures,
+        str(failure) if failure else "",
+        failure.time if failure else None,
+        _metrics(run) if run.status == COMPLETE else {},
         dict(run.series),
         _options(components),
         {name: str(facts["sha256"]) for name, facts in components.items()},
@@ -266,8 +331,16 @@ def _outcome(key: str, run: "Run", error: str, failed_at: float | None, began: f
     )
 
 
+def _metrics(run: "Run") -> dict[str, float]:
+    """Return the numbers of a run by the names of the metrics."""
+    from ..metrics.headlines import headlines
+
+    known = [*run.metrics.values(), *headlines(run)]
+    return {m.name: float(m.value) for m in known if not isinstance(m.value, str)}
+
+
 def _options(components: Mapping[str, Any]) -> dict[str, Any]:
-    """What of :data:`_MODEL` a run has; parameters of the sand without its name."""
+    """Return the parameters of :data:`_MODEL` that a run has; the sand's without its name."""
     return {
         name if owner == "sand" else f"{owner}.{name}": components[owner]["parameters"][name][
             "value"

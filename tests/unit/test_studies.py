@@ -19,7 +19,7 @@ from rockshed.papers.statistics import (
     mean_absolute_error,
     power_law,
 )
-from rockshed.papers.study import Outcomes, Row, row_of_runs
+from rockshed.papers.study import Measure, Outcomes, Row, row_of_runs
 from rockshed.runs import batch
 from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome, Task
 from rockshed.runs.job import Request
@@ -105,7 +105,7 @@ def outcome(key, seed, value):
     if isinstance(value, str):
         return Outcome(key, FAILED, value, options=options)
     return Outcome(
-        key, COMPLETE, figures={"force": value}, options=options, fmus={"sand": "ab" * 32}
+        key, COMPLETE, metrics={"force": value}, options=options, fmus={"sand": "ab" * 32}
     )
 
 
@@ -114,7 +114,9 @@ def outcome(key, seed, value):
 
 def test_a_row_has_mean_and_spread_over_the_seeds_in_the_unit_of_the_paper():
     found = outcomes(390 * kgf, 400 * kgf, 410 * kgf)
-    row = row_of_runs("P", "kgf", kgf, "force", [task(i) for i in range(3)], found, 320.0, 500.0)
+    row = row_of_runs(
+        Measure("P", "kgf", kgf, "force"), [task(i) for i in range(3)], found, 320.0, 500.0
+    )
     assert (row.computed, row.spread) == (pytest.approx(400.0), pytest.approx(10.0))
     assert row.deviation(row.paper) == pytest.approx(0.25)
     assert row.deviation(row.experiment) == pytest.approx(-0.2)
@@ -123,17 +125,19 @@ def test_a_row_has_mean_and_spread_over_the_seeds_in_the_unit_of_the_paper():
 
 
 def test_a_single_run_has_no_spread():
-    assert row_of_runs("P", "N", 1.0, "force", [task(0)], outcomes(1.0)).spread is None
+    assert row_of_runs(Measure("P", "N", 1.0, "force"), [task(0)], outcomes(1.0)).spread is None
 
 
 def test_a_run_that_failed_is_told_and_left_out():
     row = row_of_runs(
-        "P", "N", 1.0, "force", [task(0), task(1)], outcomes("sand at t = 1 s: diverged", 7.0)
+        Measure("P", "N", 1.0, "force"),
+        [task(0), task(1)],
+        outcomes("sand at t = 1 s: diverged", 7.0),
     )
     assert row.computed == 7.0
     assert row.note == "1 of 2 runs did not end (failed: sand at t = 1 s: diverged)"
     assert row.fmus == {"sand": "ab" * 32}
-    lost = row_of_runs("P", "N", 1.0, "force", [task(0)], outcomes("diverged"), 3.0)
+    lost = row_of_runs(Measure("P", "N", 1.0, "force"), [task(0)], outcomes("diverged"), 3.0)
     assert (lost.computed, lost.deviation(lost.paper)) == (None, None)
 
 
@@ -219,7 +223,7 @@ def test_forces_through_a_load_cell_come_from_the_same_runs():
             t.key: Outcome(
                 t.key,
                 COMPLETE,
-                figures={h.PEAK_TRANSMITTED: 4000.0},
+                metrics={h.PEAK_TRANSMITTED: 4000.0},
                 options={"modulus": 1.0},
                 series={"time": time, "sand.transmitted_force": spike},
             )
@@ -254,7 +258,7 @@ def test_energies_of_the_girders_are_shares_of_the_rocks_wherever_it_started():
             task.key,
             COMPLETE,
             options={},
-            figures={
+            metrics={
                 h.BEAM_ENERGY_FROM_STRAIN: energies[task.request.target],
                 h.BEAM_ENERGY: 2 * energies[task.request.target],
                 h.SETTLED_RATIO: 1.0,

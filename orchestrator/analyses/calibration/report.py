@@ -16,7 +16,7 @@ from ...commands.screen import plain_table
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...files import write_json
-from ...runs.batch import Done
+from ...runs.batch import Counted
 from ...runs.building import Note
 from .measurement import Measurement, of_stiffness, read_curve, stiffness_from
 from .run import ROTATIONS, Calibration, Fit, Unreachable, by_misfit, calibrate
@@ -121,7 +121,7 @@ def asked_for(
     return Asked([read_curve(Path(str(target)))], rotation, values)
 
 
-def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Done) -> Found:
+def find(asked: Asked, seeds: int, workers: int | None, note: Note, done: Counted) -> Found:
     """Calibrate with the model that is asked for, or with each.
 
     Raises:

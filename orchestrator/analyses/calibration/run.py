@@ -19,7 +19,16 @@ from ...cases.static_loading import NAME, SPEED, rock_height
 from ...core.errors import InputRefused, Problem, RunFailed
 from ...core.system.system import Value
 from ...metrics.load_curve import LoadCurve, load_curve
-from ...runs.batch import COMPLETE, INTERRUPTED, Done, Outcome, Task, run_all, run_here
+from ...runs.batch import (
+    COMPLETE,
+    INTERRUPTED,
+    Counted,
+    Outcome,
+    Task,
+    run_all,
+    run_here,
+    uncounted,
+)
 from ...runs.building import Note
 from ...runs.job import Request
 from .measurement import Measurement
@@ -211,7 +220,7 @@ def calibrate(
     seeds: int = 5,
     workers: int | None = None,
     note: Note = lambda text: None,
-    done: Done = lambda count, total: None,
+    done: Counted = uncounted,
 ) -> Calibration:
     """Find E_bar for each measurement.
 

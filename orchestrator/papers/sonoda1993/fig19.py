@@ -121,7 +121,7 @@ def _two_step_row(name: str, column: str, peaks: bool, found: Outcomes) -> Row:
 
 
 def _peak_error(column: str, one: Outcome, other: Outcome) -> float:
-    return one.figures[f"{column} maximum"] / other.figures[f"{column} maximum"] - 1.0
+    return one.metrics[f"{column} maximum"] / other.metrics[f"{column} maximum"] - 1.0
 
 
 def _curve_error(column: str, one: Outcome, other: Outcome) -> float:
@@ -135,7 +135,7 @@ def _curve_error(column: str, one: Outcome, other: Outcome) -> float:
 def force_error(outcome: Outcome, reference: Outcome) -> float:
     """Relative error of the peak transmitted force (percent, without sign)."""
     return 100.0 * abs(
-        outcome.figures[PEAK_TRANSMITTED] / reference.figures[PEAK_TRANSMITTED] - 1.0
+        outcome.metrics[PEAK_TRANSMITTED] / reference.metrics[PEAK_TRANSMITTED] - 1.0
     )
 
 
@@ -150,7 +150,7 @@ def energy_error(outcome: Outcome, reference: Outcome) -> float:
             outcome.series[column]
             - np.interp(time, reference.series["time"], reference.series[column])
         )
-    return 100.0 * float(np.max(made)) / outcome.figures[IMPACT_ENERGY]
+    return 100.0 * float(np.max(made)) / outcome.metrics[IMPACT_ENERGY]
 
 
 ERRORS = {

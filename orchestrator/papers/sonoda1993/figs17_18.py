@@ -14,7 +14,7 @@ from ...metrics.headlines import (
     PEAK_TRANSMITTED,
 )
 from ...runs.batch import COMPLETE, Task
-from ..study import Outcomes, Row, Study, row_of_runs, verdict
+from ..study import Measure, Outcomes, Row, Study, row_of_runs, verdict
 from .laboratory import ALL_MODELS, impact
 
 TESTS = (4, 10)
@@ -44,10 +44,7 @@ def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
     measured = sonoda1993.BEAM_ENERGY[number] / _ENERGY
     return [
         row_of_runs(
-            f"peak transmitted force, test {number}",
-            "kgf",
-            kgf,
-            PEAK_TRANSMITTED,
+            Measure(f"peak transmitted force, test {number}", "kgf", kgf, PEAK_TRANSMITTED),
             [task],
             found,
             paper.value / kgf if paper else None,
@@ -55,36 +52,41 @@ def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
             "paper: its table 5, inter- or extrapolated",
         ),
         row_of_runs(
-            f"peak beam energy, eqs (5) and (6), test {number}",
-            "kgf cm",
-            _ENERGY,
-            BEAM_ENERGY,
+            Measure(
+                f"peak beam energy, eqs (5) and (6), test {number}", "kgf cm", _ENERGY, BEAM_ENERGY
+            ),
             [task],
             found,
         ),
         row_of_runs(
-            f"peak beam energy, eq. (7), test {number}",
-            "kgf cm",
-            _ENERGY,
-            BEAM_ENERGY_FROM_STRAIN,
+            Measure(
+                f"peak beam energy, eq. (7), test {number}",
+                "kgf cm",
+                _ENERGY,
+                BEAM_ENERGY_FROM_STRAIN,
+            ),
             [task],
             found,
             experiment=measured,
             note="experiment: about, read from fig. 18",
         ),
         row_of_runs(
-            f"peak beam energy, eqs (5) and (6) / impact energy, test {number}",
-            "%",
-            0.01,
-            BEAM_SHARE,
+            Measure(
+                f"peak beam energy, eqs (5) and (6) / impact energy, test {number}",
+                "%",
+                0.01,
+                BEAM_SHARE,
+            ),
             [task],
             found,
         ),
         row_of_runs(
-            f"peak beam energy, eq. (7) / impact energy, test {number}",
-            "%",
-            0.01,
-            BEAM_SHARE_FROM_STRAIN,
+            Measure(
+                f"peak beam energy, eq. (7) / impact energy, test {number}",
+                "%",
+                0.01,
+                BEAM_SHARE_FROM_STRAIN,
+            ),
             [task],
             found,
             experiment=100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy(),

@@ -147,7 +147,7 @@ def plot_forces(axes: "Axes", outcome: Outcome) -> None:
     ):
         if outcome.status == COMPLETE:
             time, force = outcome.series["time"], outcome.series[f"sand.{column}"]
-            smooth = low_pass(time, force, outcome.figures[SETTLED_CUT_OFF])
+            smooth = low_pass(time, force, outcome.metrics[SETTLED_CUT_OFF])
             axes.plot(time / ms, force / tf, color=colour, linewidth=0.5, alpha=0.55)
             if smooth is not None:
                 axes.plot(time / ms, smooth / tf, color=colour, linewidth=1.4, label=name)

@@ -16,7 +16,7 @@ from ...metrics.headlines import (
     SETTLED_TRANSMITTED,
 )
 from ...runs.batch import Outcome, Task
-from ..study import Outcomes, Row, Study, detail, origin, row_of_runs
+from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs
 from . import full_scale
 from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces
 
@@ -61,7 +61,7 @@ def rows(found: Outcomes) -> list[Row]:
 
 def _share(figure: str) -> Callable[[Outcome], float]:
     """A peak energy of the girders as a part of the impact's."""
-    return lambda outcome: outcome.figures[figure] / IMPACT_ENERGY
+    return lambda outcome: outcome.metrics[figure] / IMPACT_ENERGY
 
 
 def _known(impact: Impact, figure: str, who: str) -> float | None:
@@ -76,10 +76,12 @@ def _percent(value: float | None) -> float | None:
 def _energy(impact: Impact, model: Model, found: Outcomes) -> Row:
     """The energy as it was measured."""
     return row_of_runs(
-        f"girders' energy / rock's by eq. (7), span {impact.span:g} m",
-        "%",
-        0.01,
-        _share(BEAM_ENERGY_FROM_STRAIN),
+        Measure(
+            f"girders' energy / rock's by eq. (7), span {impact.span:g} m",
+            "%",
+            0.01,
+            _share(BEAM_ENERGY_FROM_STRAIN),
+        ),
         _runs(impact, model, found.quick),
         found,
         experiment=_percent(_known(impact, BEAM_SHARE_FROM_STRAIN, "experiment")),
@@ -92,20 +94,16 @@ def _springs_and_forces(impact: Impact, model: Model, found: Outcomes) -> list[R
     runs, span = _runs(impact, model, found.quick), f"span {impact.span:g} m"
     return [
         row_of_runs(
-            f"girders' energy / rock's by eqs (5), (6), {span}",
-            "%",
-            0.01,
-            _share(BEAM_ENERGY),
+            Measure(
+                f"girders' energy / rock's by eqs (5), (6), {span}", "%", 0.01, _share(BEAM_ENERGY)
+            ),
             runs,
             found,
             _percent(_known(impact, BEAM_SHARE, "paper")),
             note="largest elastic energy less that at rest under the sand",
         ),
         row_of_runs(
-            f"settled ratio transmitted / rock, {span}",
-            "1",
-            1.0,
-            SETTLED_RATIO,
+            Measure(f"settled ratio transmitted / rock, {span}", "1", 1.0, SETTLED_RATIO),
             runs,
             found,
             _known(impact, SETTLED_RATIO, "paper"),
@@ -113,11 +111,15 @@ def _springs_and_forces(impact: Impact, model: Model, found: Outcomes) -> list[R
         ),
         detail(
             row_of_runs(
-                f"settled transmitted force, {span}", "tf", tf, SETTLED_TRANSMITTED, runs, found
+                Measure(f"settled transmitted force, {span}", "tf", tf, SETTLED_TRANSMITTED),
+                runs,
+                found,
             )
         ),
         detail(
-            row_of_runs(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK, runs, found)
+            row_of_runs(
+                Measure(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK), runs, found
+            )
         ),
     ]
 

@@ -22,7 +22,7 @@ from ...metrics.headlines import (
 )
 from ...runs.batch import COMPLETE, Task
 from ...runs.job import Request
-from ..study import Outcomes, Row, Study, detail, origin, row_of_runs
+from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs
 from .laboratory import ONE_LAW, STOP
 from .static_loading import HASTE
 from .twelve import BOX_TESTS, error, exponent, twelve
@@ -153,10 +153,7 @@ def _static_rows(test: sonoda1993.Test, found: Outcomes) -> list[Row]:
     said = f"cohesion {state.cohesion / _KGF_PER_CM2:g} kgf/cm2 (calibrated to this k), solid fraction {state.solid_fraction:g}"
     return [
         row_of_runs(
-            f"static k, test {test.number}",
-            "kgf/cm",
-            kgf / cm,
-            STATIC_STIFFNESS,
+            Measure(f"static k, test {test.number}", "kgf/cm", kgf / cm, STATIC_STIFFNESS),
             runs,
             found,
             experiment=test.static_stiffness / kgf * cm,
@@ -164,10 +161,12 @@ def _static_rows(test: sonoda1993.Test, found: Outcomes) -> list[Row]:
         ),
         detail(
             row_of_runs(
-                f"departure of the load from the secant line / largest load, test {test.number}",
-                "%",
-                0.01,
-                STATIC_DEPARTURE,
+                Measure(
+                    f"departure of the load from the secant line / largest load, test {test.number}",
+                    "%",
+                    0.01,
+                    STATIC_DEPARTURE,
+                ),
                 runs,
                 found,
             )
@@ -217,10 +216,7 @@ def _of_law(law: Law, found: Outcomes) -> list[Row]:
         *energies,
         _largest_factor(energies, law, found),
         row_of_runs(
-            "rigid base: settled ratio transmitted / rock",
-            "1",
-            1.0,
-            SETTLED_RATIO,
+            Measure("rigid base: settled ratio transmitted / rock", "1", 1.0, SETTLED_RATIO),
             _rigid(law, found.quick),
             found,
             2.0,
@@ -280,7 +276,7 @@ def _forces(law: Law, place: int, found: Outcomes) -> dict[int, float]:
         test.number: found.of(_laboratory(test, law, found.quick)[place]) for test in twelve()
     }
     return {
-        number: outcome.figures[PEAK_TRANSMITTED]
+        number: outcome.metrics[PEAK_TRANSMITTED]
         for number, outcome in chosen.items()
         if outcome.status == COMPLETE
     }
@@ -293,10 +289,12 @@ def _spread(values: Sequence[float]) -> float | None:
 def _energy(impact: full_scale.Impact, law: Law, found: Outcomes) -> Row:
     known = full_scale.known_of(impact)[BEAM_SHARE_FROM_STRAIN].experiment
     return row_of_runs(
-        f"girders of {impact.span:g} m: energy / rock's by eq. (7)",
-        "%",
-        0.01,
-        BEAM_SHARE_FROM_STRAIN,
+        Measure(
+            f"girders of {impact.span:g} m: energy / rock's by eq. (7)",
+            "%",
+            0.01,
+            BEAM_SHARE_FROM_STRAIN,
+        ),
         _girders(impact, law, found.quick),
         found,
         experiment=100.0 * known.value if known else None,

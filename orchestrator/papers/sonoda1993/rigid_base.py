@@ -23,7 +23,7 @@ from ...metrics.headlines import (
     SETTLED_TRANSMITTED,
 )
 from ...runs.batch import COMPLETE, Task
-from ..study import Outcomes, Row, Study, detail, row_of_runs
+from ..study import Measure, Outcomes, Row, Study, detail, row_of_runs
 from . import full_scale
 from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces, sands
 
@@ -64,7 +64,7 @@ def rows(found: Outcomes) -> list[Row]:
 def _of_sand(sand: str, model: Model, found: Outcomes) -> list[Row]:
     runs = _runs(SANDS[sand], model, found.quick)
     filters = [
-        found.of(task).figures.get(SETTLED_CUT_OFF)
+        found.of(task).metrics.get(SETTLED_CUT_OFF)
         for task in runs
         if found.of(task).status == COMPLETE
     ]
@@ -75,34 +75,27 @@ def _of_sand(sand: str, model: Model, found: Outcomes) -> list[Row]:
     )
     return [
         row_of_runs(
-            f"settled ratio transmitted / rock, {sand} sand",
-            "1",
-            1.0,
-            SETTLED_RATIO,
+            Measure(f"settled ratio transmitted / rock, {sand} sand", "1", 1.0, SETTLED_RATIO),
             runs,
             found,
             RATIO,
             note="; ".join(filter(None, ["paper: about twice", settled])),
         ),
         row_of_runs(
-            f"settled transmitted force, {sand} sand",
-            "tf",
-            tf,
-            SETTLED_TRANSMITTED,
+            Measure(f"settled transmitted force, {sand} sand", "tf", tf, SETTLED_TRANSMITTED),
             runs,
             found,
             note=settled,
         ),
         row_of_runs(
-            f"settled force on the rock, {sand} sand",
-            "tf",
-            tf,
-            SETTLED_ROCK,
+            Measure(f"settled force on the rock, {sand} sand", "tf", tf, SETTLED_ROCK),
             runs,
             found,
             note=settled,
         ),
-        detail(row_of_runs(f"penetration, {sand} sand", "cm", cm, PENETRATION, runs, found)),
+        detail(
+            row_of_runs(Measure(f"penetration, {sand} sand", "cm", cm, PENETRATION), runs, found)
+        ),
     ]
 
 

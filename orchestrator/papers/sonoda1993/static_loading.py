@@ -18,7 +18,7 @@ from ...metrics.load_curve import DEPTH, load_curve
 from ...runs.batch import COMPLETE, Task
 from ...runs.job import Request
 from ..statistics import line_through_origin
-from ..study import Outcomes, Row, Study, origin, row_of_runs, verdict
+from ..study import Measure, Outcomes, Row, Study, origin, row_of_runs, verdict
 from .laboratory import MODELS, SEEDS
 
 if TYPE_CHECKING:
@@ -102,20 +102,14 @@ def _of_each_modulus(sand: Sand, found: Outcomes) -> Iterator[Row]:
         chosen = pushes(sand, e_bar, found.quick)
         k = STATIC_RATIO * e_bar
         yield row_of_runs(
-            f"k, E_bar {e_bar:.0f}",
-            "kgf/cm",
-            kgf / cm,
-            STATIC_STIFFNESS,
+            Measure(f"k, E_bar {e_bar:.0f}", "kgf/cm", kgf / cm, STATIC_STIFFNESS),
             chosen,
             found,
             k,
             note=_PAPER,
         )
         load = row_of_runs(
-            f"load at 4 cm, E_bar {e_bar:.0f}",
-            "kgf",
-            kgf,
-            STATIC_LOAD,
+            Measure(f"load at 4 cm, E_bar {e_bar:.0f}", "kgf", kgf, STATIC_LOAD),
             chosen,
             found,
             k * DEPTH / cm,
@@ -144,7 +138,7 @@ def _of_the_sand(sand: Sand, found: Outcomes) -> list[Row]:
     ks = spring_constants(sand, found)
     slope, r2 = line_through_origin(E_BAR, [mean(values) for values in zip(*ks, strict=True)])
     of_seeds = [line_through_origin(E_BAR, values) for values in ks]
-    bent = [100.0 * found.of(task).figures[STATIC_DEPARTURE] for task in chosen]
+    bent = [100.0 * found.of(task).metrics[STATIC_DEPARTURE] for task in chosen]
     spread_of_slope = _spread([a for a, _ in of_seeds])
     return [
         Row(
@@ -218,7 +212,7 @@ def spring_constants(sand: Sand, found: Outcomes) -> list[list[float]]:
     """k (kgf/cm) of complete runs: for each seed a value for each E_bar."""
     by_modulus = [
         [
-            found.of(task).figures[STATIC_STIFFNESS] / kgf * cm
+            found.of(task).metrics[STATIC_STIFFNESS] / kgf * cm
             for task in pushes(sand, e_bar, found.quick)
         ]
         for e_bar in E_BAR

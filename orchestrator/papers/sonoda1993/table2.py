@@ -18,7 +18,7 @@ from ..statistics import (
     mean_absolute_error,
     power_law,
 )
-from ..study import Outcomes, Row, Study, origin, row_of_runs
+from ..study import Measure, Outcomes, Row, Study, origin, row_of_runs
 from .laboratory import ALL_MODELS, ONE_LAW, SEED_NOTE, impacts
 from .twelve import BOX_TESTS, error, exponent, twelve
 
@@ -81,10 +81,7 @@ def _of_test(
     test: Test, model: str, found: Outcomes, through: str, figure: str | Callable[[Outcome], float]
 ) -> Row:
     return row_of_runs(
-        f"peak transmitted force{through}, test {test.number}",
-        "kgf",
-        kgf,
-        figure,
+        Measure(f"peak transmitted force{through}, test {test.number}", "kgf", kgf, figure),
         impacts(test.number, model, found.quick),
         found,
         _paper(test) / kgf,

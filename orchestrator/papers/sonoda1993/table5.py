@@ -9,7 +9,7 @@ from rockshed.components.common.units import cm, kgf
 from ...cases.sonoda1993 import DEFAULT_TEST, TableFiveRow, table_5
 from ...metrics.headlines import PEAK_TRANSMITTED, PENETRATION
 from ...runs.batch import Task
-from ..study import Outcomes, Row, Study, origin, row_of_runs, verdict
+from ..study import Measure, Outcomes, Row, Study, origin, row_of_runs, verdict
 from .laboratory import READINGS, SEED_NOTE, impacts
 
 _UNITS = {PENETRATION: ("cm", cm), PEAK_TRANSMITTED: ("kgf", kgf)}
@@ -125,10 +125,7 @@ def _where(model: str, found: Outcomes) -> dict[str, Any]:
 def _each(found: Outcomes) -> list[Row]:
     return [
         row_of_runs(
-            f"{figure}, E_bar {_modulus(row):.0f}, h {row.damping:g}",
-            unit,
-            scale,
-            figure,
+            Measure(f"{figure}, E_bar {_modulus(row):.0f}, h {row.damping:g}", unit, scale, figure),
             _impacts(row, model, found.quick),
             found,
             paper=_paper(row, figure) / scale,
