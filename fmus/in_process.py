@@ -27,19 +27,20 @@ class InProcess:
     """
 
     def __init__(self, component: Component, sizes: Mapping[str, int] | None = None) -> None:
-        self._component, self._sizes = component, component.with_sizes(sizes)
+        self.component = component
+        self.sizes = component.with_sizes(sizes)
         self.origin = {
             "component": component.name,
-            **{name: str(value) for name, value in self._sizes.items()},
+            **{name: str(value) for name, value in self.sizes.items()},
         }
 
     def model_description(self) -> bytes:
         """The ``modelDescription.xml`` of the component's FMU."""
-        return fmu_files(self._component, self._sizes)["modelDescription.xml"]
+        return fmu_files(self.component, self.sizes)["modelDescription.xml"]
 
     def instantiate(self, name: str) -> "InProcessSlave":
         """A new instance."""
-        return InProcessSlave(slave_class(self._component, self._sizes), name)
+        return InProcessSlave(slave_class(self.component, self.sizes), name)
 
 
 def slave_class(component: Component, sizes: Mapping[str, int]) -> type[ComponentSlave]:

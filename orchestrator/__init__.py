@@ -1,1 +1,77 @@
-"""Co-simulation of FMUs, and the command line, cases and pictures on top of it."""
+"""Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.
+
+>>> import rockshed
+>>> system = rockshed.case("lab-impact", in_process=True, stop_time=0.001)
+>>> run = rockshed.simulate(system)
+>>> run["rock.velocity.y"].unit
+'m/s'
+
+Names are imported when they are first used, so that ``import rockshed`` takes no time.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .components.common.component import ComponentError
+    from .core.errors import InputRefused, Problem, RunFailed, UnknownName
+    from .runs.building import build_fmu
+    from .runs.run import Run, read_run
+    from .runs.simulation import simulate
+    from .runs.subsystem import Subsystem, component
+    from .runs.system import System, case
+    from .tables import Table
+
+    __version__: str
+
+_HOMES = {
+    "ComponentError": "components.common.component",
+    "InputRefused": "core.errors",
+    "Problem": "core.errors",
+    "Run": "runs.run",
+    "RunFailed": "core.errors",
+    "Subsystem": "runs.subsystem",
+    "System": "runs.system",
+    "Table": "tables",
+    "UnknownName": "core.errors",
+    "build_fmu": "runs.building",
+    "case": "runs.system",
+    "component": "runs.subsystem",
+    "read_run": "runs.run",
+    "simulate": "runs.simulation",
+}
+"""Modules of the public names."""
+
+__all__ = [
+    "ComponentError",
+    "InputRefused",
+    "Problem",
+    "Run",
+    "RunFailed",
+    "Subsystem",
+    "System",
+    "Table",
+    "UnknownName",
+    "__version__",
+    "build_fmu",
+    "case",
+    "component",
+    "read_run",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("rockshed")
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -208,16 +208,16 @@ def info(
 ) -> None:
     """What is in an FMU or a system: ports, values, connections."""
     from ..runs.export import system_text
-    from ..runs.inspection import show_fmu, show_system
+    from ..runs.inspection import describe_fmu, describe_system
     from ..runs.job import Request, prepare
 
     with _screen() as screen:
         if target.endswith(".fmu"):
-            screen.show(*show_fmu(Path(target)))
+            screen.overview(describe_fmu(Path(target)))
         elif toml:
             screen.out.file.write(system_text(prepare(Request(target, model=model)).system))
         else:
-            screen.show(*show_system(prepare(Request(target, model=model))))
+            screen.overview(describe_system(prepare(Request(target, model=model))))
 
 
 @app.command()

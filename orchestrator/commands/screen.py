@@ -8,13 +8,16 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+from rich import table as rich_table
 from rich.console import Console
 from rich.markup import escape
 from rich.padding import Padding
-from rich.table import Table
+
+from ..tables import Table
 
 if TYPE_CHECKING:
     from ..core.errors import Problem
+    from ..runs.inspection import Overview
 
 OK, RUN_FAILED, REFUSED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes. Refused: usage or input, nothing was run."""
@@ -219,7 +222,14 @@ class Screen:
     def show(self, *parts: Any) -> None:
         """Print results for a person."""
         for part in parts:
-            self.out.print(part)
+            self.out.print(drawn(part) if isinstance(part, Table) else part)
+
+    def overview(self, overview: "Overview") -> None:
+        """Print texts and tables with an empty line between two."""
+        for number, part in enumerate(overview.parts):
+            if number:
+                self.out.print()
+            self.out.print(drawn(part) if isinstance(part, Table) else escape(part))
 
     def say(self, text: str) -> None:
         """Print a line as it stands, however long it is."""
@@ -234,9 +244,19 @@ def _reached(reached: float, stop: float) -> str:
     return f"{1e3 * reached:.1f} of {1e3 * stop:g} ms"
 
 
-def plain_table(*columns: str, right: Sequence[str] = ()) -> Table:
+def drawn(table: Table) -> rich_table.Table:
+    """Return a table in the style of all commands; columns of numbers are not broken into lines."""
+    made = plain_table(*table.columns, right=table.right)
+    made.title = escape(table.title) or None
+    made.show_header = any(table.columns)
+    for row in table.rows:
+        made.add_row(*map(escape, row))
+    return made
+
+
+def plain_table(*columns: str, right: Sequence[str] = ()) -> rich_table.Table:
     """A table in the style of all commands; ``right``: columns of numbers, which are not broken into lines."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    table = rich_table.Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for name in columns:
         table.add_column(name, justify="right" if name in right else "left", no_wrap=name in right)
     return table

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,19 @@ class InputRefused(Exception):  # noqa: N818 (it says what happened, not that it
 
 
 class RunFailed(Exception):  # noqa: N818
-    """A run began and could not go on. What was computed until then is kept."""
+    """A run began and could not go on. What was computed until then is kept.
+
+    Attributes
+    ----------
+    component : str
+        The component that failed.
+    time : float
+        Simulated time of the failure (s).
+    run : Any
+        Results until then, where the caller of :func:`rockshed.simulate` gets the error.
+    """
+
+    run: Any = None
 
     def __init__(self, component: str, time: float, what: str) -> None:
         self.component, self.time = component, time

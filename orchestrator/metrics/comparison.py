@@ -4,15 +4,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rich.table import Table
-
 from rockshed.components.common.units import cm, kgf, kN, mm, ms
 
 from ..cases.sand_models import model_of
-from ..commands.screen import plain_table
 from ..core.results.metric import Beside, Metric
 from ..core.results.reading import Run
 from ..references import References
+from ..tables import Table
 from . import headlines as h
 
 
@@ -355,7 +353,20 @@ def _step(component: Mapping[str, Any], communication_step: float) -> float:
 
 
 def table(run: Run, known: Mapping[str, h.Known]) -> Table:
-    """The rows as a table for the screen, without the columns that nothing stands in."""
+    """Return the rows as a table, without the columns that nothing stands in.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    known : mapping of str to Known
+        What it is compared with, from :func:`known_of`.
+
+    Returns
+    -------
+    Table
+        Quantity, unit, computed value, references and deviations.
+    """
     listed = rows(run, known)
     columns = [
         ("paper", "paper", [row.paper for row in listed]),
@@ -368,9 +379,9 @@ def table(run: Run, known: Mapping[str, h.Known]) -> Table:
     present = {whose for _, whose, texts in columns if any(texts)}
     shown = [(title, texts) for title, whose, texts in columns if whose in present]
     titles = ["computed", *(title for title, _ in shown)]
-    made = plain_table("quantity", "unit", *titles, right=titles)
+    made = Table(("quantity", "unit", *titles), right=titles)
     for number, row in enumerate(listed):
-        made.add_row(row.label, row.unit, row.computed, *(texts[number] for _, texts in shown))
+        made.add(row.label, row.unit, row.computed, *(texts[number] for _, texts in shown))
     return made
 
 

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rockshed.components.catalogue import NAMES, component
-from rockshed.components.common.component import ComponentError
+from rockshed.components.common.component import Component, ComponentError
 from rockshed.components.common.kernels import has_kernels
-from rockshed.fmus.places import Runtime, fmu_file, native_is_fresh
+from rockshed.fmus.places import Fmi, Runtime, fmu_file, folder_name, native_is_fresh
 
 from ..cases.registry import Case
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from .request import AUTO
+from .subsystem import component_of
 
 BOTH = "both"
 """In the place of a runtime: every one."""
@@ -253,8 +254,6 @@ def build_all(
         Unknown components, sizes, runtimes, versions or platforms, sizes out of range, a compiler
         that fails, a folder that cannot be written.
     """
-    from rockshed.fmus.build import BuildError, Runtime
-
     chosen = list(dict.fromkeys(names or NAMES))
     found = [
         *problems,
@@ -271,41 +270,108 @@ def build_all(
         raise InputRefused(found)
     runtime = export.chosen_runtime
     runtimes = list(Runtime) if runtime == BOTH else [Runtime(runtime)]
-    try:
-        return _build(chosen, sizes, folder, runtimes, export)
-    except BuildError as error:
-        raise InputRefused([Problem("build", str(error))]) from error
+    places = {
+        each: folder / folder_name(each, Fmi(export.fmi)) if folder else None for each in runtimes
+    }
+    return _build([component(name) for name in chosen], sizes, places, export)
 
 
 def _build(
-    names: Sequence[str],
+    components: Sequence[Component],
     sizes: Mapping[str, int],
-    folder: Path | None,
-    runtimes: Sequence[Runtime],
+    places: Mapping[Runtime, Path | None],
     export: Export,
 ) -> list[Path]:
-    """Make the content of all FMUs, then write them."""
-    from rockshed.fmus.build import Fmi, fmu_content, folder_name, store
+    """Make the content of all FMUs, then write them into the folder of their runtime.
+
+    Raises
+    ------
+    InputRefused
+        A compiler that fails, a folder that cannot be written.
+    """
+    from rockshed.fmus.build import BuildError, fmu_content, store
 
     fmi = Fmi(export.fmi)
     made = []
-    for runtime in runtimes:
-        for name in names:
-            built = component(name)
-            its_sizes = built.with_sizes({s: n for s, n in sizes.items() if s in built.sizes})
-            content = fmu_content(built, its_sizes, runtime, export.platforms, fmi)
-            made.append((runtime, built, its_sizes, content))
     files = []
-    for runtime, built, its_sizes, content in made:
-        place = folder / folder_name(runtime, fmi) if folder else None
-        files.append(store(built, its_sizes, content, place, runtime, fmi=fmi))
+    try:
+        for runtime in places:
+            for built in components:
+                its_sizes = built.with_sizes({s: n for s, n in sizes.items() if s in built.sizes})
+                content = fmu_content(built, its_sizes, runtime, export.platforms, fmi)
+                made.append((runtime, built, its_sizes, content))
+        for runtime, built, its_sizes, content in made:
+            files.append(store(built, its_sizes, content, places[runtime], runtime, fmi=fmi))
+    except BuildError as error:
+        raise InputRefused([Problem("build", str(error))]) from error
     return files
 
 
+def build_fmu(
+    name: str | Component,
+    sizes: Mapping[str, int] | None = None,
+    folder: str | Path | None = None,
+    *,
+    runtime: str | None = None,
+    platforms: Sequence[str] = (),
+    fmi: int = 2,
+) -> Path:
+    """Build the FMU of a component, always anew.
+
+    Parameters
+    ----------
+    name : str or Component
+        Name of a component of the catalogue, or a component of one's own.
+    sizes : mapping of str to int, optional
+        Sizes that differ from the defaults; the name of the file then has them.
+    folder : str or Path, optional
+        Folder of the file, by default that of built FMUs.
+    runtime : str, optional
+        ``python``: with Python inside, which every processor runs; ``native``: needs no Python.
+        By default Python, with FMI 3 native.
+    platforms : sequence of str
+        Of native FMUs, ``linux64``, ``win64``, ``darwin64``; by default this machine's.
+    fmi : int
+        Version of FMI, 2 or 3; that of 3 is for native FMUs only.
+
+    Returns
+    -------
+    Path
+        The FMU file.
+
+    Raises
+    ------
+    UnknownName
+        The catalogue has no component of this name.
+    InputRefused
+        Sizes out of range, a runtime, version or platform that does not exist, a compiler that
+        fails, a folder that cannot be written.
+
+    Examples
+    --------
+    >>> import rockshed, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     rockshed.build_fmu("FallingRock", folder=folder).name
+    'FallingRock.fmu'
+    """
+    export = Export(runtime, platforms, fmi)
+    built = component_of(name)
+    problems = [] if runtime != BOTH else [Problem("runtime", "one at a time", "name one")]
+    problems += _export_problems(export)
+    try:
+        built.with_sizes(sizes)
+    except ComponentError as error:
+        problems += [Problem(f"{built.name}: sizes", text) for text in error.problems]
+    if problems:
+        raise InputRefused(problems)
+    place = Path(folder) if folder is not None else None
+    (file,) = _build([built], sizes or {}, {Runtime(export.chosen_runtime): place}, export)
+    return file
+
+
 def _export_problems(export: Export) -> list[Problem]:
-    from rockshed.fmus.build import ONLY_NATIVE, Fmi
+    from rockshed.fmus.build import ONLY_NATIVE
     from rockshed.fmus.native.fmu import PLATFORMS
-    from rockshed.fmus.parts import Runtime
 
     runtime = export.chosen_runtime
     problems = [

@@ -1,19 +1,20 @@
 """Systems as files: the TOML that ``rockshed run`` takes, alone or in a folder with its FMUs."""
 
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import tomli_w
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.fmu.slave import Source
 from ..core.system.system import Connection, System
 
 SYSTEM = "system.toml"
 
 
 def system_text(system: System) -> str:
-    """The system as TOML. What has its default is left out."""
+    """Return a system as TOML; keys that have their defaults are left out."""
     data = system.model_dump(mode="json", exclude_defaults=True)
     data["connections"] = [_connection(c) for c in system.connections]
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
@@ -27,33 +28,56 @@ def _connection(connection: Connection) -> str:
     return f"{connection.source} -> {connection.target}"
 
 
-def export_system(system: System, folder: Path) -> Path:
-    """Write ``system.toml`` and its FMUs into a new or empty folder; return the file.
+def export_system(
+    system: System, folder: Path, sources: Mapping[str, Source] | None = None
+) -> Path:
+    """Write ``system.toml`` and the FMUs of a system into a folder.
 
-    Raises:
-        InputRefused: the folder holds something, or cannot be written.
+    Parameters
+    ----------
+    system : System
+        The system.
+    folder : Path
+        A new or empty folder.
+    sources : mapping of str to Source, optional
+        Components that are made without an FMU file; they become FMUs with Python inside.
+
+    Returns
+    -------
+    Path
+        The system file.
+
+    Raises
+    ------
+    InputRefused
+        The folder holds something, or cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputRefused(
-            [
-                Problem(
-                    str(folder),
-                    "is not empty" if folder.is_dir() else "is a file",
-                    "name a new or empty folder",
-                )
-            ]
-        )
-    specs: dict[str, Any] = {}
+        reason = "is not empty" if folder.is_dir() else "is a file"
+        raise InputRefused([Problem(str(folder), reason, "name a new or empty folder")])
     with refusing_unwritable(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        for name, spec in system.components.items():
-            file = Path(spec.fmu)
-            copy = folder / file.name
-            if copy.exists() and copy.read_bytes() != file.read_bytes():  # of the other runtime
-                copy = folder / f"{name}-{file.name}"
-            shutil.copyfile(file, copy)
-            specs[name] = spec.model_copy(update={"fmu": copy.name})
-        (folder / SYSTEM).write_text(
-            system_text(system.model_copy(update={"components": specs})), encoding="utf-8"
-        )
+        specs = {
+            name: spec.model_copy(update={"fmu": _store(name, spec.fmu, folder, sources or {})})
+            for name, spec in system.components.items()
+        }
+        text = system_text(system.model_copy(update={"components": specs}))
+        (folder / SYSTEM).write_text(text, encoding="utf-8")
     return folder / SYSTEM
+
+
+def _store(name: str, fmu: str, folder: Path, sources: Mapping[str, Source]) -> str:
+    """Write the FMU of a component into a folder; return the name of its file."""
+    from rockshed.fmus.in_process import InProcess  # imports pythonfmu, which copying does not need
+
+    source = sources.get(name)
+    if isinstance(source, InProcess):
+        from rockshed.fmus.build import build_component
+
+        return build_component(source.component, source.sizes, folder).name
+    file = Path(fmu)
+    copy = folder / file.name
+    if copy.exists() and copy.read_bytes() != file.read_bytes():  # of the other runtime
+        copy = folder / f"{name}-{file.name}"
+    shutil.copyfile(file, copy)
+    return copy.name

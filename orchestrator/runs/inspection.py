@@ -1,22 +1,22 @@
-"""What is in an FMU or in a system, as tables for the screen."""
+"""The content of an FMU or of a system, as texts and tables."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
 from itertools import groupby
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
-from rich.table import Table
-
-from ..commands.screen import plain_table
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Port
 from ..core.fmu.fmu_slave import READABLE, FmuFile, read_description
 from ..core.fmu.slave import REAL
 from ..core.run import sources_of
-from ..core.system.plan import make_plan
+from ..core.system.plan import Plan, make_plan
+from ..core.system.system import System
 from ..core.system.values import written
+from ..tables import Table
 from .job import Job
 
 _ELEMENT = re.compile(r"\[[\d,]+\]")
@@ -24,11 +24,46 @@ _CAUSALITIES = ("parameter", "input", "output")
 _TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
 
 
-def show_fmu(path: Path) -> Iterator[Any]:
-    """Name, flags and steps of an FMU, then its ports; an array is one line.
+@dataclass(frozen=True)
+class Overview:
+    """Texts and tables, in the order in which they are read.
 
-    Raises:
-        InputRefused: no such file, or no FMU for co-simulation that this machine can run.
+    Attributes
+    ----------
+    parts : sequence of str or Table
+        A text is a paragraph.
+    """
+
+    parts: Sequence[str | Table]
+
+    def __repr__(self) -> str:
+        return "\n\n".join(map(str, self.parts))
+
+    def _repr_html_(self) -> str:
+        return "".join(
+            part._repr_html_() if isinstance(part, Table) else f"<p>{escape(part)}</p>"
+            for part in self.parts
+        )
+
+
+def describe_fmu(path: Path) -> Overview:
+    """Describe an FMU, also a stranger's: name, flags, steps, variables, terminals.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Overview
+        A table of facts, one of the variables of each causality in which an array is one row, and
+        one of the terminals.
+
+    Raises
+    ------
+    InputRefused
+        There is no such file, or it is no FMU for co-simulation that can be read.
     """
     file = FmuFile(path)
     xml = file.model_description()
@@ -37,7 +72,7 @@ def show_fmu(path: Path) -> Iterator[Any]:
     except ValueError as error:
         raise InputRefused([Problem(str(path), str(error), "use another export of it")]) from error
     root = ElementTree.fromstring(xml)
-    facts = plain_table("", "")
+    facts = Table(("", ""))
     for name, value in {
         "model": description.model,
         "description": root.get("description", ""),
@@ -48,84 +83,73 @@ def show_fmu(path: Path) -> Iterator[Any]:
         "file": f"{path}  {path.stat().st_size / 1024:.0f} KiB",
         **_sections(root),
     }.items():
-        facts.add_row(name, value)
-    facts.show_header = False
-    yield facts
+        facts.add(name, value)
+    parts: list[str | Table] = [facts]
     for causality in _CAUSALITIES:
-        ports = description.named(causality)
-        if ports:
-            yield ""
-            yield _ports(f"{causality}s", ports)
+        if ports := description.named(causality):
+            parts.append(_ports(f"{causality}s", ports))
     others = sum(port.causality not in _CAUSALITIES for port in description.ports.values())
     if others:
-        yield f"\nand {others} variables of other causality"
-    yield from _terminals(file.content(_TERMINALS))
-    yield from (f"\nwarning: {text}" for text in description.warnings)
+        parts.append(f"and {others} variables of other causality")
+    parts += _terminals(file.content(_TERMINALS))
+    return Overview([*parts, *(f"warning: {text}" for text in description.warnings)])
 
 
-def _terminals(xml: bytes | None) -> Iterator[Any]:
-    """The terminals of an FMU of FMI 3.0, as its file of terminals has them."""
+def _terminals(xml: bytes | None) -> list[str | Table]:
+    """Return the terminals of an FMU of FMI 3.0, as its file of terminals has them."""
     if xml is None:
-        return
+        return []
     try:
         found = list(ElementTree.fromstring(xml).iter("Terminal"))
     except ElementTree.ParseError as error:
-        yield f"\nwarning: {_TERMINALS} cannot be read: {error}"
-        return
-    table = plain_table("terminals", "members", "")
+        return [f"warning: {_TERMINALS} cannot be read: {error}"]
+    table = Table(("terminals", "members", ""))
     for terminal in found:
         members = [
             member.get("variableName", "") for member in terminal.findall("TerminalMemberVariable")
         ]
-        table.add_row(terminal.get("name", ""), ", ".join(members), terminal.get("description", ""))
-    if found:
-        yield from ("", table)
+        table.add(terminal.get("name", ""), ", ".join(members), terminal.get("description", ""))
+    return [table] if found else []
 
 
 def _sections(root: ElementTree.Element) -> dict[str, str]:
-    """Default experiment and flags, as the file has them."""
-    experiment, flags = root.find("DefaultExperiment"), root.find("CoSimulation")
-    found = (
-        {}
-        if experiment is None
-        else {"default": ", ".join(f"{k} {v}" for k, v in experiment.attrib.items())}
-    )
-    said = [k for k, v in ({} if flags is None else flags.attrib).items() if v == "true"]
-    return {**found, "flags": ", ".join(said) or "none"}
+    """Return default experiment and flags, as the file has them."""
+    sections = {}
+    experiment = root.find("DefaultExperiment")
+    if experiment is not None:
+        sections["default"] = ", ".join(f"{k} {v}" for k, v in experiment.attrib.items())
+    flags = root.find("CoSimulation")
+    said = [k for k, v in flags.attrib.items() if v == "true"] if flags is not None else []
+    return {**sections, "flags": ", ".join(said) or "none"}
 
 
 def _ports(title: str, ports: Iterable[Port]) -> Table:
-    table = plain_table(title, "unit", "start", "range", "")
+    table = Table((title, "unit", "start", "range", ""))
     for port, number in _arrays(ports):
         name = _ELEMENT.sub(f"[1..{number}]", port.name) if number > 1 else port.name
-        table.add_row(
-            name,
-            port.unit_name if port.unit_name != "1" else "",
-            _start(port),
-            _range(port),
-            port.description,
-        )
+        table.add(name, _unit(port), _start(port), _range(port), port.description)
     return table
 
 
 def _arrays(ports: Iterable[Port]) -> Iterator[tuple[Port, int]]:
-    """The first element of each array with the number of its elements; a scalar is an array of one."""
+    """Yield the first element of each array with their number; a scalar is an array of one."""
     for _, elements in groupby(ports, lambda port: _ELEMENT.sub("[]", port.name)):
         listed = list(elements)
         yield listed[0], len(listed)
+
+
+def _unit(port: Port) -> str:
+    return port.unit_name if port.unit_name != "1" else ""
 
 
 def _start(port: Port) -> str:
     if port.start is None:
         return ""
     try:
-        return (
-            f"{written(port, float(port.start)):.6g}"
-            if not port.items
-            else str(written(port, float(port.start)))
-        )
+        value = written(port, float(port.start))
     except ValueError:  # text, true or false
         return port.start
+    return str(value) if port.items else f"{value:.6g}"
 
 
 def _range(port: Port) -> str:
@@ -137,39 +161,55 @@ def _range(port: Port) -> str:
     return f"{low} .. {high}"
 
 
-def show_system(job: Job) -> Iterator[Any]:
-    """Components with their FMUs and steps, values that differ from the FMUs' own, connections and how they are exchanged.
+def describe_system(job: Job) -> Overview:
+    """Describe a system: components, values that differ from the FMUs' own, connections, bonds.
 
-    Raises:
-        InputRefused: the system does not fit its FMUs.
+    Parameters
+    ----------
+    job : Job
+        The system with the sources of its components.
+
+    Returns
+    -------
+    Overview
+        Texts, and tables of components, values and shared values.
+
+    Raises
+    ------
+    InputRefused
+        The system does not fit its FMUs.
     """
     system = job.system
     plan = make_plan(system, {**sources_of(system), **job.sources})
-    yield f"{system.name}: {system.description}"
-    yield (
-        f"{system.master} master, order {', '.join(plan.order)}; exchange every {system.exchange_step:g} s until "
-        f"{system.stop_time:g} s; {len(plan.inputs)} values a time in {len(system.connections)} connections\n"
-    )
-    table = plain_table("component", "model", "step (s)", "FMU")
+    parts: list[str | Table] = [
+        f"{system.name}: {system.description}\n"
+        f"{system.master} master, order {', '.join(plan.order)}; exchange every "
+        f"{system.exchange_step:g} s until {system.stop_time:g} s; {len(plan.inputs)} values a "
+        f"time in {len(system.connections)} connections"
+    ]
+    components = Table(("component", "model", "step (s)", "FMU"))
     for name, spec in system.components.items():
-        table.add_row(name, plan.descriptions[name].model, f"{system.step(name):g}", spec.fmu)
-    yield table
-    values = plain_table("value", "", "unit", "FMU's own", "")
+        components.add(name, plan.descriptions[name].model, f"{system.step(name):g}", spec.fmu)
+    parts.append(components)
+    if len(values := _values(plan)):
+        parts.append(values)
+    if system.shared:
+        parts.append(_shared(system))
+    if system.bonds:
+        bonds = (f"{name} ({bond.giver} -> {bond.taker})" for name, bond in system.bonds.items())
+        parts.append(f"power bonds: {', '.join(bonds)}")
+    return Overview(parts)
+
+
+def _values(plan: Plan) -> Table:
+    """Return the values that differ from the FMUs' own."""
+    values = Table(("value", "", "unit", "FMU's own", " "))
     for name in plan.order:
         for port, value in plan.starts[name]:
-            shown = value if isinstance(value, str) else written(port, value)
-            if _short(shown) != _short(_own(port)):
-                values.add_row(
-                    f"{name}.{port.name}",
-                    _short(shown),
-                    port.unit_name if port.unit_name != "1" else "",
-                    _short(_own(port)),
-                    port.description,
-                )
-    if values.row_count:
-        yield ""
-        yield values
-    yield from _shared(job)
+            shown = _short(value if isinstance(value, str) else written(port, value))
+            if shown != (own := _short(_own(port))):
+                values.add(f"{name}.{port.name}", shown, _unit(port), own, port.description)
+    return values
 
 
 def _own(port: Port) -> str:
@@ -186,13 +226,8 @@ def _short(value: object) -> str:
         return str(value)
 
 
-def _shared(job: Job) -> Iterator[Any]:
-    shared = job.system.shared
-    if shared:
-        table = plain_table("shared value", "", "set in")
-        for name, entry in shared.items():
-            table.add_row(name, _short(entry.value), ", ".join(entry.targets))
-        yield from ("", table)
-    bonds = job.system.bonds
-    if bonds:
-        yield f"\npower bonds: {', '.join(f'{name} ({bond.giver} -> {bond.taker})' for name, bond in bonds.items())}"
+def _shared(system: System) -> Table:
+    table = Table(("shared value", "", "set in"))
+    for name, entry in system.shared.items():
+        table.add(name, _short(entry.value), ", ".join(entry.targets))
+    return table

@@ -1,0 +1,61 @@
+"""Any recorded variables over time, a panel for each unit."""
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from rockshed.components.common.units import ms
+
+from ..core.results.series import Series
+from .style import WIDTH, over_time, styled
+
+_PANEL = 2.2
+"""Height of a panel (inch)."""
+_LEGEND_LINES = 12
+"""Variables in a panel from which on the legend has two columns."""
+
+
+def draw(variables: Sequence[Series], caption: Sequence[str]) -> Figure:
+    """Draw variables over time.
+
+    Parameters
+    ----------
+    variables : sequence of Series
+        Of one run; those with one unit share a panel.
+    caption : sequence of str
+        Lines below the figure that say what was run.
+
+    Returns
+    -------
+    Figure
+        With one panel for each unit, in the order in which the units come.
+    """
+    panels: dict[str, list[Series]] = {}
+    for variable in variables:
+        panels.setdefault(variable.unit, []).append(variable)
+    height = 0.8 + _PANEL * max(len(panels), 1)
+    with styled(caption, WIDTH, height) as figure:
+        axes = figure.subplots(max(len(panels), 1), sharex=True, squeeze=False)[:, 0]
+        for panel, (unit, members) in zip(axes, panels.items(), strict=False):
+            _panel(panel, unit, members)
+        for text in figure.findobj(Text):
+            text.set_parse_math(False)  # names are text: a dollar in them is a dollar
+    return figure
+
+
+def _panel(axes: Axes, unit: str, members: Sequence[Series]) -> None:
+    """Draw variables of one unit, each named in the legend with its description."""
+    time = members[0].time
+    short = bool(time.size) and float(time[-1]) < 1.0
+    scale = ms if short else 1.0
+    for variable in members:
+        axes.plot(time / scale, variable.values, label=f"{variable.name}")
+    if time.size:
+        over_time(axes, time / scale)
+    axes.set_ylabel("" if unit == "1" else unit)
+    axes.set_xlabel("time (ms)" if short else "time (s)")
+    axes.label_outer(remove_inner_ticks=True)
+    columns = 1 + len(members) // _LEGEND_LINES
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)

@@ -1,0 +1,103 @@
+"""A run from a system to its results, metrics and references included."""
+
+import shutil
+import tempfile
+import weakref
+from pathlib import Path
+
+from ..core.errors import RunFailed
+from ..core.loop.master import Progress
+from ..core.results.metric import Metrics
+from ..core.results.reading import add_metrics
+from ..core.run import simulate as simulate_spec
+from ..metrics import comparison
+from .run import Run, read_run
+from .system import System
+
+
+def simulate(
+    system: System,
+    folder: str | Path | None = None,
+    *,
+    progress: Progress | None = None,
+    allow_unstable: bool = False,
+) -> Run:
+    """Run a system. Ctrl-C ends the run and keeps what was computed.
+
+    ``rockshed run`` calls this function: metrics, warnings and files are the same.
+
+    Parameters
+    ----------
+    system : System
+        From :func:`rockshed.case`, ``System.load`` or ``System.new``.
+    folder : str or Path, optional
+        Folder of the results, new, empty or that of an earlier run, which is replaced. By default
+        a temporary folder that is removed when nothing refers to the run any more;
+        :meth:`Run.save` keeps the results.
+    progress : callable, optional
+        Called with the time reached and the stop time (s), every now and then.
+    allow_unstable : bool
+        Run also with steps above the stable ones.
+
+    Returns
+    -------
+    Run
+        Complete, or with the status ``interrupted`` after Ctrl-C.
+
+    Raises
+    ------
+    InputRefused
+        The system does not fit its FMUs, or the folder cannot be had; nothing has been computed.
+    RunFailed
+        The run began and could not go on; its attribute ``run`` has the results until then.
+
+    Examples
+    --------
+    >>> import rockshed
+    >>> system = rockshed.case("lab-impact", in_process=True, stop_time=0.001)
+    >>> run = rockshed.simulate(system)
+    >>> run["rock.velocity.y"].unit
+    'm/s'
+    >>> round(float(run["rock.velocity.y"][0]), 3)
+    -8.0
+    >>> run.metrics["simulated_time"].value
+    0.001
+    """
+    temporary = tempfile.mkdtemp(prefix="rockshed-") if folder is None else None
+    place = Path(temporary) / system.name if temporary else Path(str(folder))
+    try:
+        _carry_out(system, place, progress, allow_unstable)
+    except RunFailed as failure:
+        failure.run = _measured(place, temporary)
+        raise
+    except BaseException:
+        if temporary:
+            shutil.rmtree(temporary, ignore_errors=True)
+        raise
+    return _measured(place, temporary)
+
+
+def _carry_out(
+    system: System, folder: Path, progress: Progress | None, allow_unstable: bool
+) -> None:
+    job = system.job
+    simulate_spec(
+        job.system,
+        folder,
+        sources=job.sources,
+        allow_unstable=allow_unstable,
+        progress=progress,
+        facts=job.facts,
+    )
+
+
+def _measured(folder: Path, temporary: str | None) -> Run:
+    """Add the metrics that follow from the results to those of the run, and read them all."""
+    done = read_run(folder)
+    metrics = comparison.figures(done, comparison.known_of(done))
+    add_metrics(folder, metrics)
+    everything = Metrics([*done.metrics.values(), *metrics])
+    run = Run(**{**vars(done), "metrics": everything})
+    if temporary:
+        weakref.finalize(run, shutil.rmtree, temporary, ignore_errors=True)
+    return run

@@ -1,0 +1,479 @@
+"""A co-simulation that is made in steps: from a case, a file or nothing, then changed, shown, run."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from rockshed.components.common.component import Component
+
+from ..core.errors import InputRefused, Problem
+from ..core.fmu.slave import Source
+from ..core.system.system import ComponentSpec, PowerBond, Value, system_from, with_values
+from ..core.system.system import System as SystemSpec
+from ..tables import Table
+from .building import Note, silent
+from .export import export_system
+from .inspection import Overview, describe_system
+from .job import Job, plan_problems, prepare
+from .request import Request
+from .subsystem import component_of
+
+_OF_REQUEST = ("load_cell", "runtime", "in_process")
+"""Options of a case that are no keys of its system."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class System:
+    """A co-simulation, ready to run; every change gives another system.
+
+    Attributes
+    ----------
+    job : Job
+        Components, connections, values, and how they are run.
+    request : Request or None
+        The request from which the system is made again when values or sizes change; None of a
+        system that was built or connected by hand.
+    """
+
+    job: Job
+    request: Request | None = None
+
+    # ------------------------------------------------------------------ made
+
+    @classmethod
+    def load(cls, path: str | Path) -> "System":
+        """Read a system file.
+
+        Parameters
+        ----------
+        path : str or Path
+            A TOML file, as ``rockshed info CASE --toml`` shows one. Relative paths of FMUs count
+            from its folder.
+
+        Returns
+        -------
+        System
+            The system of the file.
+
+        Raises
+        ------
+        InputRefused
+            There is no such file, or its content is not in order; with every reason.
+        """
+        file = Path(path)
+        return cls.prepared(Request(str(file if file.suffix == ".toml" else file.absolute())))
+
+    @classmethod
+    def prepared(
+        cls, request: Request, note: Note = silent, problems: Sequence[Problem] = ()
+    ) -> "System":
+        """Make the system of a request; see :func:`rockshed.runs.job.prepare`."""
+        return cls(prepare(request, note, problems), request)
+
+    @classmethod
+    def new(cls, name: str, *, exchange_step: float, stop_time: float, **options: Any) -> "System":
+        """Begin a system that has no component yet.
+
+        Parameters
+        ----------
+        name : str
+            Name of the system and of the folder of its results.
+        exchange_step : float
+            Time between two exchanges (s).
+        stop_time : float
+            End of the run (s).
+        **options
+            Other keys of a system file: ``description``, ``master``, ``output_interval``, ...
+
+        Returns
+        -------
+        System
+            To be filled by :meth:`add`, :meth:`connect` and :meth:`bond`.
+
+        Raises
+        ------
+        InputRefused
+            Options that do not exist or do not fit.
+
+        Examples
+        --------
+        >>> import rockshed
+        >>> fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.1)
+        >>> fall = fall.add("rock", "FallingRock", {"velocity0.y": -1.0})
+        >>> run = rockshed.simulate(fall)
+        >>> round(float(run["rock.velocity.y"][-1]), 3)
+        -1.981
+        """
+        keys = {"name": name, "exchange_step": exchange_step, "stop_time": stop_time, **options}
+        checked = system_from({**keys, "components": {"nothing": ComponentSpec(fmu="")}}, name)
+        return cls(Job(name, checked.model_copy(update={"components": {}}), {}, {}))
+
+    # ------------------------------------------------------------------ changed
+
+    def with_values(self, values: Mapping[str, Value]) -> "System":
+        """Return the system with other values of parameters.
+
+        Parameters
+        ----------
+        values : mapping of str to Value
+            By ``component.parameter`` or by the name of a shared value (SI units); items of an
+            enumeration by their words. ``component.parameter[*]`` sets a whole array.
+
+        Returns
+        -------
+        System
+            Of a case, values that follow from these are adapted too.
+
+        Raises
+        ------
+        InputRefused
+            There is no such component, or a shared value is given several values.
+        """
+        if self.request is not None:
+            merged = {**self.request.values, **values}
+            return System.prepared(replace(self.request, values=merged))
+        return self._with(with_values(self.spec, values), values)
+
+    def with_sizes(self, sizes: Mapping[str, int]) -> "System":
+        """Return the case of this system, made again in other sizes.
+
+        Parameters
+        ----------
+        sizes : mapping of str to int
+            By ``component.size``.
+
+        Returns
+        -------
+        System
+            With FMUs of these sizes; those that are missing are built.
+
+        Raises
+        ------
+        InputRefused
+            Sizes that do not exist or are out of range, or a system that is no case.
+        """
+        if self.request is None or self.request.is_file:
+            reason = "is not made from a case, and only cases are made again in other sizes"
+            remedy = "give the sizes when a component is added, or build its FMU in them"
+            raise InputRefused([Problem(self.name, reason, remedy)])
+        return System.prepared(replace(self.request, sizes={**self.request.sizes, **sizes}))
+
+    def with_options(self, **options: Any) -> "System":
+        """Return the system with other keys: steps, times, master, what is recorded.
+
+        Parameters
+        ----------
+        **options
+            Keys of a system file: ``stop_time``, ``exchange_step``, ``output_interval``,
+            ``state_interval`` (s), ``master`` (``sequential`` or ``jacobi``), ``order``,
+            ``record``, ``watch``, ``energy_alarm``, ...
+
+        Returns
+        -------
+        System
+            With these keys replaced.
+
+        Raises
+        ------
+        InputRefused
+            Keys that do not exist, values that do not fit.
+        """
+        if self.request is not None:
+            merged = {**self.request.options, **options}
+            return System.prepared(replace(self.request, options=merged))
+        return self._with(self._checked(options), options)
+
+    def add(
+        self,
+        name: str,
+        component: str | Path | Component,
+        values: Mapping[str, Value] | None = None,
+        *,
+        sizes: Mapping[str, int] | None = None,
+        step: float | None = None,
+    ) -> "System":
+        """Return the system with one more component.
+
+        Parameters
+        ----------
+        name : str
+            Name of the component in the system.
+        component : str, Path or Component
+            Name of a component of the catalogue, a component of one's own, or the path of an FMU
+            file (``.fmu``). Components run in this process, without an FMU.
+        values : mapping of str to Value, optional
+            Parameters that differ from the component's start values (SI units).
+        sizes : mapping of str to int, optional
+            Sizes that differ from the component's defaults; not for FMU files.
+        step : float, optional
+            Communication step (s); by default the exchange step.
+
+        Returns
+        -------
+        System
+            No longer tied to the case or file that it came from.
+
+        Raises
+        ------
+        InputRefused
+            The name is taken or no name, or an FMU file is given sizes.
+        UnknownName
+            The catalogue has no component of this name.
+        """
+        if name in self.spec.components:
+            remedy = "choose another name"
+            raise InputRefused([Problem(name, "is there already", remedy)])
+        sources = dict(self.job.sources)
+        if str(component).endswith(".fmu") and not isinstance(component, Component):
+            fmu = str(component)
+            if sizes:
+                reason = "are those with which an FMU file was built"
+                raise InputRefused([Problem(f"{name}: sizes", reason, "leave them out")])
+        else:
+            made = component_of(component if isinstance(component, Component) else str(component))
+            sources[name] = _in_process(made, sizes)
+            fmu = f"{made.name} (in process)"
+        spec = {"fmu": fmu, "step": step, "parameters": dict(values or {})}
+        made_system = self._detached({"components": {**self._data()["components"], name: spec}})
+        return System(replace(made_system.job, sources=sources))
+
+    def connect(self, *connections: str) -> "System":
+        """Return the system with further connections of outputs with inputs.
+
+        Parameters
+        ----------
+        *connections : str
+            ``"sand.rock.force.y -> rock.force.y"`` each, or two names: an output and an input.
+            ``[*]`` stands for all elements of an array, ``[1..24]`` for some.
+
+        Returns
+        -------
+        System
+            No longer tied to the case or file that it came from.
+
+        Raises
+        ------
+        InputRefused
+            A text that is no connection.
+        """
+        texts = connections
+        if len(connections) == 2 and not any("->" in text for text in connections):
+            texts = (" -> ".join(connections),)
+        data = self._data()["connections"]
+        return self._detached({"connections": [*data, *texts]})
+
+    def bond(
+        self,
+        name: str,
+        force: str | Sequence[str],
+        position: str | Sequence[str],
+        *,
+        work: str | None = None,
+        opposed: bool = False,
+    ) -> "System":
+        """Return the system with an interface whose energy is accounted for.
+
+        Parameters
+        ----------
+        name : str
+            Name of the interface in the results, ``coupling.NAME.energy``.
+        force : str or sequence of str
+            Outputs of the component that computes the forces or torques, ``component.output``.
+        position : str or sequence of str
+            Outputs of the component that moves under them: the position or angle at which each
+            acts.
+        work : str, optional
+            Output, ``component.output``, with which the first component counts the energy that
+            this interface brings into it.
+        opposed : bool
+            Force and position count in opposite directions.
+
+        Returns
+        -------
+        System
+            No longer tied to the case or file that it came from.
+
+        Raises
+        ------
+        InputRefused
+            Names that are not ``component.output`` of one component.
+        """
+        giver, forces = _ends(name, force)
+        taker, positions = _ends(name, position)
+        bond = PowerBond(
+            giver=giver,
+            force=forces,
+            taker=taker,
+            position=positions,
+            work=work.removeprefix(f"{giver}.") if work else None,
+            opposed=opposed,
+        )
+        return self._detached({"bonds": {**self._data()["bonds"], name: bond.model_dump()}})
+
+    def _detached(self, entries: Mapping[str, Any]) -> "System":
+        """Return the system with other entries, no longer compared with what others found."""
+        facts = dict(self.job.facts)
+        if "references" in facts:
+            facts["references"] = {"remarks": ["not compared: the system was put together anew"]}
+        return System(replace(self.job, system=self._checked(entries), facts=facts))
+
+    def _with(self, spec: SystemSpec, differing: Mapping[str, Any]) -> "System":
+        """Return the system with this content; provenance names what differs."""
+        known = self.job.facts.get("differences", {})
+        facts = {**self.job.facts, "differences": {**known, **differing}}
+        return System(replace(self.job, system=spec, facts=facts), self.request)
+
+    def _checked(self, entries: Mapping[str, Any]) -> SystemSpec:
+        return system_from({**self._data(), **entries}, self.name)
+
+    def _data(self) -> dict[str, Any]:
+        return self.spec.model_dump()
+
+    # ------------------------------------------------------------------ shown
+
+    @property
+    def name(self) -> str:
+        """Name under which the results go."""
+        return self.job.name
+
+    @property
+    def spec(self) -> SystemSpec:
+        """The system as data, as a system file has it."""
+        return self.job.system
+
+    def validate(self) -> list[Problem]:
+        """Check the system against its FMUs.
+
+        Returns
+        -------
+        list of Problem
+            Everything that is wrong with it; empty if it can be run.
+        """
+        if not self.spec.components:
+            return [Problem(self.name, "has no component", "add one")]
+        return plan_problems(self.spec, self.job.sources)
+
+    def describe(self) -> Overview:
+        """Describe components, values that differ from the components' own, and connections.
+
+        Returns
+        -------
+        Overview
+            Texts and tables, to be shown as they are.
+
+        Raises
+        ------
+        InputRefused
+            The system does not fit its FMUs.
+        """
+        return describe_system(self.job)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write the system as ``system.toml`` with its FMUs.
+
+        Parameters
+        ----------
+        folder : str or Path
+            A new or empty folder. Components without FMUs become FMUs with Python inside.
+
+        Returns
+        -------
+        Path
+            The file, for :meth:`load` and ``rockshed run``.
+
+        Raises
+        ------
+        InputRefused
+            The folder holds something, or cannot be written.
+        """
+        return export_system(self.spec, Path(folder), self.job.sources)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(self.spec.components) or "no component"
+        return (
+            f"<System {self.name}: {parts}; {self.spec.stop_time:g} s in exchanges of "
+            f"{self.spec.exchange_step:g} s>"
+        )
+
+    def _repr_html_(self) -> str:
+        table = Table(("component", "FMU", "values"))
+        for name, spec in self.spec.components.items():
+            table.add(name, Path(spec.fmu).name, str(len(spec.parameters)))
+        return f"<p>{escape(repr(self)[1:-1])}</p>{table._repr_html_()}"
+
+
+def _in_process(made: Component, sizes: Mapping[str, int] | None) -> Source:
+    from rockshed.fmus.in_process import InProcess  # imports pythonfmu, which FMU files do not need
+
+    return InProcess(made, sizes)
+
+
+def _ends(bond: str, names: str | Sequence[str]) -> tuple[str, list[str]]:
+    """Return the component that outputs belong to, and their names without it.
+
+    Raises
+    ------
+    InputRefused
+        They are not of one component.
+    """
+    listed = [names] if isinstance(names, str) else list(names)
+    owners = {name.partition(".")[0] for name in listed}
+    if len(owners) != 1 or not all("." in name for name in listed):
+        reason = f"{', '.join(listed)} are not outputs of one component"
+        raise InputRefused([Problem(f"bond {bond}", reason, "write component.output")])
+    (owner,) = owners
+    return owner, [name.removeprefix(f"{owner}.") for name in listed]
+
+
+def case(
+    name: str,
+    *,
+    model: str | None = None,
+    coupling: str | None = None,
+    values: Mapping[str, Value] | None = None,
+    sizes: Mapping[str, int] | None = None,
+    **options: Any,
+) -> System:
+    """Make a ready-made system; its FMUs are built where they are missing.
+
+    Parameters
+    ----------
+    name : str
+        Name of a case, as ``rockshed list`` shows them.
+    model : str, optional
+        Model of the sand: ``calibrated``, ``literal`` or ``one-law``.
+    coupling : str, optional
+        Scheme of exchange, by default the first of the case.
+    values : mapping of str to Value, optional
+        By ``component.parameter`` or by the name of a shared value (SI units).
+    sizes : mapping of str to int, optional
+        By ``component.size``.
+    **options
+        Keys of the system (``stop_time``, ``exchange_step``, ``output_interval``, ``master``, ...)
+        and ``runtime`` (``auto``, ``native`` or ``python``), ``in_process`` (True: without FMUs),
+        ``load_cell`` (Hz: show the transmitted force also through a load cell with this cut-off).
+
+    Returns
+    -------
+    System
+        Ready for :func:`rockshed.simulate`.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with what is asked for.
+
+    Examples
+    --------
+    >>> import rockshed
+    >>> rockshed.case("lab-impact", in_process=True, stop_time=0.01)
+    <System lab-impact: sand, rock, beam; 0.01 s in exchanges of 1e-05 s>
+    """
+    own = {key: options.pop(key) for key in _OF_REQUEST if key in options}
+    request = Request(name, values or {}, sizes or {}, coupling, options, model=model, **own)
+    if request.is_file:
+        remedy = "System.load reads system files"
+        raise InputRefused([Problem(name, "is a file, and not the name of a case", remedy)])
+    return System.prepared(request)

@@ -1,0 +1,61 @@
+"""``rockshed.component`` and ``rockshed.build_fmu``: a component without FMI, and its FMU."""
+
+import pytest
+
+import rockshed
+from rockshed.components.catalogue import component as catalogued
+
+
+def test_a_component_is_stepped_by_names():
+    beam = rockshed.component("RBSMBeam", elements=6)
+    beam["force.y[3]"] = -100.0
+    beam.initialise()
+    for _ in range(5):
+        beam.step(1e-5)
+    assert beam.time == pytest.approx(5e-5)
+    assert beam["midspan.deflection"] > 0.0
+    assert len(beam["force.y"]) == 6
+    assert "midspan.deflection" in beam
+    assert "force.y[3]" in list(beam)
+    with pytest.raises(KeyError, match=r"did you mean midspan\.deflection"):
+        beam["midspan.deflecton"]
+    with pytest.raises(KeyError, match="RBSMBeam has no variable"):
+        beam["forcey"] = 1.0
+    assert repr(beam).startswith("<RBSMBeam, elements 6")
+    assert "<table>" in beam._repr_html_()
+
+
+def test_choices_are_words():
+    rock = rockshed.component("FallingRock")
+    rock["motion"] = "driven"
+    assert ("motion", "driven") in [(r["variable"], r["value"]) for r in rock.variables()]
+
+
+def test_a_component_of_ones_own_is_taken_as_it_is():
+    rock = rockshed.component(catalogued("FallingRock"))
+    rock.initialise()
+    assert rock["velocity.y"] == -8.0
+
+
+def test_unknown_components_and_sizes_are_refused(tmp_path):
+    with pytest.raises(KeyError, match="did you mean SandCushion"):
+        rockshed.component("SandCushon")
+    with pytest.raises(rockshed.ComponentError, match="has no size"):
+        rockshed.component("FallingRock", discs=3)
+    with pytest.raises(rockshed.InputRefused, match="has no size"):
+        rockshed.build_fmu("FallingRock", {"discs": 3}, tmp_path)
+    with pytest.raises(rockshed.InputRefused, match="add --runtime native"):
+        rockshed.build_fmu("FallingRock", folder=tmp_path, runtime="python", fmi=3)
+    with pytest.raises(rockshed.InputRefused, match="one at a time"):
+        rockshed.build_fmu("FallingRock", folder=tmp_path, runtime="both")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_fmu_is_built_in_a_size_and_taken_into_a_system(tmp_path):
+    file = rockshed.build_fmu("RBSMBeam", {"elements": 4}, tmp_path)
+    assert file.parent == tmp_path
+    still = rockshed.System.new("still", exchange_step=1e-5, stop_time=1e-4)
+    run = rockshed.simulate(still.add("beam", file, {"span": 1.0}))
+    assert run.provenance["components"]["beam"]["model"] == "RBSMBeam"
+    assert "beam.force.y[4]" not in run
+    assert "beam.position.y[4]" in run

@@ -1,0 +1,142 @@
+"""``rockshed.simulate`` and the run that it gives: that of ``rockshed run``, by names."""
+
+import gc
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+import rockshed
+from rockshed.commands.app import app
+
+
+@pytest.fixture(scope="module")
+def run():
+    return rockshed.simulate(rockshed.case("lab-impact", in_process=True, stop_time=0.004))
+
+
+def test_it_is_the_run_of_the_command(tmp_path, monkeypatch):
+    """Metrics, references, warnings, rows and files; a rock that comes down to the base is warned of."""
+    monkeypatch.chdir(tmp_path)
+    values = {"sand.modulus": 3e5}
+    options = {"coupling": "impulse", "stop_time": 0.03}
+    system = rockshed.case("lab-impact", in_process=True, values=values, **options)
+    here = rockshed.simulate(system, "here")
+    said = CliRunner().invoke(
+        app,
+        [
+            "run",
+            "lab-impact",
+            "--in-process",
+            "--set",
+            "sand.modulus=3e5",
+            "--coupling",
+            "impulse",
+            "--stop-time",
+            "0.03",
+            "--no-figures",
+            "--json",
+            "--output-dir",
+            "there",
+        ],
+    )
+    content = json.loads(said.stdout)
+    there = rockshed.read_run("there")
+    timed = {"wall_time_of_the_exchanges"}
+    assert set(here.metrics) == set(there.metrics)
+    assert {n: m for n, m in here.metrics.items() if n not in timed} == {
+        n: m for n, m in there.metrics.items() if n not in timed
+    }
+    assert here.metrics["peak_transmitted_force"].references["paper"].note
+    assert here.warnings == there.warnings == content["warnings"] != []
+    assert here.caption == there.caption == content["caption"]
+    assert all((here[name].values == there[name].values).all() for name in here)
+    files = [{path.name for path in run.folder.iterdir()} for run in (here, there)]
+    assert files[0] == files[1]
+    read = rockshed.read_run("here")
+    assert read.metrics == here.metrics
+
+
+def test_variables_have_units_and_what_is_missing_is_answered_with_the_nearest(run):
+    force = run["sand.rock.force.y"]
+    assert (force.unit, len(force)) == ("N", run.time.size)
+    for missing, near in (("rock.positon.x", "rock.position.x"), ("sand", "sand.")):
+        with pytest.raises(KeyError, match=near):
+            run[missing]
+    with pytest.raises(KeyError, match="peak_transmitted_force"):
+        run.metrics["peak transmited force"]
+
+
+def test_any_variables_are_drawn_in_a_panel_for_each_unit(run):
+    figure = run.plot(
+        "rock.force.y" if "rock.force.y" in run else "sand.rock.force.y", "beam.energy.*"
+    )
+    labels = [axes.get_ylabel() for axes in figure.axes]
+    assert labels == ["N", "J"]
+    assert figure.axes[-1].get_xlabel() == "time (ms)"
+    named = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
+    assert "beam.energy.elastic" in named
+    assert "lab-impact: Sonoda" in figure.get_supxlabel()
+    assert not any(text.get_parse_math() for text in figure.axes[0].get_legend().get_texts())
+    with pytest.raises(KeyError, match="did you mean"):
+        run.plot("rock.velocity.q")
+
+
+def test_pictures_are_files_by_name(run, tmp_path):
+    drawn = run.figures(tmp_path / "drawn")
+    assert {"forces", "energy"} <= set(drawn)
+    assert all(file.read_bytes().startswith(b"\x89PNG") for file in drawn.values())
+
+
+def test_a_run_shows_itself_in_a_line(run):
+    assert repr(run).startswith("<Run lab-impact: complete, 0.004 s in 41 rows of ")
+    assert "peak transmitted force" in run._repr_html_()
+    assert "peak transmitted force" in repr(run.table())
+    assert run.status == "complete"
+
+
+def test_results_as_tables(run):
+    assert run.to_arrow().column_names[0] == "time"
+    pytest.importorskip("pandas")
+    assert run.to_pandas()["rock.position.y"].iloc[0] == run["rock.position.y"][0]
+
+
+def test_results_without_a_folder_go_with_the_run_unless_they_are_saved(tmp_path):
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    run = rockshed.simulate(fall.add("rock", "FallingRock"))
+    folder = run.folder
+    assert folder.is_dir()
+    kept = rockshed.read_run(run.save(tmp_path / "kept"))
+    with pytest.raises(rockshed.InputRefused, match="name a new folder"):
+        run.save(tmp_path / "kept")
+    del run
+    gc.collect()
+    assert not folder.exists()
+    assert kept.status == "complete"
+
+
+def test_a_refused_system_leaves_nothing(tmp_path):
+    with pytest.raises(rockshed.InputRefused, match="allowed is"):
+        rockshed.simulate(
+            rockshed.case("lab-impact", in_process=True, values={"rock.mass": -4}), tmp_path / "run"
+        )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_fails_tells_why_and_has_what_was_computed():
+    unstable = rockshed.case("lab-impact", in_process=True, values={"beam.internal_step": 1e-5})
+    with pytest.raises(rockshed.RunFailed, match="the beam diverged") as failure:
+        rockshed.simulate(unstable, allow_unstable=True)
+    run = failure.value.run
+    assert run.status == "failed"
+    assert run.time.size
+    assert run.error == str(failure.value)
+
+
+def test_progress_is_told(tmp_path):
+    told = []
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    rockshed.simulate(
+        fall.add("rock", "FallingRock"), progress=lambda reached, stop: told.append((reached, stop))
+    )
+    assert told[-1] == (pytest.approx(0.01), pytest.approx(0.01))

@@ -1,0 +1,138 @@
+"""``rockshed.System``: made from a case, a file or nothing, and changed without changing the first."""
+
+import pytest
+
+import rockshed
+
+
+def lab(**options):
+    return rockshed.case("lab-impact", in_process=True, **options)
+
+
+def value(system, component, name):
+    return system.spec.components[component].parameters[name]
+
+
+def test_a_change_gives_another_system():
+    first = lab()
+    second = first.with_values({"sand.damping": 0.3}).with_options(stop_time=0.01)
+    assert value(second, "sand", "damping") == 0.3
+    assert second.spec.stop_time == 0.01
+    assert "damping" not in first.spec.components["sand"].parameters
+    assert first.spec.stop_time == 0.04
+    assert second.job.facts["differences"] == {"sand.damping": 0.3, "stop_time": 0.01}
+
+
+def test_a_value_that_is_shared_reaches_all_its_targets():
+    assert lab().with_values({"rock.mass": 8.0}).spec.shared["rock_mass"].value == 8.0
+
+
+def test_values_that_follow_from_others_are_adapted():
+    girders = rockshed.case("girders-8", in_process=True)
+    heavier = girders.with_values({"sand.depth": 3.4})
+    assert value(heavier, "beam", "cushion.weight") == pytest.approx(
+        2.0 * value(girders, "beam", "cushion.weight")
+    )
+
+
+def test_a_case_is_made_again_in_other_sizes():
+    taller = lab().with_sizes({"sand.discs": 740})
+    assert value(taller, "rock", "position0.y") > value(lab(), "rock", "position0.y")
+    assert taller.job.facts["sizes"]["sand"]["discs"] == 740
+    with pytest.raises(rockshed.InputRefused, match=r"sand\.disks.*did you mean sand\.discs"):
+        lab().with_sizes({"sand.disks": 9})
+    with pytest.raises(rockshed.InputRefused, match="no whole number"):
+        lab().with_sizes({"sand.discs": 9.5})
+
+
+def test_a_system_that_is_no_case_refuses_other_sizes_with_a_reason(tmp_path):
+    for system in (lab().connect("rock.position.x -> sand.rock.position.x"), saved(tmp_path)):
+        with pytest.raises(rockshed.InputRefused, match="only cases are made again"):
+            system.with_sizes({"sand.discs": 740})
+
+
+def saved(folder):
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    file = fall.add("rock", "FallingRock", {"velocity0.y": -1.0}).save(folder / "fall")
+    return rockshed.System.load(file)
+
+
+def test_a_saved_system_runs_with_the_same_result(tmp_path):
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    fall = fall.add("rock", "FallingRock", {"velocity0.y": -1.0})
+    one, other = rockshed.simulate(fall), rockshed.simulate(saved(tmp_path))
+    assert (one["rock.position.y"].values == other["rock.position.y"].values).all()
+    quicker = saved(tmp_path / "again").with_values({"rock.velocity0.y": -2.0})
+    assert rockshed.simulate(quicker)["rock.velocity.y"][0] == -2.0
+
+
+def test_a_system_from_nothing_is_the_case(tmp_path):
+    """Rock and sand of the static test, put together by hand: the same bits, and its energy."""
+    static = rockshed.case("static-test", in_process=True, stop_time=0.02)
+    made = rockshed.System.new(
+        "by-hand", exchange_step=1e-3, stop_time=0.02, output_interval=5e-3, order=["sand", "rock"]
+    )
+    for name, model in (("sand", "SandCushion"), ("rock", "FallingRock")):
+        sizes = {"discs": 370, "elements": 1} if name == "sand" else None
+        made = made.add(name, model, static.spec.components[name].parameters, sizes=sizes)
+    made = made.with_values(
+        {name: shared.value for shared in static.spec.shared.values() for name in shared.targets}
+    )
+    made = made.connect(*(f"{c.source} -> {c.target}" for c in static.spec.connections))
+    axes = ("x", "y")
+    made = made.bond(
+        "sand_rock",
+        [*(f"sand.rock.force.{axis}" for axis in axes), "sand.rock.torque"],
+        [*(f"rock.position.{axis}" for axis in axes), "rock.angle"],
+        work="sand.energy.work.rock",
+    )
+    assert made.validate() == []
+    one, other = rockshed.simulate(static), rockshed.simulate(made)
+    for name in ("sand.rock.force.y", "coupling.sand_rock.energy"):
+        assert (one[name].values == other[name].values).all()
+
+
+def test_connections_are_texts_or_two_names():
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    fall = fall.add("rock", "FallingRock").add("other", "FallingRock")
+    assert (
+        fall.connect("rock.position.x", "other.force.x").spec
+        == fall.connect("rock.position.x -> other.force.x").spec
+    )
+    with pytest.raises(rockshed.InputRefused, match="is no connection"):
+        fall.connect("rock.position.x")
+    problems = fall.connect("rock.position.z -> other.force.x").validate()
+    assert any("rock.position.z" in str(problem) for problem in problems)
+
+
+def test_what_is_no_component_or_bond_is_refused():
+    empty = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    assert "has no component" in str(empty.validate()[0])
+    with pytest.raises(KeyError, match="did you mean FallingRock"):
+        empty.add("rock", "FalingRock")
+    one = empty.add("rock", "FallingRock")
+    with pytest.raises(rockshed.InputRefused, match="is there already"):
+        one.add("rock", "FallingRock")
+    with pytest.raises(rockshed.InputRefused, match="leave them out"):
+        one.add("beam", "RBSMBeam.fmu", sizes={"elements": 3})
+    with pytest.raises(rockshed.InputRefused, match="not outputs of one component"):
+        one.bond("b", ["rock.force.y", "sand.force.y"], "rock.position.y")
+    with pytest.raises(rockshed.InputRefused, match="there is no such key"):
+        one.with_options(stop_tim=1.0)
+    with pytest.raises(rockshed.InputRefused, match=r"System\.load"):
+        rockshed.case("fall.toml")
+
+
+def test_a_system_that_is_put_together_anew_is_not_compared():
+    changed = lab(stop_time=0.001).connect("rock.angle -> sand.rock.angle")
+    assert changed.job.facts["references"]["remarks"]
+
+
+def test_a_system_shows_itself_in_a_line_and_is_described_in_tables():
+    system = lab(stop_time=0.01)
+    assert repr(system) == ("<System lab-impact: sand, rock, beam; 0.01 s in exchanges of 1e-05 s>")
+    assert "<table>" in system._repr_html_()
+    described = str(system.describe())
+    assert "order sand, rock, beam; exchange every 1e-05 s" in described
+    assert "rock_mass" in described
+    assert "<table>" in system.describe()._repr_html_()
