@@ -39,7 +39,7 @@ class Subsystem:
 
     @property
     def component(self) -> Component:
-        """Declarations of the component."""
+        """The declarations and kernels of the component."""
         return self.instance.component
 
     def __getitem__(self, name: str) -> Any:
