@@ -14,6 +14,7 @@ from rich.padding import Padding
 from rich.table import Table
 
 if TYPE_CHECKING:
+    from .. import tables
     from ..core.errors import Problem
 
 OK, RUN_FAILED, REFUSED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -220,6 +221,16 @@ class Screen:
         """Print results for a person."""
         for part in parts:
             self.out.print(part)
+
+    def table(self, table: "tables.Table") -> None:
+        """Print a table under its title; the title alone where the table has no rows."""
+        if table.title:
+            self.out.print(f"[bold]{escape(table.title)}[/]", soft_wrap=True)
+        if len(table):
+            shown = plain_table(*table.columns, right=table.right)
+            for row in table.rows:
+                shown.add_row(*map(escape, row))
+            self.out.print(shown)
 
     def say(self, text: str) -> None:
         """Print a line as it stands, however long it is."""
