@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from functools import cached_property
 from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -86,6 +87,8 @@ class Result(ABC):
     """End of the analysis; one that does not come to its end raises and has no result."""
     picture_folder: ClassVar[str] = "figures"
     """Folder of the pictures in that of the results."""
+    animated: Sequence[int] = ()
+    """Numbers of the parts of the results of which animations are written."""
 
     def __init__(self) -> None:
         self.folder: Path | None = None
@@ -123,10 +126,6 @@ class Result(ABC):
         """Return the results as tables for a person, in the order in which they are read."""
 
     @abstractmethod
-    def drawings(self) -> Mapping[str, Drawing]:
-        """Return a function for each figure, by the name of its file without the ending."""
-
-    @abstractmethod
     def to_arrow(self) -> Any:
         """Return the main table of the results.
 
@@ -140,11 +139,18 @@ class Result(ABC):
     def write_files(self, folder: Path) -> Sequence[Path]:
         """Write all files but the pictures into a folder that exists, and return them."""
 
-    def write_animations(self, folder: Path, progress: Progress) -> list[Path]:
-        """Write the animations that were asked for, and return their files."""
-        return []
-
     # --- all have the same ---
+
+    @classmethod
+    def pictures_module(cls) -> Any:
+        """Return the module ``pictures`` of the analysis, which is loaded when it is needed.
+
+        Its function ``drawings`` takes a result and returns a :data:`Drawing` for each figure by
+        the name of its file without the ending; ``animate``, where it has one, takes a result, a
+        folder and a :data:`Progress`, and returns the files that it has written.
+        """
+        package = cls.__module__.rpartition(".")[0]
+        return import_module(f"{package}.pictures")
 
     @cached_property
     def metrics(self) -> Metrics:
@@ -174,7 +180,8 @@ class Result(ABC):
         dict of str to matplotlib.figure.Figure
             By the name of the file that :meth:`save` writes, without its ending.
         """
-        return {name: draw() for name, draw in self.drawings().items()}
+        drawings: Mapping[str, Drawing] = self.pictures_module().drawings(self)
+        return {name: draw() for name, draw in drawings.items()}
 
     def save(
         self, folder: str | Path, *, pictures: bool = True, progress: Progress | None = None
@@ -225,7 +232,8 @@ class Result(ABC):
         folder = place / self.picture_folder
         self._files = [file.name for file in self.write_files(place)]
         drawn = self.write_pictures(folder, progress) if pictures else []
-        drawn += self.write_animations(folder, progress)
+        if self.animated:
+            drawn += self.pictures_module().animate(self, folder, progress)
         self._pictures = [str(file.relative_to(place)) for file in drawn]
 
     def write_pictures(self, folder: Path, progress: Progress) -> list[Path]:
@@ -244,7 +252,7 @@ class Result(ABC):
             Of the files.
         """
         folder.mkdir(exist_ok=True)
-        drawings = self.drawings()
+        drawings: Mapping[str, Drawing] = self.pictures_module().drawings(self)
         files = [folder / f"{name}.png" for name in drawings]
         progress("drawing", 0, len(files))
         for number, (draw, file) in enumerate(zip(drawings.values(), files, strict=True), 1):

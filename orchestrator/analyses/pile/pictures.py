@@ -1,6 +1,8 @@
 """Pictures of a pile: traces of a blow, envelopes of the stresses, several blows, bearing graph."""
 
 from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +13,11 @@ from rockshed.components.common.units import kJ, kN, mm, ms
 from ...pictures.style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH, legend
 from ...sites.pile.preparation import PreparedPile
 from ..drawing import drawn
+from ..frame import Drawing
 from .blows import Blow
+
+if TYPE_CHECKING:
+    from .result import PileResult
 
 MPa = 1e6
 """Pascal in a megapascal."""
@@ -37,6 +43,31 @@ def caption(pile: PreparedPile) -> list[str]:
         f"rod {length:g} m in {len(site.rod)} section(s), {site.segments} segments; "
         f"R_u {shaft / kN:g} kN at the shaft, {site.toe.resistance / kN:g} kN at the toe",
     ]
+
+
+def drawings(result: "PileResult") -> dict[str, Drawing]:
+    """Return a function for each figure of a pile.
+
+    Parameters
+    ----------
+    result : PileResult
+        Of the blows.
+
+    Returns
+    -------
+    dict of str to callable
+        By the name of the file without its ending.
+    """
+    pile = result.pile
+    figures: dict[str, Drawing] = {
+        "traces": partial(traces, pile, result.blows[0]),
+        "envelopes": partial(envelopes, pile, result.blows),
+    }
+    if len(result.blows) > 1:
+        figures["blows"] = partial(blow_by_blow, pile, result.blows)
+    if result.graph:
+        figures["bearing"] = partial(bearing, pile, result.graph)
+    return figures
 
 
 def traces(pile: PreparedPile, blow: Blow) -> Figure:

@@ -1,7 +1,6 @@
 """The result of the blows on a pile."""
 
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ from rockshed.components.common.units import mm
 from ...core.results.metric import Metric
 from ...sites.pile.preparation import PreparedPile
 from ...tables import Table
-from ..frame import Drawing, Result
+from ..frame import Result
 from .blows import Blow
 from .files import bearing_table, envelope_table, trace_table, write_facts, write_tables
 from .summary import metrics_of
@@ -89,20 +88,6 @@ class PileResult(Result):
             Time (s), number of the blow, forces (N) and displacements (m) of head, gauge and toe.
         """
         return trace_table(self.blows)
-
-    def drawings(self) -> Mapping[str, Drawing]:
-        """Return a function for each figure: traces, envelopes, blows, bearing graph."""
-        from . import pictures
-
-        drawings: dict[str, Drawing] = {
-            "traces": partial(pictures.traces, self.pile, self.blows[0]),
-            "envelopes": partial(pictures.envelopes, self.pile, self.blows),
-        }
-        if len(self.blows) > 1:
-            drawings["blows"] = partial(pictures.blow_by_blow, self.pile, self.blows)
-        if self.graph:
-            drawings["bearing"] = partial(pictures.bearing, self.pile, self.graph)
-        return drawings
 
     def write_files(self, folder: Path) -> list[Path]:
         """Write traces, envelopes, bearing graph, summary and ``run.json`` into a folder."""

@@ -1,6 +1,7 @@
 """Pictures of a rockfall campaign: profile with envelopes, histograms at lines, ends, replays."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import cycle, groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,7 +30,7 @@ from ...pictures.style import (
 from ...sites.rockfall.profile import surface
 from ...sites.rockfall.site import Barrier
 from ..drawing import drawn
-from ..frame import Count
+from ..frame import Count, Drawing, Progress, counter
 from .animation import FRAMES_PER_SECOND, write_animation
 from .passages import QUANTITIES, LinePassages, PassageQuantity
 from .replay import MODES, Replay, replay
@@ -84,6 +85,28 @@ def caption(result: "RockfallResult") -> list[str]:
         f"{campaign.trials} trials, seed {campaign.seed}, {chance}; {rock}; "
         f"V_lim {site.limit_speed.mean:g} ± {site.limit_speed.deviation:g} m/s",
     ]
+
+
+def drawings(result: "RockfallResult") -> dict[str, Drawing]:
+    """Return a function for each figure of a campaign.
+
+    Parameters
+    ----------
+    result : RockfallResult
+        Of the campaign.
+
+    Returns
+    -------
+    dict of str to callable
+        By the name of the file without its ending.
+    """
+    figures: dict[str, Drawing] = {
+        "envelopes": partial(envelopes, result),
+        "ends": partial(ends, result),
+    }
+    if any(line.count > 1 for line in result.lines):
+        figures["lines"] = partial(histograms, result)
+    return figures
 
 
 # --- the profile ---
@@ -317,7 +340,31 @@ def _end_histogram(result: "RockfallResult", x: NDArray[np.float64], axes: Axes)
 # --- replay ---
 
 
-def animate(
+def animate(result: "RockfallResult", folder: Path, progress: Progress) -> list[Path]:
+    """Write the animations of a campaign.
+
+    Parameters
+    ----------
+    result : RockfallResult
+        With the trials that are to be animated, and the format.
+    folder : Path
+        Of the pictures; it is made where it is missing.
+    progress : Progress
+        Called for each frame.
+
+    Returns
+    -------
+    list of Path
+        Of the files.
+    """
+    folder.mkdir(exist_ok=True)
+    files = [folder / f"trial-{number}.{result.animation}" for number in result.animated]
+    for number, file in zip(result.animated, files, strict=True):
+        animate_trial(result, number, file, counter(progress, f"replay of trial {number}, frames"))
+    return files
+
+
+def animate_trial(
     result: "RockfallResult",
     number: int,
     file: Path,

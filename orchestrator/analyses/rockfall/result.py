@@ -1,7 +1,7 @@
 """The result of a rockfall campaign."""
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from rockshed.components.slope_rockfall.trajectory import OUTCOME
 from ...core.results.metric import Metric
 from ...sites.rockfall.preparation import PreparedSlope
 from ...tables import Table
-from ..frame import Drawing, Progress, Result, counter
+from ..frame import Result
 from .campaign import Campaign, TrialRecords
 from .files import Envelopes, envelope_table, envelopes, trial_table, write_facts, write_tables
 from .passages import ENDS, LinePassages, line_passages
@@ -151,18 +151,6 @@ class RockfallResult(Result):
         check(self.campaign, [trial])
         return replay(self.slope, self.campaign, trial, interval)
 
-    def drawings(self) -> Mapping[str, Drawing]:
-        """Return a function for each figure: envelopes, ends, histograms at the lines."""
-        from . import pictures
-
-        drawings: dict[str, Drawing] = {
-            "envelopes": partial(pictures.envelopes, self),
-            "ends": partial(pictures.ends, self),
-        }
-        if any(line.count > 1 for line in self.lines):
-            drawings["lines"] = partial(pictures.histograms, self)
-        return drawings
-
     def write_files(self, folder: Path) -> list[Path]:
         """Write trials, envelopes, summary and ``run.json`` into a folder, and return them."""
         along = envelope_table(self.slope, self.campaign, self.records, self.envelopes)
@@ -171,15 +159,3 @@ class RockfallResult(Result):
             *write_tables(self.to_arrow(), along, folder),
             *write_facts(self.slope, self.metric_list(), facts, folder),
         ]
-
-    def write_animations(self, folder: Path, progress: Progress) -> list[Path]:
-        """Write the animations that were asked for, and return their files."""
-        from . import pictures
-
-        files = []
-        for trial in self.animated:
-            folder.mkdir(exist_ok=True)
-            files.append(folder / f"trial-{trial}.{self.animation}")
-            count = counter(progress, f"replay of trial {trial}, frames")
-            pictures.animate(self, trial, files[-1], count)
-        return files
