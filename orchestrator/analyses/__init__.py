@@ -1,1 +1,5 @@
-"""Analyses beside the co-simulation: rockfall, pile, calibration."""
+"""Analyses next to the co-simulation: rockfall on a slope, driven piles, calibration of the sand.
+
+Each is a folder with ``run.py`` (the function that carries it out), ``result.py`` (what it returns),
+``files.py``, ``tables.py`` and ``pictures.py``; ``frame.py`` has what they share.
+"""

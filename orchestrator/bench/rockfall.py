@@ -7,8 +7,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter, thread_time
 
-from ..analyses.rockfall.campaign import Campaign, Done, Records, compute
-from ..analyses.rockfall.preparation import prepare
+from ..analyses.frame import Count
+from ..analyses.rockfall.campaign import Campaign, TrialRecords, campaign_of, compute
+from ..sites.rockfall.preparation import prepare
 from .interleave import Contestant
 
 SITE = Path(__file__).with_name("slope15.toml")
@@ -23,7 +24,7 @@ CAMPAIGN = 1_000_000
 
 def own_kernel() -> Contestant:
     """Trials of the event-driven kernel on this thread; its CPU time (s)."""
-    given = prepare(SITE, trials=TRIALS).campaign
+    given = campaign_of(prepare(SITE, trials=TRIALS))
 
     def work() -> float:
         began = thread_time()
@@ -43,16 +44,16 @@ def dask_campaigns() -> Iterator[dict[str, Contestant]]:
     """The campaign on one and on two local workers, which are there already; wall time (s) until all records are here."""
     from ..analyses.rockfall.cluster import dask_workers
 
-    given = prepare(SITE, trials=CAMPAIGN).campaign
+    given = campaign_of(prepare(SITE, trials=CAMPAIGN))
     with ExitStack() as running:
-        crews = {
+        executors = {
             f"{count} workers": running.enter_context(dask_workers("local", count))
             for count in (1, 2)
         }
-        yield {name: partial(_timed, crew.run, given) for name, crew in crews.items()}
+        yield {name: partial(_timed, executor.run, given) for name, executor in executors.items()}
 
 
-def _timed(run: Callable[[Campaign, Done], Records], given: Campaign) -> float:
+def _timed(run: Callable[[Campaign, Count], TrialRecords], given: Campaign) -> float:
     began = perf_counter()
     run(given, lambda count, total: None)
     return perf_counter() - began

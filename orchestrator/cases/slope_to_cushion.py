@@ -14,6 +14,7 @@ from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
 from ..core.system.system import ComponentSpec, System, Value
+from ..sites.rockfall.preparation import prepare
 from .full_scale import GIRDER_DEPTH, Coupling, Impact, full_scale_system, layer
 from .sand_models import Layer
 
@@ -54,8 +55,6 @@ def cells() -> int:
 @cache
 def _site() -> Instance:
     """The site as an initialised component, as its campaign has it."""
-    from ..analyses.rockfall.preparation import prepare
-
     return prepare(SITE).instance
 
 

@@ -711,22 +711,22 @@ def rockfall(
 
     with _screen(quiet, as_json) as screen:
         from ..analyses.rockfall.campaign import CampaignFailed
-        from ..analyses.rockfall.command import rockfall
+        from .rockfall import show_rockfall
 
         try:
-            rockfall(
+            show_rockfall(
                 screen,
                 RESULTS,
                 site,
-                trials,
-                preset,
-                seed,
-                replay or [],
-                animation,
-                output_dir,
-                workers,
-                scheduler,
-                not no_figures,
+                trials=trials,
+                preset=preset,
+                seed=seed,
+                replays=replay or [],
+                animation=animation,
+                output_dir=output_dir,
+                workers=workers,
+                scheduler=scheduler,
+                pictures=not no_figures,
             )
         except CampaignFailed as failure:
             screen.fail(str(failure))
@@ -753,9 +753,11 @@ def pile(
 ) -> None:
     """Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph, residual stress."""
     with _screen(quiet, as_json) as screen:
-        from ..analyses.pile.command import pile
+        from .pile import show_pile
 
-        pile(screen, RESULTS, site, blows, output_dir, not no_figures)
+        show_pile(
+            screen, RESULTS, site, blows=blows, output_dir=output_dir, pictures=not no_figures
+        )
 
 
 def main() -> None:

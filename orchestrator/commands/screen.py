@@ -16,6 +16,7 @@ from rich.padding import Padding
 from ..tables import Table
 
 if TYPE_CHECKING:
+    from .. import tables
     from ..core.errors import Problem
     from ..runs.inspection import Overview
 
@@ -230,6 +231,16 @@ class Screen:
             if number:
                 self.out.print()
             self.out.print(drawn(part) if isinstance(part, Table) else escape(part))
+
+    def table(self, table: "tables.Table") -> None:
+        """Print a table under its title; the title alone where the table has no rows."""
+        if table.title:
+            self.out.print(f"[bold]{escape(table.title)}[/]", soft_wrap=True)
+        if len(table):
+            shown = plain_table(*table.columns, right=table.right)
+            for row in table.rows:
+                shown.add_row(*map(escape, row))
+            self.out.print(shown)
 
     def say(self, text: str) -> None:
         """Print a line as it stands, however long it is."""

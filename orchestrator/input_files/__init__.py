@@ -1,1 +1,1 @@
-"""Input files of the commands that take a site: TOML, with every problem told at its line and column."""
+"""Input files of the commands that take a site: TOML, with every problem told at its place."""

@@ -1,140 +1,137 @@
-"""Where things stand in a TOML file, which the standard library's reader does not tell."""
+"""Positions of the values in a TOML file, which the reader of the standard library does not tell."""
 
-import re
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-Path = tuple[str | int, ...]
+import tree_sitter_toml
+from tree_sitter import Language, Node, Parser
+
+Key = tuple[str | int, ...]
 """Keys and numbers of elements that lead to a value: ``("barrier", 0, "height")``."""
-
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
-_BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
-_STRING = re.compile(
-    r'"""(?:\\.|[^\\])*?"{3,5}|' r"'''(?:.|\n)*?'{3,5}|" r'"(?:\\.|[^"\\\n])*"|' r"'[^'\n]*'",
-    re.DOTALL,
-)
-_PLAIN = re.compile(r"[^,\]}#\n]*")
-
-
-@dataclass
-class _Scanner:
-    """Walks through a text that is known to be valid TOML."""
-
-    text: str
-    at: int = 0
-    found: dict[Path, int] = field(default_factory=dict)
-    tables: dict[Path, int] = field(default_factory=dict)
-
-    def document(self) -> None:
-        """Headers of tables and keys, to the end."""
-        table: Path = ()
-        while self.skip():
-            begin = self.at
-            if self.text.startswith("[[", self.at):
-                table = self.header(2)
-                number = self.tables[table] = self.tables.get(table, -1) + 1
-                table = (*table, number)
-            elif self.text[self.at] == "[":
-                table = self.header(1)
-            else:
-                self.entry(table)
-                continue
-            self.found.setdefault(table, begin)
-
-    def header(self, brackets: int) -> Path:
-        """A table's path; an array of tables on the way stands for its last element."""
-        self.at += brackets
-        path: Path = ()
-        keys = self.key()
-        for i, name in enumerate(keys):
-            path = (*path, name)
-            if path in self.tables and (i + 1 < len(keys) or brackets == 1):
-                path = (*path, self.tables[path])
-        self.skip()
-        self.at += brackets
-        return path
-
-    def key(self) -> list[str]:
-        """A key, dotted or not."""
-        names = []
-        while True:
-            self.skip()
-            quoted = self.text[self.at] in "\"'"
-            match = (_STRING if quoted else _BARE).match(self.text, self.at)
-            assert match is not None
-            names.append(match.group()[1:-1] if quoted else match.group())
-            self.at = match.end()
-            self.skip()
-            if self.text[self.at : self.at + 1] != ".":
-                return names
-            self.at += 1
-
-    def entry(self, table: Path) -> None:
-        """``key = value``."""
-        begin = self.at
-        path = (*table, *self.key())
-        self.at += 1  # =
-        self.skip()
-        self.value(path)
-        self.found[path] = begin
-
-    def value(self, path: Path) -> None:
-        """A value and all that is in it."""
-        self.found[path] = self.at
-        first = self.text[self.at]
-        if first in "[{":
-            self.members(path, first)
-            return
-        match = (_STRING if first in "\"'" else _PLAIN).match(self.text, self.at)
-        assert match is not None
-        self.at = match.end()
-
-    def members(self, path: Path, opening: str) -> None:
-        """Elements of an array, or entries of an inline table."""
-        self.at += 1
-        number = 0
-        while self.skip() and self.text[self.at] not in "]}":
-            if opening == "[":
-                self.value((*path, number))
-            else:
-                self.entry(path)
-            number += 1
-            self.skip()
-            if self.text[self.at] == ",":
-                self.at += 1
-        self.at += 1
-
-    def skip(self) -> bool:
-        """Leave out blanks and comments; whether anything follows."""
-        match = _BLANK.match(self.text, self.at)
-        assert match is not None
-        self.at = match.end()
-        return self.at < len(self.text)
 
 
 @dataclass(frozen=True)
 class Places:
-    """Lines and columns of the values in a file."""
+    """Lines and columns of the values in a file.
 
-    file: str
-    text: str = ""
-    offsets: Mapping[Path, int] = field(default_factory=dict)
+    Attributes
+    ----------
+    source : str
+        Name of the file, or of data that were never in one.
+    content : bytes
+        Of the file.
+    offsets : mapping of Key to int
+        First byte of each value, or of the key before it.
+    """
 
-    def of(self, path: Path) -> str:
-        """``slope.toml, line 3, column 5``: of a value, or of what is nearest above it in the same tables."""
-        while path and path not in self.offsets:
-            path = path[:-1]
-        offset = self.offsets.get(path)
-        return self.file if offset is None else f"{self.file}, {line_and_column(self.text, offset)}"
+    source: str
+    content: bytes = b""
+    offsets: Mapping[Key, int] = field(default_factory=dict)
+
+    def of(self, key: Key) -> str:
+        """Return the place of a value in words.
+
+        Parameters
+        ----------
+        key : Key
+            Of the value; where it is missing, the nearest table above it counts.
+
+        Returns
+        -------
+        str
+            ``slope.toml, line 3, column 5``; the source alone where nothing above it is known.
+        """
+        while key and key not in self.offsets:
+            key = key[:-1]
+        if key not in self.offsets:
+            return self.source
+        return f"{self.source}, {line_and_column(self.content[: self.offsets[key]])}"
 
 
-def line_and_column(text: str, offset: int) -> str:
-    """``line 3, column 5`` of a place in a text, counted from 1."""
-    return f"line {text.count(chr(10), 0, offset) + 1}, column {offset - text.rfind(chr(10), 0, offset)}"
+def line_and_column(before: bytes) -> str:
+    """Return the place that follows some UTF-8 text: ``line 3, column 5``, counted from 1."""
+    text = before.decode("utf-8")
+    return f"line {text.count(chr(10)) + 1}, column {len(text) - text.rfind(chr(10))}"
 
 
-def places(file: str, text: str) -> Places:
-    """The places of all values in a text that ``tomllib`` has read."""
-    scanner = _Scanner(text)
-    scanner.document()
-    return Places(file, text, scanner.found)
+def places(source: str, text: str) -> Places:
+    """Find the places of all values in a text that ``tomllib`` has read.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    text : str
+        Its content.
+
+    Returns
+    -------
+    Places
+        Of every table, key and element of an array.
+    """
+    content = text.encode("utf-8")
+    parser = Parser(Language(tree_sitter_toml.language()))
+    offsets: dict[Key, int] = {}
+    last: dict[Key, int] = {}  # number of the last element of each array of tables
+    for node in parser.parse(content).root_node.named_children:
+        if node.type == "pair":
+            offsets.update(_pair((), node))
+        elif node.type in ("table", "table_array_element"):
+            header = _header(node, last)
+            offsets.setdefault(header, node.start_byte)
+            for entry in node.named_children[1:]:
+                offsets.update(_pair(header, entry))
+    return Places(source, content, offsets)
+
+
+def _header(node: Node, last: dict[Key, int]) -> Key:
+    """Return the key of a table; an array of tables on the way stands for its last element."""
+    names = list(_names(node.named_children[0]))
+    is_element = node.type == "table_array_element"
+    key: Key = ()
+    for i, name in enumerate(names, 1):
+        key = (*key, name)
+        if key in last and (i < len(names) or not is_element):
+            key = (*key, last[key])
+    if is_element:
+        last[key] = last.get(key, -1) + 1
+        key = (*key, last[key])
+    return key
+
+
+def _names(node: Node) -> Iterator[str]:
+    """Yield the names in a key, dotted or not."""
+    text = (node.text or b"").decode("utf-8")
+    if node.type == "dotted_key":
+        for part in node.named_children:
+            yield from _names(part)
+    elif node.type == "quoted_key":
+        yield from tomllib.loads(f"{text} = 0")
+    else:
+        yield text
+
+
+def _pair(table: Key, node: Node) -> Iterator[tuple[Key, int]]:
+    """Yield key and offset of an entry of a table, and of all that is in it."""
+    if node.type == "pair":
+        name, value = _without_comments(node)
+        key = (*table, *_names(name))
+        yield from _value(key, value)
+        yield key, node.start_byte
+
+
+def _value(key: Key, node: Node) -> Iterator[tuple[Key, int]]:
+    """Yield key and offset of a value, and of all that is in it."""
+    yield key, node.start_byte
+    inner = _without_comments(node)
+    if node.type == "array":
+        for i, element in enumerate(inner):
+            yield from _value((*key, i), element)
+    elif node.type == "inline_table":
+        for entry in inner:
+            yield from _pair(key, entry)
+
+
+def _without_comments(node: Node) -> list[Node]:
+    return [child for child in node.named_children if child.type != "comment"]

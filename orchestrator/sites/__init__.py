@@ -1,1 +1,1 @@
-"""Sites as people describe them in files."""
+"""Sites: data of a slope or a pile, checked, and turned into components that can be computed."""

@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 
 import rockshed
 from rockshed.analyses.pile.blows import bearing_graph, drive
-from rockshed.analyses.pile.preparation import prepare
 from rockshed.commands.app import app
 from rockshed.core.errors import InputRefused
+from rockshed.sites.pile.preparation import prepare
 
 EXAMPLES = Path(rockshed.__file__).parent / "examples"
 SPT = (EXAMPLES / "spt.toml").read_text(encoding="utf-8")

@@ -16,11 +16,13 @@ from typer.testing import CliRunner
 
 import rockshed
 from rockshed.analyses.rockfall import campaign
-from rockshed.analyses.rockfall.preparation import prepare
+from rockshed.analyses.rockfall.animation_format import animation_format
+from rockshed.analyses.rockfall.campaign import campaign_of
+from rockshed.analyses.rockfall.passages import line_passages
 from rockshed.analyses.rockfall.replay import replay
-from rockshed.analyses.rockfall.results import passings
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE
+from rockshed.sites.rockfall.preparation import prepare
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 
@@ -33,34 +35,39 @@ def rockshed(tmp_path, monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def made():
+def slope():
     return prepare(EXAMPLE, trials=5000)
 
 
 @pytest.fixture(scope="module")
-def records(made):
-    return campaign.run(made.campaign, 1)
+def trials(slope):
+    return campaign_of(slope)
+
+
+@pytest.fixture(scope="module")
+def records(trials):
+    return campaign.run(trials, 1)
 
 
 # --- the campaign ---
 
 
-def test_the_first_200_of_5000_trials_are_a_run_of_200_for_any_number_of_threads(made, records):
-    few = prepare(EXAMPLE, trials=200).campaign
+def test_the_first_200_of_5000_trials_are_a_run_of_200_for_any_number_of_threads(trials, records):
+    few = campaign_of(prepare(EXAMPLE, trials=200))
     for workers, given, first in (
         (1, few, 200),
         (2, few, 200),
-        (2, made.campaign, 5000),
-        (3, made.campaign, 5000),
+        (2, trials, 5000),
+        (3, trials, 5000),
     ):
         found = campaign.run(given, workers)
         for name in ("outcomes", "passages", "peaks"):
             np.testing.assert_array_equal(getattr(found, name), getattr(records, name)[:first])
 
 
-def test_a_replay_ends_where_the_campaign_has_it_and_passes_its_lines_there(made, records):
+def test_a_replay_ends_where_the_campaign_has_it_and_passes_its_lines_there(slope, trials, records):
     for number in (3, 41):
-        shown = replay(made, number, 0.01)
+        shown = replay(slope, trials, number, 0.01)
         assert (shown.x[-1], shown.y[-1]) == pytest.approx(
             tuple(records.outcomes[number, [OUTCOME.x, OUTCOME.y]]), abs=1e-9
         )
@@ -72,8 +79,8 @@ def test_a_replay_ends_where_the_campaign_has_it_and_passes_its_lines_there(made
         )
 
 
-def test_a_barrier_stops_breaks_or_is_overtopped(made, records):
-    fence = passings(made.campaign, records)[3]
+def test_a_barrier_stops_breaks_or_is_overtopped(trials, records):
+    fence = line_passages(trials, records)[3]
     assert fence.count == sum(fence.barrier.values()) == 5000
     assert np.sum(fence.values["energy"] <= 300e3) == fence.barrier["stopped"]
 
@@ -82,8 +89,8 @@ def test_a_strong_barrier_that_is_low_is_overtopped_only(tmp_path):
     (tmp_path / "low.toml").write_text(
         EXAMPLE.read_text().replace("height = 3.0", "height = 1.3").replace("300e3", "1e9")
     )
-    low = prepare(tmp_path / "low.toml", trials=1000)
-    fence = passings(low.campaign, campaign.run(low.campaign, 1))[3]
+    low = campaign_of(prepare(tmp_path / "low.toml", trials=1000))
+    fence = line_passages(low, campaign.run(low, 1))[3]
     assert fence.barrier["broken_through"] == 0
     assert fence.barrier["overtopped"] > 200 < fence.barrier["stopped"]
 
@@ -171,7 +178,8 @@ def test_json_is_one_document_and_quiet_says_nothing(rockshed):
         "complete",
         [],
     )
-    assert {"name": "trials", "value": 50, "unit": "1"} in content["figures"]
+    trials = {"id": "trials", "name": "trials", "value": 50, "unit": "1"}
+    assert trials in content["figures"]
     assert Path("results/slope/run.json").is_file()
 
 
@@ -236,11 +244,10 @@ def test_ctrl_c_leaves_nothing(tmp_path):
 def test_without_further_packages_there_are_gif_files(rockshed, monkeypatch):
     for name in ("imageio", "imageio_ffmpeg"):
         monkeypatch.setitem(sys.modules, name, None)
-    from rockshed.analyses.rockfall import animation
-
-    notes = []
-    assert animation.kind_of(None, notes.append) == "gif"
-    assert "rockshed[movie]" in notes[0]
+    assert animation_format(None) == "gif"
+    shown = film(rockshed, None)
+    assert "rockshed[movie]" in shown.stderr
+    assert Path("results/slope/figures/trial-1.gif").is_file()
     assert (
         "rockshed[movie]"
         in rockshed("rockfall", EXAMPLE, "--replay", 1, "--animation", "mp4").stderr
@@ -252,19 +259,20 @@ def film(rockshed, kind):
     Path("short.toml").write_text(
         EXAMPLE.read_text().replace("[profile] ", "[profile]\nend = 2.5 ").split("[[line]]")[0]
     )
+    chosen = ["--animation", kind] if kind else []
     result = rockshed(
-        "rockfall", "short.toml", "--trials", 20, "--no-figures", "--replay", 1, "--animation", kind
+        "rockfall", "short.toml", "--trials", 20, "--no-figures", "--replay", 1, *chosen
     )
     assert result.exit_code == 0, result.stderr
-    return Path(f"results/slope/figures/trial-1.{kind}")
+    return result
 
 
 def test_a_gif_has_a_frame_for_each_instant_in_real_time(rockshed):
-    short = film(rockshed, "gif")
-    made = prepare(Path("short.toml"), trials=20)
-    shown = replay(made, 1, 1.0 / 25.0)
+    film(rockshed, "gif")
+    short = prepare(Path("short.toml"), trials=20)
+    shown = replay(short, campaign_of(short), 1, 1.0 / 25.0)
     assert (shown.end, shown.x[-1]) == ("beyond the right end", pytest.approx(2.5))
-    with Image.open(short) as opened:
+    with Image.open("results/slope/figures/trial-1.gif") as opened:
         assert opened.n_frames in (
             len(shown.time) + 1,
             len(shown.time),
@@ -280,9 +288,10 @@ def test_a_gif_has_a_frame_for_each_instant_in_real_time(rockshed):
 def test_an_mp4_has_all_its_frames(rockshed):
     imageio = pytest.importorskip("imageio")
     pytest.importorskip("imageio_ffmpeg")
-    short = film(rockshed, "mp4")
-    shown = replay(prepare(Path("short.toml"), trials=20), 1, 1.0 / 25.0)
-    with imageio.get_reader(short) as opened:
+    film(rockshed, "mp4")
+    short = prepare(Path("short.toml"), trials=20)
+    shown = replay(short, campaign_of(short), 1, 1.0 / 25.0)
+    with imageio.get_reader("results/slope/figures/trial-1.mp4") as opened:
         assert opened.get_meta_data()["fps"] == 25
         pictures = [np.asarray(picture, float) for picture in opened]
     assert len(pictures) == len(shown.time) + 25

@@ -17,8 +17,9 @@ from typer.testing import CliRunner
 
 import rockshed
 from rockshed.analyses.rockfall import campaign, cluster
-from rockshed.analyses.rockfall.preparation import prepare
+from rockshed.analyses.rockfall.campaign import campaign_of
 from rockshed.commands.app import app
+from rockshed.sites.rockfall.preparation import prepare
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 
@@ -32,7 +33,7 @@ def client():
 
 @pytest.fixture(scope="module")
 def made():
-    return prepare(EXAMPLE, trials=5000).campaign
+    return campaign_of(prepare(EXAMPLE, trials=5000))
 
 
 @pytest.fixture(scope="module")
@@ -92,16 +93,16 @@ def test_any_number_of_workers_gives_the_same_bits(client, made, records, monkey
     )
     assert len(told) == 17
     assert told[-1] == (5000, 5000)
-    few = prepare(EXAMPLE, trials=200).campaign
+    few = campaign_of(prepare(EXAMPLE, trials=200))
     assert_same(
         cluster._run(client, few, lambda count, total: None),
-        campaign.Records(records.passages[:200], records.peaks[:200], records.outcomes[:200]),
+        campaign.TrialRecords(records.passages[:200], records.peaks[:200], records.outcomes[:200]),
     )
 
 
 def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch):
     monkeypatch.setattr(cluster, "_block_size", lambda given, workers: 1000)
-    given = prepare(EXAMPLE, trials=30_000).campaign
+    given = campaign_of(prepare(EXAMPLE, trials=30_000))
     killer = Killer(client)
     assert_same(cluster._run(client, given, killer), campaign.run(given, 1))
     assert not psutil.pid_exists(killer.killed)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from rockshed.analyses.rockfall import campaign
-from rockshed.analyses.rockfall.preparation import prepare as prepare_site
 from rockshed.analyses.rockfall.statistics import percentile
 from rockshed.cases import slope_to_cushion as case
 from rockshed.components.slope_rockfall.trajectory import PASSAGE
@@ -15,14 +14,15 @@ from rockshed.metrics import headlines as h
 from rockshed.metrics.comparison import table, warnings
 from rockshed.pictures import draw_all
 from rockshed.runs.job import Request, prepare
+from rockshed.sites.rockfall.preparation import prepare as prepare_site
 
 
 @pytest.fixture(scope="module")
 def landed():
     """Passages of the search line over the cushion in the site's own campaign."""
-    made = prepare_site(case.SITE)
-    line = list(made.campaign.names).index(case.LINE)
-    return campaign.run(made.campaign, 2).passages[:, line]
+    trials = campaign.campaign_of(prepare_site(case.SITE))
+    line = list(trials.names).index(case.LINE)
+    return campaign.run(trials, 2).passages[:, line]
 
 
 @pytest.fixture(scope="module")

@@ -3,15 +3,17 @@
 import re
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import rockshed
-from rockshed.analyses.rockfall.preparation import prepare
+from rockshed.analyses.rockfall.campaign import campaign_of
 from rockshed.core.errors import InputRefused
 from rockshed.input_files.places import places
 from rockshed.sites.rockfall import profile
 from rockshed.sites.rockfall.materials import QUANTITIES, shipped, source_of
+from rockshed.sites.rockfall.preparation import prepare
 
 HEAD = """\
 [rock]
@@ -35,7 +37,8 @@ def site(tmp_path):
     def prepared(text=PROFILE, head=HEAD, **options):
         file = tmp_path / "site.toml"
         file.write_text(head + text)
-        return prepare(file, **options)
+        slope = prepare(file, **options)
+        return SimpleNamespace(**vars(slope), name=slope.name, campaign=campaign_of(slope))
 
     return prepared
 

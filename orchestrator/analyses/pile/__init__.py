@@ -1,1 +1,1 @@
-"""Wave analysis of a driven pile or rod: ``rockshed pile``."""
+"""Wave analysis of a driven pile or rod: blows, bearing graph, files, pictures."""

@@ -1,10 +1,12 @@
 """Blows on a rod: hammer and rod step by step, coupled by waves, without FMUs.
 
-The exchange step is the travel time of a segment, so that everything that travels is exact. The hammer makes it as one internal
-step: its force is then constant in it, and the coupling loses no energy.
+The exchange step is the travel time of a segment, so that everything that travels is exact. The
+hammer makes it as one internal step: its force is then constant in it, and the coupling loses no
+energy. The loop of the co-simulation core does not serve here: between two blows the rod goes on
+alone until it is at rest, and each blow has a new ram.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,16 +14,15 @@ from numpy.typing import NDArray
 
 from rockshed.components.common.component import Instance
 
-from .preparation import Prepared
+from ...sites.pile.preparation import PreparedPile
+from ..frame import Count
 
 Floats = NDArray[np.float64]
-Done = Callable[[int, int], None]
-"""Told the number of blows done, and of all."""
 
 FOOT = 0.3
 """Penetration (m) that blows are counted for."""
 _LONGEST_REST, _AT_REST = 100, 1e-12
-"""Travel times that a rod may take to come to rest, and the part of the impact energy that moves it then."""
+"""Travel times that a rod may take to come to rest, and the part of the impact energy left then."""
 TRACES = {
     "head.contact_force": "N",
     "head.zv": "N",
@@ -33,15 +34,34 @@ TRACES = {
     "toe.set": "m",
 }
 """Outputs of the rod that are kept over time, and their units."""
+_HEAD_ENERGY = "energy.head"
+"""Output of the rod: work on its head (J)."""
 
 
 @dataclass(frozen=True)
 class Blow:
-    """What a blow did. SI; compression positive, tension too.
+    """Results of one blow in SI units; compression is positive, and so is tension.
 
-    set: penetration that stays (m). compression, tension: largest stresses (Pa) in the segments in this blow. residual: force (N)
-    in the segments when the rod has come to rest. transferred: largest work on the head (J). unbalanced: error of the energy
-    balance (J). moving: kinetic energy of the rod at the end of the blow's time (J).
+    Attributes
+    ----------
+    resistance : float
+        Ultimate resistance of the soil (N).
+    set, toe_displacement : float
+        Penetration that stays, and largest displacement of the toe (m).
+    head_force : float
+        Largest force on the head (N).
+    compression, tension : array of float, shape (segments,)
+        Largest stresses in this blow (Pa).
+    residual : array of float, shape (segments,)
+        Force when the rod has come to rest (N).
+    transferred, impact_energy : float
+        Largest work on the head, and energy with which the ram strikes (J).
+    unbalanced : float
+        Error of the energy balance (J).
+    moving : float
+        Kinetic energy of the rod at the end of the blow's time (J).
+    traces : mapping of str to array of float, shape (steps,)
+        ``time`` (s) from the stroke on, and the outputs in :data:`TRACES`.
     """
 
     resistance: float
@@ -55,7 +75,7 @@ class Blow:
     impact_energy: float
     unbalanced: float
     moving: float
-    traces: dict[str, Floats] = field(default_factory=dict)
+    traces: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
     def count(self) -> float | None:
@@ -63,66 +83,135 @@ class Blow:
         return FOOT / self.set if self.set > 0.0 else None
 
 
-def drive(made: Prepared, done: Done = lambda i, n: None) -> list[Blow]:
-    """The blows of a site, one after the other: the rod keeps what is in it, and the soil too."""
-    rod, found = made.rod(), []
-    for number in range(made.site.blows):
-        found.append(strike(made, rod, number * made.steps, made.resistance))
-        done(number + 1, made.site.blows)
-    return found
+def drive(pile: PreparedPile, count: Count = lambda done, total: None) -> list[Blow]:
+    """Compute the blows of a site, one after the other.
+
+    Parameters
+    ----------
+    pile : PreparedPile
+        With hammer and rod.
+    count : Count
+        Called with the numbers of blows done and of all.
+
+    Returns
+    -------
+    list of Blow
+        Rod and soil keep from blow to blow what is in them.
+    """
+    rod = pile.rod()
+    blows = []
+    for number in range(pile.site.blows):
+        blows.append(strike(pile, rod, number * pile.steps, pile.resistance))
+        count(number + 1, pile.site.blows)
+    return blows
 
 
-def bearing_graph(made: Prepared, done: Done = lambda i, n: None) -> list[Blow]:
-    """A first blow for each ultimate resistance of the bearing graph, in rising order, without traces."""
-    resistances = sorted(made.site.bearing.resistances) if made.site.bearing else []
-    found = []
-    for number, resistance in enumerate(resistances):
-        found.append(replace(strike(made, made.rod(resistance), 0, resistance), traces={}))
-        done(number + 1, len(resistances))
-    return found
+def bearing_graph(pile: PreparedPile, count: Count = lambda done, total: None) -> list[Blow]:
+    """Compute a first blow for each ultimate resistance of the bearing graph.
+
+    Parameters
+    ----------
+    pile : PreparedPile
+        With hammer and rod.
+    count : Count
+        Called with the numbers of blows done and of all.
+
+    Returns
+    -------
+    list of Blow
+        By rising resistance, without traces; empty if the site has no bearing graph.
+    """
+    resistances = sorted(pile.site.bearing.resistances) if pile.site.bearing else []
+    blows = []
+    for number, resistance in enumerate(resistances, 1):
+        blow = strike(pile, pile.rod(resistance), 0, resistance)
+        blows.append(replace(blow, traces={}))
+        count(number, len(resistances))
+    return blows
 
 
-def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow:
-    """One blow, from the step number ``begun`` on. The rod is left at rest, as the next blow finds it seconds later."""
-    hammer, steps, step = made.hammer(), made.steps, made.step
-    rod["stress.compression"][:], rod["stress.tension"][:] = 0.0, 0.0
-    before = {
-        name: rod[name]
-        for name in (
-            "toe.set",
-            "toe.position",
-            "energy.head",
-            "energy.residual",
-            "energy.work.head",
-        )
-    }
-    wave, impedance, force = (
-        rod.references["head.wave"],
-        rod.references["head.impedance"],
-        rod.references["head.force"],
-    )
-    kept = np.array([rod.references[name] for name in TRACES])
-    hammer.w[hammer.references["head.impedance"]] = rod.w[impedance]
+def strike(pile: PreparedPile, rod: Instance, begun: int, resistance: float) -> Blow:
+    """Compute one blow.
+
+    Parameters
+    ----------
+    pile : PreparedPile
+        With the hammer and the times.
+    rod : Instance
+        Initialised; it is left at rest, as the next blow meets it seconds later.
+    begun : int
+        Number of the step with which the blow begins.
+    resistance : float
+        Ultimate resistance of the soil (N).
+
+    Returns
+    -------
+    Blow
+        With traces.
+    """
+    hammer = pile.hammer()
+    hammer["head.impedance"] = rod["head.impedance"]
     hammer.initialise()
-    to_wave, of_force, work = (
-        hammer.references["head.wave"],
-        hammer.references["force"],
-        rod.references["energy.head"],
+    rod["stress.compression"][:] = 0.0
+    rod["stress.tension"][:] = 0.0
+    before = {name: rod[name] for name in _COUNTED}
+    traces = _exchange(hammer, rod, begun, pile.steps, pile.step)
+    work = traces.pop(_HEAD_ENERGY)
+    unbalanced = _unbalanced(hammer, rod, before)
+    moving = rod["energy.kinetic"]
+    come_to_rest(rod, begun + pile.steps, pile.step, _AT_REST * hammer["energy.start"])
+    return Blow(
+        resistance=resistance,
+        set=rod["toe.set"] - before["toe.set"],
+        toe_displacement=float(traces["toe.position"].max()) - before["toe.position"],
+        head_force=float(traces["head.contact_force"].max()),
+        compression=rod["stress.compression"].copy(),
+        tension=rod["stress.tension"].copy(),
+        residual=rod["force"].copy(),
+        transferred=max(0.0, float((work - before[_HEAD_ENERGY]).max())),
+        impact_energy=hammer["energy.start"],
+        unbalanced=unbalanced,
+        moving=moving,
+        traces=traces,
     )
-    rows, most = np.empty((steps, len(TRACES))), 0.0
+
+
+_COUNTED = ("toe.set", "toe.position", _HEAD_ENERGY, "energy.residual", "energy.work.head")
+"""Outputs of the rod that a blow adds to."""
+
+
+def _exchange(
+    hammer: Instance, rod: Instance, begun: int, steps: int, step: float
+) -> dict[str, Floats]:
+    """Step hammer and rod in turn, and return the outputs of the rod over time.
+
+    The hammer takes the wave that arrives at the head, the rod the force of the hammer.
+    """
+    names = (*TRACES, _HEAD_ENERGY)
+    kept = np.array([rod.references[name] for name in names])
+    rows = np.empty((steps, len(names)))
+    wave = rod.references["head.wave"]
+    force = rod.references["head.force"]
+    to_hammer = hammer.references["head.wave"]
+    from_hammer = hammer.references["force"]
     for number in range(steps):
         time = (begun + number) * step
-        hammer.w[to_wave] = rod.w[wave]
+        hammer.w[to_hammer] = rod.w[wave]
         hammer.step(time, step)
-        rod.w[force] = hammer.w[of_force]
+        rod.w[force] = hammer.w[from_hammer]
         rod.step(time, step)
         rows[number] = rod.w[kept]
-        most = max(most, rod.w[work] - before["energy.head"])
-    traces: dict[str, Floats] = {
-        **dict(zip(TRACES, rows.T)),
-        "time": step * np.arange(begun + 1.0, begun + steps + 1.0),
-    }
-    unbalanced = (
+    traces: dict[str, Floats] = dict(zip(names, rows.T, strict=True))
+    traces["time"] = step * np.arange(begun + 1.0, begun + steps + 1.0)
+    return traces
+
+
+def _unbalanced(hammer: Instance, rod: Instance, before: Mapping[str, float]) -> float:
+    """Return the error of the energy balance of a blow (J).
+
+    The works on both sides of the head add to zero if the coupling is exact.
+    """
+    return (
         rod["energy.residual"]
         - before["energy.residual"]
         + hammer["energy.residual"]
@@ -130,57 +219,33 @@ def strike(made: Prepared, rod: Instance, begun: int, resistance: float) -> Blow
         - before["energy.work.head"]
         + hammer["energy.work.head"]
     )
-    moving = rod["energy.kinetic"]
-    come_to_rest(rod, begun + steps, step, _AT_REST * hammer["energy.start"])
-    return Blow(
-        resistance,
-        rod["toe.set"] - before["toe.set"],
-        float(traces["toe.position"].max()) - before["toe.position"],
-        float(traces["head.contact_force"].max()),
-        rod["stress.compression"].copy(),
-        rod["stress.tension"].copy(),
-        rod["force"].copy(),
-        most,
-        hammer["energy.start"],
-        unbalanced,
-        moving,
-        traces,
-    )
 
 
 def come_to_rest(rod: Instance, begun: int, step: float, energy: float) -> None:
-    """Let the rod come to rest without the ram: until so much kinetic energy (J) is left, at most.
+    """Let the rod come to rest without the ram.
 
-    Every wave that arrives at the head leaves the rod there (F = -c/2, so that none is sent down again), in the place of what
-    damps it in the seconds between two blows. At rest the head bears no force.
+    Every wave that arrives at the head leaves the rod there (F = -c/2, so that none is sent down
+    again), in the place of what damps it in the seconds between two blows. At rest the head bears
+    no force.
+
+    Parameters
+    ----------
+    rod : Instance
+        Initialised.
+    begun : int
+        Number of the step with which the rest begins.
+    step : float
+        Of the exchange (s).
+    energy : float
+        Kinetic energy (J) of a rod at rest, at most.
     """
     segments = rod["force"].size
-    wave, force, kinetic = (
-        rod.references[name] for name in ("head.wave", "head.force", "energy.kinetic")
-    )
+    wave = rod.references["head.wave"]
+    force = rod.references["head.force"]
+    kinetic = rod.references["energy.kinetic"]
     for number in range(_LONGEST_REST * segments):
         rod.w[force] = -0.5 * rod.w[wave]
         rod.step((begun + number) * step, step)
         if number % segments == 0 and rod.w[kinetic] <= energy:
             break
     rod.w[force] = 0.0
-
-
-def blow_figures(made: Prepared, blow: Blow) -> Sequence[tuple[str, float | None, str]]:
-    """Name, value and unit of what is told of a blow."""
-    middle = 0.5 * (made.depths[1:] + made.depths[:-1])
-    return (
-        ("set", blow.set, "m"),
-        ("blows_per_0.3_m", blow.count, "1"),
-        ("toe_displacement", blow.toe_displacement, "m"),
-        ("head_force", blow.head_force, "N"),
-        ("compression", float(blow.compression.max()), "Pa"),
-        ("compression_depth", float(middle[blow.compression.argmax()]), "m"),
-        ("tension", float(blow.tension.max()), "Pa"),
-        ("tension_depth", float(middle[blow.tension.argmax()]), "m"),
-        ("transferred_energy", blow.transferred, "J"),
-        ("energy_ratio", blow.transferred / made.rated_energy, "1"),
-        ("residual_force", float(np.abs(blow.residual).max()), "N"),
-        ("energy_unbalanced", blow.unbalanced / blow.impact_energy, "1"),
-        ("energy_moving", blow.moving / blow.impact_energy, "1"),
-    )

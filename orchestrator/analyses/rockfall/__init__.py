@@ -1,1 +1,1 @@
-"""Monte Carlo of rockfall: from the description of a site to trials, statistics and files."""
+"""Monte Carlo of rockfall on a slope: trials, statistics at lines and barriers, files, pictures."""

@@ -1,7 +1,6 @@
-"""Animations as MP4 or GIF: a figure of which a few parts move. The file is written as a whole or not at all."""
+"""Animations as MP4 or GIF: a figure of which a few parts move."""
 
 from collections.abc import Callable, Iterator, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -11,54 +10,21 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...core.errors import InputRefused, Problem
 from ...files import whole_file
+from ..frame import Count
 
 FRAMES_PER_SECOND = 25
-KINDS = ("mp4", "gif")
+"""Frames in a second of an animation."""
 _GIF_SIZE, _GIF_COLOURS = 0.6, 256
-"""GIF files are large: a part of the width and height. All frames have the colours of the first."""
+"""Part of the width and height, and number of colours: GIF files are large.
+
+All frames have the colours of the first.
+"""
 
 Picture = NDArray[np.uint8]
-"""A frame: (height, width, 3)."""
-
+"""A frame, shape (height, width, 3)."""
 Draw = Callable[[int], Any]
-"""Brings the figure to frame number i."""
-Done = Callable[[int, int], None]
-"""Told the number of frames done, and of all."""
-
-
-def can_mp4() -> bool:
-    """Whether the packages of the extra ``movie`` are there."""
-    return all(find_spec(name) is not None for name in ("imageio", "imageio_ffmpeg"))
-
-
-def kind_of(wanted: str | None, note: Callable[[str], None]) -> str:
-    """``mp4`` or ``gif``: the one that is wanted, else what this installation can write.
-
-    Raises:
-        InputRefused: another kind, or MP4 without the packages for it.
-    """
-    if wanted is None:
-        if can_mp4():
-            return "mp4"
-        note('animations become GIF files; pip install "rockshed[movie]" for MP4')
-        return "gif"
-    if wanted not in KINDS:
-        raise InputRefused(
-            [Problem("--animation", f"{wanted!r} is unknown", f"choose one of {', '.join(KINDS)}")]
-        )
-    if wanted == "mp4" and not can_mp4():
-        raise InputRefused(
-            [
-                Problem(
-                    "--animation mp4",
-                    "needs the packages imageio and imageio-ffmpeg",
-                    'install them: pip install "rockshed[movie]", or take --animation gif',
-                )
-            ]
-        )
-    return wanted
+"""Brings the figure to a frame, by its number."""
 
 
 def write_animation(
@@ -67,19 +33,32 @@ def write_animation(
     frames: int,
     draw: Draw,
     moving: Sequence[Artist],
-    done: Done = lambda i, n: None,
+    count: Count = lambda done, total: None,
 ) -> None:
-    """Frames 0 ... frames - 1 of a figure as an MP4 or GIF file, as its name ends.
+    """Write a figure as an animation; the file is whole or does not appear.
 
-    moving: what ``draw`` changes, in the order in which it is drawn; everything else stands still and is drawn once.
+    Parameters
+    ----------
+    file : Path
+        Ends in .mp4 or .gif.
+    figure : matplotlib.figure.Figure
+        With everything that stands still, which is drawn once.
+    frames : int
+        Number of frames.
+    draw : Draw
+        Called with 0 to frames - 1.
+    moving : sequence of matplotlib.artist.Artist
+        Parts that ``draw`` changes, in the order in which they are drawn.
+    count : Count
+        Called with the numbers of frames done and of all.
     """
     write = _write_mp4 if file.suffix == ".mp4" else _write_gif
     with whole_file(file) as temporary:
-        write(temporary, _pictures(figure, frames, draw, moving, done))
+        write(temporary, _pictures(figure, frames, draw, moving, count))
 
 
 def _pictures(
-    figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist], done: Done
+    figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist], count: Count
 ) -> Iterator[Picture]:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
@@ -94,7 +73,7 @@ def _pictures(
         for artist in moving:
             figure.draw_artist(artist)
         yield np.array(canvas.buffer_rgba())[:, :, :3]
-        done(i + 1, frames)
+        count(i + 1, frames)
 
 
 def _write_mp4(file: Path, pictures: Iterator[Picture]) -> None:

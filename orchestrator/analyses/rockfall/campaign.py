@@ -1,6 +1,7 @@
-"""A campaign: what all trials have in common, and the trials, in blocks on several threads.
+"""A campaign: the values that all trials share, and the trials, in blocks on several threads.
 
-A block is a function of the campaign and the numbers of its trials alone: whoever computes it, the bits are the same.
+A block is a function of the campaign and the numbers of its trials alone: whoever computes it, the
+bits are the same.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,29 +13,50 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockshed.components.common.component import Instance
 from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, trials
 
+from ...core.errors import InputRefused, Problem
+from ...sites.rockfall.checks import reach
+from ...sites.rockfall.preparation import PreparedSlope
+from ...sites.rockfall.profile import Node, surface
+from ...sites.rockfall.site import Barrier, Line
+from ..frame import Count
+
 Floats = NDArray[np.float64]
-Done = Callable[[int, int], None]
-"""Told the number of trials done, and of all."""
+
+BLOCK = 500
+"""Trials in a block: some milliseconds, after which Ctrl-C is heard."""
+MOST_MEMORY = 4 << 30
+"""Largest size (bytes) of the records of all trials."""
+SKY = 1000.0
+"""Height (m) above the surface of a search line that has only an x, and of a barrier's line."""
 
 
 class CampaignFailed(Exception):  # noqa: N818 (as RunFailed)
     """A campaign began and could not go on."""
 
 
-BLOCK = 500
-"""Trials in a block: some milliseconds, after which Ctrl-C is heard."""
-
-
 @dataclass(frozen=True)
 class Campaign:
-    """Buffers of an initialised SlopeRockfall, and what is kept of its trials.
+    """Buffers of an initialised SlopeRockfall, and the places at which its trials are recorded.
 
-    left, right: x (m) at which a trial ends. lines: (n, 4), search lines and after them barriers (m). barriers: (n, 2), see
-    :class:`rockshed.components.slope_rockfall.trajectory.Barrier`. stations: (m,), x (m), evenly spaced. names: of the lines.
+    Attributes
+    ----------
+    seed, trials : int
+        Of the random numbers, and number of the trials.
+    w, x, k : array
+        Buffers of the component.
+    left, right : float
+        x (m) at which a trial ends.
+    lines : array of float, shape (n, 4)
+        Both points (m) of the search lines and after them of the barriers.
+    barriers : array of float, shape (n, 2)
+        Reach (m) and capacity (J); a negative reach stops no rock.
+    stations : array of float, shape (m,)
+        x (m) of the envelopes, evenly spaced.
+    names : sequence of str
+        Of the lines.
     """
 
     seed: int
@@ -59,38 +81,87 @@ class Campaign:
         )
 
 
-def campaign(
-    instance: Instance,
-    seed: int,
-    count: int,
-    left: float,
-    right: float,
-    lines: Floats,
-    barriers: Floats,
-    stations: Floats,
-    names: Sequence[str],
-) -> Campaign:
-    """A campaign with the parameters of an initialised instance."""
-    return Campaign(
-        seed,
-        count,
-        instance.w.copy(),
-        instance.x.copy(),
-        instance.k.copy(),
-        left,
-        right,
-        lines,
-        barriers,
-        stations,
-        tuple(names),
+def campaign_of(slope: PreparedSlope) -> Campaign:
+    """Return the campaign of a slope.
+
+    Parameters
+    ----------
+    slope : PreparedSlope
+        Site with its component.
+
+    Returns
+    -------
+    Campaign
+        Ready to be computed.
+
+    Raises
+    ------
+    InputRefused
+        The records of all trials need more memory than is allowed.
+    """
+    site = slope.site
+    nodes = slope.nodes
+    entries: list[Line | Barrier] = [*site.line, *site.barrier]
+    holding = [
+        (reach(entry, site), entry.capacity) if isinstance(entry, Barrier) else (-1.0, 0.0)
+        for entry in entries
+    ]
+    right = nodes[-1].x if site.profile.end is None else site.profile.end
+    campaign = Campaign(
+        seed=site.seed,
+        trials=site.trials,
+        w=slope.instance.w.copy(),
+        x=slope.instance.x.copy(),
+        k=slope.instance.k.copy(),
+        left=nodes[0].x,
+        right=right,
+        lines=np.array([_ends(entry, nodes) for entry in entries], np.float64).reshape(-1, 4),
+        barriers=np.array(holding, np.float64).reshape(-1, 2),
+        stations=np.linspace(nodes[0].x, right, site.stations),
+        names=tuple(entry.name for entry in entries),
     )
+    _check_memory(campaign)
+    return campaign
+
+
+def _ends(entry: Line | Barrier, nodes: Sequence[Node]) -> tuple[float, float, float, float]:
+    """Return the two points (m) of a search line; those of a barrier begin at its foot."""
+    if isinstance(entry, Line) and entry.points is not None:
+        (x1, y1), (x2, y2) = entry.points
+        return x1, y1, x2, y2
+    x = float(entry.x or 0.0)
+    foot = surface(nodes, x)
+    return x, foot, x, foot + SKY
+
+
+def _check_memory(campaign: Campaign) -> None:
+    needed = campaign.trials * campaign.bytes_per_trial
+    if needed > MOST_MEMORY:
+        most = MOST_MEMORY // campaign.bytes_per_trial
+        text = (
+            f"the records of {campaign.trials} trials need {needed / 2**30:.1f} GiB; allowed are "
+            f"{MOST_MEMORY / 2**30:.0f}"
+        )
+        remedy = f"at most {most} trials, or fewer stations or lines"
+        raise InputRefused([Problem("trials", text, remedy)])
+
+
+# --- trials ---
 
 
 @dataclass(frozen=True)
-class Records:
-    """What is kept of n trials: passages (n, lines, len(PASSAGE)), peaks (n, stations, len(PEAK)), outcomes (n, len(OUTCOME)).
+class TrialRecords:
+    """Records of n trials.
 
-    Peaks have half the digits: there are many of them, and only their percentiles are wanted.
+    Attributes
+    ----------
+    passages : array of float, shape (n, lines, len(PASSAGE))
+        First passage of each line.
+    peaks : array of float32, shape (n, stations, len(PEAK))
+        Largest values at each station. They have half the digits: there are many of them, and only
+        their percentiles are wanted.
+    outcomes : array of float, shape (n, len(OUTCOME))
+        End of each trial.
     """
 
     passages: Floats
@@ -98,85 +169,152 @@ class Records:
     outcomes: Floats
 
 
-def empty_records(given: Campaign, count: int) -> Records:
-    """Records of so many trials, not yet filled."""
-    return Records(
-        np.empty((count, len(given.lines), len(PASSAGE))),
-        np.empty((count, len(given.stations), len(PEAK)), np.float32),
+def empty_records(campaign: Campaign, count: int) -> TrialRecords:
+    """Return records of so many trials, not yet filled.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With the lines and stations.
+    count : int
+        Number of trials.
+
+    Returns
+    -------
+    TrialRecords
+        Of undefined content.
+    """
+    return TrialRecords(
+        np.empty((count, len(campaign.lines), len(PASSAGE))),
+        np.empty((count, len(campaign.stations), len(PEAK)), np.float32),
         np.empty((count, len(OUTCOME))),
     )
 
 
-def compute(given: Campaign, first: int, count: int) -> Records:
-    """Trials ``first`` ... ``first + count - 1``."""
-    made = empty_records(given, count)
-    peaks = np.empty(made.peaks.shape)
-    distance = float(given.stations[1] - given.stations[0])
+def compute(campaign: Campaign, first: int, count: int) -> TrialRecords:
+    """Compute consecutive trials on this thread.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        To which they belong.
+    first : int
+        Number of the first trial.
+    count : int
+        Number of trials.
+
+    Returns
+    -------
+    TrialRecords
+        The same bits, whatever trials are computed together.
+    """
+    records = empty_records(campaign, count)
+    peaks = np.empty(records.peaks.shape)
     trials(
-        given.seed,
+        campaign.seed,
         first,
-        given.left,
-        given.right,
-        given.lines,
-        given.barriers,
-        float(given.stations[0]),
-        distance,
-        given.w,
-        given.x,
-        given.k,
+        campaign.left,
+        campaign.right,
+        campaign.lines,
+        campaign.barriers,
+        float(campaign.stations[0]),
+        float(campaign.stations[1] - campaign.stations[0]),
+        campaign.w,
+        campaign.x,
+        campaign.k,
         np.zeros(len(BODY)),
-        made.passages,
+        records.passages,
         peaks,
-        made.outcomes,
+        records.outcomes,
     )
-    made.peaks[:] = peaks
-    return made
+    records.peaks[:] = peaks
+    return records
 
 
-def fill(made: Records, first: int, block: Records) -> int:
-    """Put the records of a block of trials, the first of which is number ``first``, where they belong; returns their number."""
+def fill(records: TrialRecords, first: int, block: TrialRecords) -> int:
+    """Put the records of a block of trials where they belong.
+
+    Parameters
+    ----------
+    records : TrialRecords
+        Of the whole campaign.
+    first : int
+        Number of the first trial of the block.
+    block : TrialRecords
+        Of consecutive trials.
+
+    Returns
+    -------
+    int
+        Number of trials in the block.
+    """
     count = len(block.outcomes)
     rows = slice(first, first + count)
-    made.passages[rows], made.peaks[rows], made.outcomes[rows] = (
-        block.passages,
-        block.peaks,
-        block.outcomes,
-    )
+    records.passages[rows] = block.passages
+    records.peaks[rows] = block.peaks
+    records.outcomes[rows] = block.outcomes
     return count
 
 
-@dataclass(frozen=True)
-class Crew:
-    """Who computes the trials. run: all of a campaign; facts: what ``run.json`` says of it."""
+# --- executors ---
 
-    run: Callable[[Campaign, Done], Records]
+
+@dataclass(frozen=True)
+class Executor:
+    """Threads or processes that compute trials.
+
+    Attributes
+    ----------
+    run : callable
+        Computes all trials of a campaign, and counts them.
+    facts : mapping of str to Any
+        Entries of ``run.json`` about it.
+    """
+
+    run: Callable[[Campaign, Count], TrialRecords]
     facts: Mapping[str, Any]
 
 
 @contextmanager
-def threads(workers: int) -> Iterator[Crew]:
-    """So many threads of this process."""
-    yield Crew(lambda given, done: run(given, workers, done), {"workers": workers})
+def threads(workers: int) -> Iterator[Executor]:
+    """Open an executor of so many threads of this process."""
+    yield Executor(lambda campaign, count: run(campaign, workers, count), {"workers": workers})
 
 
-def run(given: Campaign, workers: int, done: Done = lambda count, total: None) -> Records:
-    """All trials of a campaign, on so many threads."""
-    made = empty_records(given, given.trials)
+def run(campaign: Campaign, workers: int, count: Count = lambda done, total: None) -> TrialRecords:
+    """Compute all trials of a campaign on threads.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        To be computed.
+    workers : int
+        Number of threads. Kernels release Python's lock.
+    count : Count
+        Called with the numbers of trials done and of all.
+
+    Returns
+    -------
+    TrialRecords
+        In the order of the trials.
+    """
+    records = empty_records(campaign, campaign.trials)
     with ThreadPoolExecutor(workers) as pool:
         waiting = [
-            pool.submit(_compute_into, given, start, min(BLOCK, given.trials - start), made)
-            for start in range(0, given.trials, BLOCK)
+            pool.submit(_compute_into, campaign, first, records)
+            for first in range(0, campaign.trials, BLOCK)
         ]
         try:
             finished = 0
             for block in as_completed(waiting):
                 finished += block.result()
-                done(finished, given.trials)
+                count(finished, campaign.trials)
         except BaseException:
             pool.shutdown(wait=True, cancel_futures=True)
             raise
-    return made
+    return records
 
 
-def _compute_into(given: Campaign, first: int, count: int, made: Records) -> int:
-    return fill(made, first, compute(given, first, count))
+def _compute_into(campaign: Campaign, first: int, records: TrialRecords) -> int:
+    number = min(BLOCK, campaign.trials - first)
+    return fill(records, first, compute(campaign, first, number))

@@ -1,5 +1,6 @@
 """One trial again, by itself: the component stepped through it, instant by instant."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,11 +9,12 @@ from numpy.typing import NDArray
 from rockshed.components.slope_rockfall.trajectory import OUTCOME
 
 from ...core.errors import InputRefused, Problem
-from .campaign import compute
-from .preparation import Prepared
-from .results import ENDS
+from ...sites.rockfall.preparation import PreparedSlope
+from .campaign import Campaign, compute
+from .passages import ENDS
 
 MODES = ("in flight", "rolling", "sliding", "spinning", "at rest", "handed over")
+"""Modes of motion in words, in the order of the component's output ``mode``."""
 _OUTPUTS = {
     "x": "position.x",
     "y": "position.y",
@@ -27,7 +29,20 @@ _OUTPUTS = {
 
 @dataclass(frozen=True)
 class Replay:
-    """A trial at evenly spaced times, and at its end: arrays (n,) in SI units. end: how it ended, in words."""
+    """A trial at evenly spaced times, and at its end.
+
+    Attributes
+    ----------
+    number : int
+        Of the trial.
+    end : str
+        End of the trial in words.
+    time : array of float, shape (n,)
+        Instants (s).
+    x, y, angle, vx, vy, mode, height, energy : array of float, shape (n,)
+        Place (m), angle (rad) and velocity (m/s) of the centre, number of the mode of motion,
+        height (m) above the slope, kinetic energy (J).
+    """
 
     number: int
     end: str
@@ -43,33 +58,57 @@ class Replay:
 
     @property
     def speed(self) -> NDArray[np.float64]:
-        """Speed of the centre (m/s)."""
+        """Speed of the centre (m/s), shape (n,)."""
         return np.hypot(self.vx, self.vy)
 
 
-def check(made: Prepared, number: int) -> None:
-    """Refuse a trial that the campaign has not.
+def check(campaign: Campaign, numbers: Iterable[int]) -> None:
+    """Refuse trials that the campaign does not have.
 
-    Raises:
-        InputRefused: there is no trial of this number.
+    Parameters
+    ----------
+    campaign : Campaign
+        With its number of trials.
+    numbers : iterable of int
+        Of the trials.
+
+    Raises
+    ------
+    InputRefused
+        There are no such trials.
     """
-    if not 0 <= number < made.campaign.trials:
-        raise InputRefused(
-            [
-                Problem(
-                    f"--replay {number}",
-                    "the campaign has no such trial",
-                    f"choose one from 0 to {made.campaign.trials - 1}",
-                )
-            ]
-        )
+    remedy = f"choose one from 0 to {campaign.trials - 1}"
+    problems = [
+        Problem(f"replay {number}", "the campaign has no such trial", remedy)
+        for number in numbers
+        if not 0 <= number < campaign.trials
+    ]
+    if problems:
+        raise InputRefused(problems)
 
 
-def replay(made: Prepared, number: int, interval: float) -> Replay:
-    """Trial ``number`` every ``interval`` seconds until it ends. The bits are those of the campaign."""
-    outcome = compute(made.campaign, number, 1).outcomes[0]
-    rock = made.instance.component.instance(**made.instance.sizes)
-    rock.w[:] = made.campaign.w
+def replay(slope: PreparedSlope, campaign: Campaign, number: int, interval: float) -> Replay:
+    """Compute a trial step by step.
+
+    Parameters
+    ----------
+    slope : PreparedSlope
+        With the component.
+    campaign : Campaign
+        To which the trial belongs.
+    number : int
+        Of the trial.
+    interval : float
+        Time (s) between two instants.
+
+    Returns
+    -------
+    Replay
+        Until the trial ends, with the bits of the campaign.
+    """
+    outcome = compute(campaign, number, 1).outcomes[0]
+    rock = slope.instance.component.instance(**slope.instance.sizes)
+    rock.w[:] = campaign.w
     rock["trial"] = number
     rock.initialise()
     end = float(outcome[OUTCOME.time])
@@ -80,6 +119,5 @@ def replay(made: Prepared, number: int, interval: float) -> Replay:
     for i in range(1, len(times)):
         rock.step(times[i - 1], times[i] - times[i - 1])
         rows[i] = rock.w[places]
-    return Replay(
-        number, ENDS[int(outcome[OUTCOME.end])], times, **dict(zip(_OUTPUTS, rows.T, strict=True))
-    )
+    curves = dict(zip(_OUTPUTS, rows.T, strict=True))
+    return Replay(number, ENDS[int(outcome[OUTCOME.end])], times, **curves)

@@ -1,4 +1,7 @@
-"""Percentiles of samples with the confidence that their number gives: order statistics, without any assumed distribution."""
+"""Percentiles of samples with the confidence that their number gives.
+
+Order statistics, without any assumed distribution.
+"""
 
 import math
 from dataclasses import dataclass
@@ -7,13 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 CONFIDENCE = 0.95
+"""Confidence of all intervals."""
 SHARES = (0.50, 0.90, 0.95, 0.99)
-"""Percentiles that are reported."""
+"""Parts of the population whose percentiles are reported."""
 
 
 @dataclass(frozen=True)
 class Percentile:
-    """Value below which a share of the population lies, and an interval that covers it; None: too small a sample for a bound."""
+    """Value below which a share of the population lies, and an interval that covers it.
+
+    Attributes
+    ----------
+    share : float
+        Part of the population.
+    value : float
+        Of the sample.
+    low, high : float or None
+        Bounds of the interval; None where the sample is too small for a bound.
+    """
 
     share: float
     value: float
@@ -21,35 +35,62 @@ class Percentile:
     high: float | None
 
 
-def ranks(count: int, share: float, confidence: float = CONFIDENCE) -> tuple[int, int]:
-    """Ranks l and u, from 1, between whose order statistics the percentile lies with at least this confidence.
-
-    The number of values below the percentile is binomial: P(X_l <= q) >= 1 - a/2 and P(X_u >= q) >= 1 - a/2. Rank 0 and rank
-    count + 1 stand for no bound. Source: Conover 1999, Practical Nonparametric Statistics, sec. 3.2.
-    """
-    from scipy.stats import binom
-
-    tail = 0.5 * (1.0 - confidence)
-    return int(binom.ppf(tail, count, share)), int(binom.isf(tail, count, share)) + 1
-
-
 def percentile(
     ordered: NDArray[np.floating], share: float, confidence: float = CONFIDENCE
 ) -> Percentile:
-    """Of values in ascending order: the smallest that is not exceeded by at least this share of them."""
-    count = len(ordered)
-    low, high = ranks(count, share, confidence)
-    value = ordered[max(0, math.ceil(count * share - 1e-9) - 1)]
-    return Percentile(
-        share,
-        float(value),
-        float(ordered[low - 1]) if low >= 1 else None,
-        float(ordered[high - 1]) if high <= count else None,
-    )
+    """Return a percentile of a sample and its confidence interval.
+
+    The interval lies between two order statistics, as the number of values below the percentile is
+    binomial. Source: Conover 1999, Practical Nonparametric Statistics, sec. 3.2.
+
+    Parameters
+    ----------
+    ordered : array of float, shape (n,)
+        Values in ascending order.
+    share : float
+        Part of the population.
+    confidence : float
+        Of the interval, at least.
+
+    Returns
+    -------
+    Percentile
+        Its value is the smallest that is not exceeded by at least ``share`` of the sample.
+    """
+    from scipy.stats import quantile_test
+
+    test = quantile_test(ordered, p=share)
+    low, high = test.confidence_interval(confidence)
+    return Percentile(share, float(_not_exceeded(ordered, share)), _bound(low), _bound(high))
+
+
+def _bound(value: float) -> float | None:
+    return None if math.isnan(value) else float(value)
+
+
+def _not_exceeded(ordered: NDArray[np.floating], share: float) -> float:
+    """Return the smallest value that at least this share of an ordered sample does not exceed."""
+    return ordered[max(0, math.ceil(len(ordered) * share - 1e-9) - 1)]
 
 
 def proportion(hits: int, count: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
-    """Interval that covers a probability, from ``hits`` in ``count`` independent trials (Clopper and Pearson 1934)."""
+    """Return an interval that covers a probability.
+
+    The exact one of Clopper and Pearson 1934, in closed form; ``scipy.stats.binomtest`` finds the
+    same by iteration, to 12 digits.
+
+    Parameters
+    ----------
+    hits, count : int
+        Successes, and independent trials.
+    confidence : float
+        Of the interval, at least.
+
+    Returns
+    -------
+    low, high : float
+        Bounds of the interval.
+    """
     from scipy.stats import beta
 
     tail = 0.5 * (1.0 - confidence)
@@ -59,18 +100,24 @@ def proportion(hits: int, count: int, confidence: float = CONFIDENCE) -> tuple[f
 
 
 def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
-    """Of values (trials, stations), negative where a rock did not come by: largest value and percentiles at each station.
+    """Return the largest values and percentiles at each station.
 
-    NaN where no rock came by.
+    Parameters
+    ----------
+    peaks : array of float32, shape (trials, stations)
+        Largest values of each trial, negative where its rock did not come by.
+
+    Returns
+    -------
+    dict of str to array of float, shape (stations,)
+        ``max``, ``p50`` ... ``p99``; NaN where no rock came by.
     """
-    names = ("max", *(f"p{100 * share:.0f}" for share in SHARES))
-    made = {name: np.full(peaks.shape[1], np.nan) for name in names}
+    names = {f"p{100 * share:.0f}": share for share in SHARES}
+    curves = {name: np.full(peaks.shape[1], np.nan) for name in ("max", *names)}
     for i in range(peaks.shape[1]):
         here = np.sort(peaks[peaks[:, i] >= 0.0, i])
         if len(here):
-            made["max"][i] = here[-1]
-            for share in SHARES:
-                made[f"p{100 * share:.0f}"][i] = here[
-                    max(0, math.ceil(len(here) * share - 1e-9) - 1)
-                ]
-    return made
+            curves["max"][i] = here[-1]
+            for name, share in names.items():
+                curves[name][i] = _not_exceeded(here, share)
+    return curves

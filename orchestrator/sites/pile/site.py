@@ -1,4 +1,7 @@
-"""A pile as data: hammer, cushion, rod, soil, blows, bearing graph. Form only: preparation.py checks the meaning. SI units."""
+"""A pile as data: hammer, cushion, rod, soil, blows, bearing graph, all in SI units.
+
+This is the form only; ``preparation.py`` checks the meaning. Depths count from the head downwards.
+"""
 
 from typing import Annotated
 
@@ -6,27 +9,44 @@ from pydantic import Field
 
 from ...input_files.form import Data, NotNegative, Positive
 
+GRAVITY = 9.80665
+"""Standard acceleration of gravity (m/s2)."""
 MOST_SEGMENTS = 5000
+"""Largest number of segments of the rod."""
 MOST_BLOWS = 1000
+"""Largest number of blows."""
+QUAKE = 2.5e-3
+"""Displacement (m) at which soil yields where none is set: Smith 1960, 0.1 inch."""
+SHAFT_DAMPING, TOE_DAMPING = 0.16, 0.5
+"""Damping of the soil (s/m) where none is set: Smith 1960, 0.05 and 0.15 s/ft."""
+
+Part = Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
+"""A number above 0 and up to 1."""
 
 
-class Hammer(Data):
-    """A rigid ram; drop: height of fall (m). efficiency: part of the energy of the fall that it strikes with."""
+class DropHammer(Data):
+    """A rigid ram of ``mass`` (kg) that falls by ``drop`` (m).
+
+    efficiency: part of the energy of the fall with which it strikes.
+    """
 
     mass: Positive
     drop: Positive
-    efficiency: Annotated[float, Field(gt=0.0, le=1.0, strict=True)] = 1.0
+    efficiency: Part = 1.0
 
 
-class Cushion(Data):
-    """Between ram and head: no tension; it gives back the square of ``restitution`` of its energy. stiffness: N/m."""
+class HammerCushion(Data):
+    """A spring of ``stiffness`` (N/m) between ram and head, without tension.
+
+    It returns the square of ``restitution`` of its energy.
+    """
 
     stiffness: Positive
-    restitution: Annotated[float, Field(gt=0.0, le=1.0, strict=True)] = 1.0
+    restitution: Part = 1.0
 
 
 class Section(Data):
-    """A length (m) of the rod with one area (m2), Young's modulus (Pa) and density (kg/m3), from head to toe."""
+    """A length (m) of the rod with one area (m2), Young's modulus (Pa) and density (kg/m3)."""
 
     length: Positive
     area: Positive
@@ -34,34 +54,38 @@ class Section(Data):
     density: Positive
 
 
-class Shaft(Data):
-    """Soil along the shaft between two depths (m) below the head: its whole ultimate resistance (N), quake (m), damping (s/m)."""
+class ShaftLayer(Data):
+    """Soil along the shaft between two depths (m) below the head.
+
+    resistance: ultimate one of the whole layer (N); quake (m); damping (s/m).
+    """
 
     top: Annotated[NotNegative, Field(alias="from")]
     bottom: Annotated[Positive, Field(alias="to")]
     resistance: NotNegative
-    quake: Positive = 2.5e-3
-    damping: NotNegative = 0.16
+    quake: Positive = QUAKE
+    damping: NotNegative = SHAFT_DAMPING
 
 
-class Toe(Data):
+class ToeSoil(Data):
     """Soil under the toe: ultimate resistance (N), quake (m), damping (s/m)."""
 
     resistance: Positive
-    quake: Positive = 2.5e-3
-    damping: NotNegative = 0.5
+    quake: Positive = QUAKE
+    damping: NotNegative = TOE_DAMPING
 
 
-class Bearing(Data):
-    """The bearing graph: ultimate resistances (N) of shaft and toe together. The soil of the file is scaled to them."""
+class BearingGraph(Data):
+    """Ultimate resistances (N) of shaft and toe together, to which the soil is scaled."""
 
     resistances: Annotated[list[Positive], Field(min_length=2, max_length=1000)]
 
 
 class PileSite(Data):
-    """All that is computed.
+    """All that the blows on a pile need.
 
-    time: of a blow (s), from the stroke on; by default 0.1 s or 20 travel times of a wave. gauge: depth of the gauge (m).
+    time: of a blow (s), from the stroke on, by default 0.1 s or 20 travel times of a wave.
+    gauge: depth of the gauge (m). rod: sections from head to toe.
     """
 
     name: str = ""
@@ -69,11 +93,11 @@ class PileSite(Data):
     blows: Annotated[int, Field(ge=1, le=MOST_BLOWS)] = 1
     segments: Annotated[int, Field(ge=1, le=MOST_SEGMENTS)] = 100
     time: Positive | None = None
-    gravity: NotNegative = 9.80665
+    gravity: NotNegative = GRAVITY
     gauge: NotNegative = 0.0
-    hammer: Hammer
-    cushion: Cushion | None = None
+    hammer: DropHammer
+    cushion: HammerCushion | None = None
     rod: Annotated[list[Section], Field(min_length=1)]
-    shaft: list[Shaft] = Field(default_factory=list)
-    toe: Toe
-    bearing: Bearing | None = None
+    shaft: list[ShaftLayer] = Field(default_factory=list)
+    toe: ToeSoil
+    bearing: BearingGraph | None = None

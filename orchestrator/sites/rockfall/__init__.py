@@ -1,1 +1,1 @@
-"""A slope, its ground and its barriers, from a file."""
+"""A slope, its ground and its barriers: from a file to a component that can be computed."""

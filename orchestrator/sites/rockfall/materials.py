@@ -12,13 +12,14 @@ from ...input_files.places import Places
 from .site import Material, Scatter
 
 QUANTITIES = ("strength", "stiffness", "hardening", "friction", "resistance", "tilt", "roughness")
+"""Names of the values that a complete material has."""
 OWN = "given with the site"
 """Source of a value that the site's file gives."""
 
 
 @cache
 def shipped() -> dict[str, Material]:
-    """The table ``materials.toml``."""
+    """Return the materials of the table ``materials.toml`` by name."""
     data = tomllib.loads((Path(__file__).parent / "materials.toml").read_text(encoding="utf-8"))
     return {name: Material.model_validate(entry) for name, entry in data.items()}
 
@@ -26,70 +27,98 @@ def shipped() -> dict[str, Material]:
 def materials(
     own: Mapping[str, Material], where: Places, problems: list[Problem]
 ) -> dict[str, Material]:
-    """All materials by name, complete; those of the site come before those that ship."""
-    found = dict(shipped())
-    for name, given in own.items():
-        base = shipped().get(given.like or "")
-        if given.like is not None and base is None:
-            problems.append(
-                Problem(
-                    where.of(("material", name, "like")),
-                    f"there is no material {given.like!r}",
-                    nearest(given.like, shipped()),
-                )
-            )
+    """Return all materials by name, complete.
+
+    Parameters
+    ----------
+    own : mapping of str to Material
+        Materials of the site; they come before those that ship.
+    where : Places
+        Of the values of the site.
+    problems : list of Problem
+        Materials that are not complete are appended.
+
+    Returns
+    -------
+    dict of str to Material
+        Those that ship and those of the site.
+    """
+    every = dict(shipped())
+    for name, material in own.items():
+        base = shipped().get(material.like or "")
+        if material.like is not None and base is None:
+            place = where.of(("material", name, "like"))
+            text = f"there is no material {material.like!r}"
+            problems.append(Problem(place, text, nearest(material.like, shipped())))
             continue
-        made = _completed(given, base)
-        missing = [quantity for quantity in QUANTITIES if getattr(made, quantity) is None]
+        complete = _completed(material, base)
+        missing = [quantity for quantity in QUANTITIES if getattr(complete, quantity) is None]
         if missing:
-            problems.append(
-                Problem(
-                    where.of(("material", name)),
-                    f"material {name} has no {', '.join(missing)}",
-                    'give them, or name with like = "..." the material that has them',
-                )
-            )
-        found[name] = made
-    return found
+            remedy = 'give them, or name with like = "..." the material that has them'
+            text = f"material {name} has no {', '.join(missing)}"
+            problems.append(Problem(where.of(("material", name)), text, remedy))
+        every[name] = complete
+    return every
 
 
-def _completed(given: Material, base: Material | None) -> Material:
-    """A material with the values of the one it is like, and the sources of all of them."""
-    own = {
-        quantity: getattr(given, quantity)
-        for quantity in QUANTITIES
-        if getattr(given, quantity) is not None
-    }
-    values = {
-        **({quantity: getattr(base, quantity) for quantity in QUANTITIES} if base else {}),
-        **own,
-    }
-    source = {
-        **({quantity: source_of(base, quantity) for quantity in QUANTITIES} if base else {}),
-        **{quantity: source_of(given, quantity) or OWN for quantity in own},
-    }
-    return Material(description=given.description, source=source, **values)
+def _completed(material: Material, base: Material | None) -> Material:
+    """Return a material with the values of the one it is like, and the sources of all of them."""
+    values: dict[str, Any] = {}
+    source: dict[str, str] = {}
+    for quantity in QUANTITIES:
+        if getattr(material, quantity) is not None:
+            values[quantity] = getattr(material, quantity)
+            source[quantity] = source_of(material, quantity) or OWN
+        elif base is not None:
+            values[quantity] = getattr(base, quantity)
+            source[quantity] = source_of(base, quantity)
+    return Material(description=material.description, source=source, **values)
 
 
 def source_of(material: Material, quantity: str) -> str:
-    """Where a value comes from."""
+    """Return where a value of a material comes from.
+
+    Parameters
+    ----------
+    material : Material
+        Of the ground.
+    quantity : str
+        One of :data:`QUANTITIES`.
+
+    Returns
+    -------
+    str
+        Empty where no source is known.
+    """
     return material.source.get(quantity, material.source.get("*", ""))
 
 
 def parameters(material: Material) -> dict[str, float]:
-    """Values by the names of the component's parameters."""
-    found: dict[str, float] = {}
+    """Return the values of a complete material by the names of the component's parameters.
+
+    Parameters
+    ----------
+    material : Material
+        With all :data:`QUANTITIES`.
+
+    Returns
+    -------
+    dict of str to float
+        In SI units; a quantity that scatters gives two, ``tilt`` and ``tilt_deviation``.
+    """
+    values: dict[str, float] = {}
     for quantity in QUANTITIES:
         value = getattr(material, quantity)
         if isinstance(value, Scatter):
-            found[quantity], found[f"{quantity}_deviation"] = value.mean, value.deviation
+            values[quantity] = value.mean
+            values[f"{quantity}_deviation"] = value.deviation
         else:
-            found[quantity] = value
-    return found
+            values[quantity] = value
+    return values
 
 
 def described(material: Material) -> dict[str, Any]:
-    """Values and their sources as plain data."""
+    """Return values and sources of a complete material as plain data."""
     return {
         "description": material.description,
         **parameters(material),

@@ -1,4 +1,7 @@
-"""A site as data: rock, start, profile, ground, search lines and barriers. Form only: preparation.py checks the meaning."""
+"""A slope as data: rock, start, profile, ground, search lines and barriers, all in SI units.
+
+This is the form only; ``preparation.py`` checks the meaning.
+"""
 
 from typing import Annotated, Any, Literal
 
@@ -9,10 +12,14 @@ from ...input_files.form import Data, NotNegative, Number, Positive
 Distribution = Literal["truncated_normal", "uniform", "lognormal", "triangular"]
 
 MOST_TRIALS = 2**31 - 1
+"""Largest number of trials, and of a seed."""
 
 
 class Rock(Data):
-    """Mass, or density of a sphere; shape says what the moment of inertia follows from."""
+    """A rock with its mass (kg), or the density (kg/m3) of a sphere.
+
+    ``shape`` says what the moment of inertia (kg m2) follows from; radius in m.
+    """
 
     radius: Positive
     density: Positive | None = None
@@ -21,8 +28,11 @@ class Rock(Data):
     moment_of_inertia: Positive | None = None
 
 
-class Start(Data):
-    """Of the rock's centre (m, m/s, rad/s); without y it starts in contact with the slope."""
+class RockStart(Data):
+    """State of the rock's centre at the start (m, m/s, rad/s).
+
+    Without y the rock starts in contact with the slope.
+    """
 
     x: Number
     y: Number | None = None
@@ -31,9 +41,10 @@ class Start(Data):
 
 
 class Profile(Data):
-    """Nodes ``[x, y]`` or ``[x, y, material]`` from left to right, or a file with them (CSV, DXF).
+    """Nodes ``[x, y]`` or ``[x, y, material]`` from left to right (m), or a file with them.
 
-    layers: those of a DXF file that are read; all by default. end: x (m) at which a trial ends, by default that of the last node.
+    Files are CSV or DXF. layers: those of a DXF file that are read, all by default. end: x (m) at
+    which a trial ends, by default that of the last node.
     """
 
     points: list[Any] | None = None
@@ -42,7 +53,7 @@ class Profile(Data):
     end: Number | None = None
 
 
-class Ground(Data):
+class GroundRange(Data):
     """The material between two x (m); without them, of the whole profile."""
 
     material: str
@@ -51,14 +62,17 @@ class Ground(Data):
 
 
 class Scatter(Data):
-    """Mean and standard deviation."""
+    """Mean and standard deviation of a random quantity."""
 
     mean: Number
     deviation: NotNegative = 0.0
 
 
 class Material(Data):
-    """What a cell is made of; with ``like``, only what differs from that material. Names and units: those of SlopeRockfall."""
+    """Ground of a cell; with ``like``, only the values that differ from that material.
+
+    Names and units are those of the component SlopeRockfall.
+    """
 
     like: str | None = None
     description: str = ""
@@ -73,20 +87,20 @@ class Material(Data):
 
 
 class LimitSpeed(Scatter):
-    """V_lim (m/s)."""
+    """Limit speed V_lim (m/s) and its distribution."""
 
     distribution: Distribution = "truncated_normal"
 
 
 class Distributions(Data):
-    """Of R_o and K_s."""
+    """Distributions of the roughness R_o and of the tilt K_s."""
 
     roughness: Distribution = "truncated_normal"
     tilt: Distribution = "truncated_normal"
 
 
 class Line(Data):
-    """A search line between two points, or upwards from the surface at x."""
+    """A search line between two points (m), or upwards from the surface at x (m)."""
 
     name: Annotated[str, Field(min_length=1)]
     points: tuple[tuple[Number, Number], tuple[Number, Number]] | None = None
@@ -94,7 +108,10 @@ class Line(Data):
 
 
 class Barrier(Data):
-    """Upright on the surface. It holds a rock of at most ``capacity`` (J) whose centre passes below height - free_border (m)."""
+    """A barrier upright on the surface at x (m).
+
+    It holds a rock of at most ``capacity`` (J) whose centre passes below height - free_border (m).
+    """
 
     name: Annotated[str, Field(min_length=1)]
     x: Number
@@ -103,9 +120,11 @@ class Barrier(Data):
     free_border: NotNegative | None = None
 
 
-class Site(Data):
-    """All that a campaign is made of. hypercube: trials of a Latin hypercube, 0: independent trials. model: other parameters of
-    SlopeRockfall by name. stations: places along the profile at which envelopes are kept.
+class SlopeSite(Data):
+    """All that the trials on a slope need.
+
+    hypercube: trials of a Latin hypercube, 0 for independent trials. model: other parameters of
+    SlopeRockfall by name. stations: number of places along the profile at which envelopes are kept.
     """
 
     name: str = ""
@@ -114,9 +133,9 @@ class Site(Data):
     seed: Annotated[int, Field(ge=0, le=MOST_TRIALS)] = 1
     hypercube: Annotated[int, Field(ge=0, le=MOST_TRIALS)] = 0
     rock: Rock
-    start: Start
+    start: RockStart
     profile: Profile
-    ground: list[Ground] = Field(default_factory=list)
+    ground: list[GroundRange] = Field(default_factory=list)
     material: dict[str, Material] = Field(default_factory=dict)
     limit_speed: LimitSpeed
     distribution: Distributions = Distributions()

@@ -1,0 +1,100 @@
+"""The result of the blows on a pile."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rockshed.components.common.units import mm
+
+from ...core.results.metric import Metric
+from ...sites.pile.preparation import PreparedPile
+from ...tables import Table
+from ..frame import Result
+from .blows import Blow
+from .files import bearing_table, envelope_table, trace_table, write_facts, write_tables
+from .summary import metrics_of
+from .tables import blow_table, graph_table, notes, warnings
+
+
+class PileResult(Result):
+    """Blows on a pile, one after the other, and its bearing graph.
+
+    Attributes
+    ----------
+    pile : PreparedPile
+        Site, from which hammer and rod are made.
+    blows, graph : sequence of Blow
+        One after the other, and for each resistance of the bearing graph.
+    wall_time : float
+        Time (s) that the blows took.
+    """
+
+    kind = "pile"
+
+    def __init__(
+        self, pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Blow], wall_time: float
+    ) -> None:
+        super().__init__()
+        self.pile = pile
+        self.blows = tuple(blows)
+        self.graph = tuple(graph)
+        self.wall_time = wall_time
+
+    @property
+    def name(self) -> str:
+        """Name of the site."""
+        return self.pile.name
+
+    def metric_list(self) -> list[Metric]:
+        """Return the values of each blow, and of the whole."""
+        return list(metrics_of(self.pile, self.blows, self.graph))
+
+    @property
+    def summary(self) -> str:
+        """Number of blows and penetration in one line."""
+        total = sum(blow.set for blow in self.blows)
+        graph = f", bearing graph of {len(self.graph)} resistances" if self.graph else ""
+        return f"{len(self.blows)} blows, penetration {total / mm:.1f} mm{graph}"
+
+    @property
+    def notes(self) -> list[str]:
+        """Energies and times, and the error of the energy balance."""
+        return notes(self.pile, self.blows, self.graph, self.wall_time)
+
+    @property
+    def warnings(self) -> list[str]:
+        """Reasons for doubts about the blows, a sentence each."""
+        return warnings([*self.blows, *self.graph])
+
+    def tables(self) -> list[Table]:
+        """Return the blows, and the bearing graph where the site has one.
+
+        Returns
+        -------
+        list of Table
+            A row for each blow: set, blow count, forces, stresses, energies.
+        """
+        tables = [blow_table(self.pile, self.blows)]
+        if self.graph:
+            tables.append(graph_table(self.pile, self.graph))
+        return tables
+
+    def to_arrow(self) -> Any:
+        """Return the traces of all blows, one after the other.
+
+        Returns
+        -------
+        pyarrow.Table
+            Time (s), number of the blow, forces (N) and displacements (m) of head, gauge and toe.
+        """
+        return trace_table(self.blows)
+
+    def write_files(self, folder: Path) -> list[Path]:
+        """Write traces, envelopes, bearing graph, summary and ``run.json`` into a folder."""
+        tables = {"traces": self.to_arrow(), "envelopes": envelope_table(self.pile, self.blows)}
+        if self.graph:
+            tables["bearing"] = bearing_table(self.pile, self.graph)
+        return [
+            *write_tables(tables, folder),
+            *write_facts(self.pile, self.metric_list(), self.wall_time, folder),
+        ]

@@ -1,0 +1,161 @@
+"""The result of a rockfall campaign."""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockshed.components.slope_rockfall.trajectory import OUTCOME
+
+from ...core.results.metric import Metric
+from ...sites.rockfall.preparation import PreparedSlope
+from ...tables import Table
+from ..frame import Result
+from .campaign import Campaign, TrialRecords
+from .files import Envelopes, envelope_table, envelopes, trial_table, write_facts, write_tables
+from .passages import ENDS, LinePassages, line_passages
+from .replay import Replay, check, replay
+from .summary import metrics_of
+from .tables import line_tables, notes
+
+
+class RockfallResult(Result):
+    """Trials of a rockfall campaign, with statistics at lines and barriers and along the profile.
+
+    Attributes
+    ----------
+    slope : PreparedSlope
+        Site, profile and component.
+    campaign : Campaign
+        Values that all trials share.
+    records : TrialRecords
+        First passages, largest values and ends of all trials.
+    wall_time : float
+        Time (s) that the trials took.
+    executor : mapping of str to Any
+        Number of workers, and the scheduler.
+    animated : sequence of int
+        Trials of which :meth:`save` writes animations, in the format ``animation``.
+    """
+
+    kind = "rockfall"
+
+    def __init__(
+        self,
+        slope: PreparedSlope,
+        campaign: Campaign,
+        records: TrialRecords,
+        wall_time: float,
+        executor: Mapping[str, Any],
+    ) -> None:
+        super().__init__()
+        self.slope = slope
+        self.campaign = campaign
+        self.records = records
+        self.wall_time = wall_time
+        self.executor = executor
+        self.animated: tuple[int, ...] = ()
+        self.animation = "gif"
+
+    @property
+    def name(self) -> str:
+        """Name of the site."""
+        return self.slope.name
+
+    @cached_property
+    def lines(self) -> list[LinePassages]:
+        """Passages of the search lines and barriers, in the order of the site."""
+        return line_passages(self.campaign, self.records)
+
+    @cached_property
+    def envelopes(self) -> Envelopes:
+        """Largest values and percentiles at the stations by quantity and name, NaN for no rock."""
+        return envelopes(self.records)
+
+    def metric_list(self) -> list[Metric]:
+        """Return ends of the trials, and each line with mean, deviation and percentiles."""
+        return list(metrics_of(self.campaign, self.records, self.lines))
+
+    @property
+    def ends(self) -> dict[str, int]:
+        """Number of trials by the way in which they end."""
+        codes = self.records.outcomes[:, OUTCOME.end].astype(int)
+        return {words: int(np.sum(codes == code)) for code, words in ENDS.items()}
+
+    @property
+    def summary(self) -> str:
+        """Number of trials and of their ends in one line."""
+        return f"{self.campaign.trials} trials, {self._listed_ends()}"
+
+    @property
+    def notes(self) -> list[str]:
+        """Ends of the trials, and the meaning of the intervals."""
+        effort = f"{self.campaign.trials} trials in {self.wall_time:.2f} s"
+        heading = f"{effort}, seed {self.campaign.seed}: {self._listed_ends()}"
+        return [heading, *notes(bool(self.lines), self.slope.site.hypercube > 0)]
+
+    def _listed_ends(self) -> str:
+        return ", ".join(f"{number} {words}" for words, number in self.ends.items() if number)
+
+    def tables(self) -> list[Table]:
+        """Return a table for each line and barrier.
+
+        Returns
+        -------
+        list of Table
+            A row for each quantity: mean, standard deviation, percentiles with their intervals.
+        """
+        return line_tables(self.lines)
+
+    def to_arrow(self) -> Any:
+        """Return a row for each trial.
+
+        Returns
+        -------
+        pyarrow.Table
+            End, largest values, and the first passage of each line; null where there is none.
+        """
+        return trial_table(self.campaign, self.records)
+
+    def animate(self, trials: Sequence[int], animation: str) -> None:
+        """Choose the trials of which :meth:`save` writes animations.
+
+        Parameters
+        ----------
+        trials : sequence of int
+            Their numbers.
+        animation : str
+            Format, ``mp4`` or ``gif``.
+        """
+        check(self.campaign, trials)
+        self.animated = tuple(dict.fromkeys(trials))
+        self.animation = animation
+
+    def replay(self, trial: int, interval: float = 0.02) -> Replay:
+        """Compute a trial again, step by step.
+
+        Parameters
+        ----------
+        trial : int
+            Its number.
+        interval : float
+            Time (s) between two instants.
+
+        Returns
+        -------
+        Replay
+            Motion of the rock over time.
+        """
+        check(self.campaign, [trial])
+        return replay(self.slope, self.campaign, trial, interval)
+
+    def write_files(self, folder: Path) -> list[Path]:
+        """Write trials, envelopes, summary and ``run.json`` into a folder, and return them."""
+        along = envelope_table(self.slope, self.campaign, self.records, self.envelopes)
+        facts = {"wall_time": self.wall_time, **self.executor}
+        return [
+            *write_tables(self.to_arrow(), along, folder),
+            *write_facts(self.slope, self.metric_list(), facts, folder),
+        ]

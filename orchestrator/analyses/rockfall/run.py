@@ -1,0 +1,110 @@
+"""Carry out a rockfall campaign."""
+
+import os
+import time
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, ExitStack
+from pathlib import Path
+
+from ...sites.rockfall.preparation import prepare
+from ...sites.source import SiteLike
+from ..frame import Progress, counter, no_progress
+from .animation_format import animation_format
+from .campaign import Executor, campaign_of, threads
+from .cluster import dask_workers
+from .replay import check
+from .result import RockfallResult
+
+
+def rockfall(
+    site: SiteLike,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    replay: Sequence[int] = (),
+    animation: str | None = None,
+    folder: str | Path | None = None,
+    pictures: bool = False,
+    progress: Progress | None = None,
+) -> RockfallResult:
+    """Compute the trials of rockfall on a slope.
+
+    Parameters
+    ----------
+    site : path, mapping or SlopeSite
+        Rock, profile, ground, search lines and barriers: a site file (TOML), or its content.
+    trials, seed : int, optional
+        Number of the trials, and seed of their random numbers, in the place of the site's.
+    workers : int, optional
+        Threads, or processes of ``scheduler="local"``; by default one for each core.
+    scheduler : str, optional
+        ``local`` for processes of this computer, or the address of a running Dask scheduler. The
+        results are the same to the bit.
+    replay : sequence of int
+        Trials of which animations are written.
+    animation : str, optional
+        ``mp4`` or ``gif``; by default MP4 where it can be written.
+    folder : path, optional
+        Where the results are saved; it appears as a whole or not at all.
+    pictures : bool
+        Whether figures are drawn and saved too.
+    progress : callable, optional
+        Called with a stage, and the numbers of its pieces that are done and of all.
+
+    Returns
+    -------
+    RockfallResult
+        Records of all trials, tables, metrics and figures.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with the site or the arguments; nothing was computed.
+    CampaignFailed
+        The workers of a scheduler could not go on.
+
+    Examples
+    --------
+    >>> import rockshed
+    >>> slope = {
+    ...     "rock": {"radius": 0.5, "density": 2600},
+    ...     "start": {"x": 1.0},
+    ...     "limit_speed": {"mean": 12.0, "deviation": 2.0},
+    ...     "profile": {"points": [[0, 40, "rock"], [30, 10, "soil"], [60, 5]]},
+    ...     "line": [{"name": "road", "x": 40.0}],
+    ... }
+    >>> result = rockshed.rockfall(slope, trials=50)
+    >>> result.metrics["trials"].value
+    50
+    >>> result.metrics["line_road_energy_p95"].unit
+    'J'
+    >>> result.to_arrow().num_rows
+    50
+    """
+    show = progress or no_progress
+    form = animation_format(animation) if replay else "gif"
+    slope = prepare(site, trials, seed)
+    campaign = campaign_of(slope)
+    check(campaign, replay)
+    with ExitStack() as opened:
+        place = opened.enter_context(RockfallResult.opened(folder)) if folder else None
+        show("trials", 0, campaign.trials)
+        with _executor(scheduler, workers) as executor:
+            began = time.perf_counter()
+            records = executor.run(campaign, counter(show, "trials"))
+            wall_time = time.perf_counter() - began
+        result = RockfallResult(slope, campaign, records, wall_time, executor.facts)
+        result.animate(replay, form)
+        if place is not None:
+            result.write(place, pictures, show)
+    result.folder = Path(folder) if folder else None
+    return result
+
+
+def _executor(scheduler: str | None, workers: int | None) -> AbstractContextManager[Executor]:
+    """Open threads of this process, or the workers of a Dask scheduler."""
+    if scheduler is None:
+        return threads(workers or os.cpu_count() or 1)
+    return dask_workers(scheduler, workers)

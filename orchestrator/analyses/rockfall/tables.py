@@ -1,0 +1,97 @@
+"""Tables of a campaign for a person."""
+
+from collections.abc import Iterator, Sequence
+
+from ...tables import Table
+from .passages import QUANTITIES, LinePassages, PassageQuantity
+from .statistics import CONFIDENCE, SHARES, Percentile
+
+_TITLES = [f"{100 * share:.0f} %" for share in SHARES]
+
+
+def line_tables(lines: Sequence[LinePassages]) -> list[Table]:
+    """Return a table for each line and barrier.
+
+    Parameters
+    ----------
+    lines : sequence of LinePassages
+        In the order of the site.
+
+    Returns
+    -------
+    list of Table
+        Named by the line and by who passes it; a row for each quantity with mean, standard
+        deviation, and percentiles with their intervals. Empty where no rock passes.
+    """
+    return [_table(line) for line in lines]
+
+
+def _table(line: LinePassages) -> Table:
+    columns = ["", "unit", "mean", "±", *_TITLES]
+    table = Table(columns, right=("mean", "±", *_TITLES), title=f"{line.name}  {_words(line)}")
+    for quantity in QUANTITIES:
+        if line.count:
+            table.add(*_cells(line, quantity))
+    return table
+
+
+def _words(line: LinePassages) -> str:
+    if line.barrier is not None:
+        return (
+            f"barrier: {line.count} of {line.trials} rocks arrive, "
+            f"{line.barrier['stopped']} are stopped, {line.barrier['overtopped']} overtop, "
+            f"{line.barrier['broken_through']} break through"
+        )
+    share, low, high = (100.0 * part for part in (line.share, *line.interval))
+    return f"{line.count} of {line.trials} rocks pass, {share:.4g} % [{low:.4g}, {high:.4g}]"
+
+
+def _cells(line: LinePassages, quantity: PassageQuantity) -> Iterator[str]:
+    values = line.values[quantity.name] / quantity.scale
+    yield quantity.words
+    yield quantity.shown
+    yield _number(values.mean())
+    yield _number(values.std(ddof=1)) if len(values) > 1 else ""
+    for found in line.percentiles(quantity.name):
+        yield _with_interval(found, quantity.scale)
+
+
+def _with_interval(found: Percentile, scale: float) -> str:
+    low = "?" if found.low is None else _number(found.low / scale)
+    high = "?" if found.high is None else _number(found.high / scale)
+    return f"{_number(found.value / scale)} [{low}, {high}]"
+
+
+def _number(value: float) -> str:
+    """Write three digits, but none that are rounding: a rock that rolls has the height 0."""
+    return f"{round(value, 6):.3g}"
+
+
+def notes(has_lines: bool, hypercube: bool) -> list[str]:
+    """Return remarks on the intervals in the tables.
+
+    Parameters
+    ----------
+    has_lines : bool
+        Whether the site has search lines or barriers.
+    hypercube : bool
+        Whether the trials are those of a Latin hypercube.
+
+    Returns
+    -------
+    list of str
+        A sentence each.
+    """
+    sentences = []
+    if has_lines:
+        sentences.append(
+            "Percentiles are of the rocks that pass, at their first passage. [low, high]: "
+            f"{100.0 * CONFIDENCE:.0f} % confidence interval, from order statistics (?: the sample "
+            "is too small for a bound)."
+        )
+    if hypercube:
+        sentences.append(
+            "The intervals are those of independent trials; a Latin hypercube is usually more "
+            "precise."
+        )
+    return sentences

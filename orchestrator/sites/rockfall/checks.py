@@ -1,0 +1,148 @@
+"""Faults of a slope that its form does not show."""
+
+from collections.abc import Iterator, Sequence
+
+from ...core.errors import Problem
+from ...core.system.names import nearest
+from ...input_files.places import Key, Places
+from .profile import Node
+from .site import Barrier, Line, SlopeSite
+
+MODEL = {
+    "gravity": "gravity",
+    "truncation": "truncation",
+    "area_factor": "area_factor",
+    "tilt_cap": "tilt_cap",
+    "restitution_gravity": "restitution.gravity",
+    "tilt_meaning": "tilt.meaning",
+}
+"""Keys of the section [model], and the parameters of the component that they set."""
+
+
+def site_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iterator[Problem]:
+    """Yield what is wrong with a slope of the right form.
+
+    Parameters
+    ----------
+    site : SlopeSite
+        Data of the slope.
+    nodes : sequence of Node
+        Of its profile, as far as they could be read.
+    where : Places
+        Of the values of the site.
+
+    Yields
+    ------
+    Problem
+        Faults of rock, model, search lines, barriers, and places that are off the profile.
+    """
+    yield from _rock_problems(site, where)
+    for name in (name for name in site.model if name not in MODEL):
+        text = f"model.{name}: there is no such key"
+        yield Problem(where.of(("model", name)), text, nearest(name, MODEL))
+    yield from _name_problems(site, where)
+    for i, line in enumerate(site.line):
+        yield from _line_problems(line, ("line", i), where)
+    for i, barrier in enumerate(site.barrier):
+        if reach(barrier, site) <= 0.0:
+            text = (
+                f"height = {barrier.height:g} m is not above its free border, "
+                f"{free_border(barrier, site):g} m: it would hold no rock"
+            )
+            remedy = "raise height, or set free_border (by default the rock's radius)"
+            yield Problem(where.of(("barrier", i)), text, remedy)
+    if len(nodes) > 1:
+        yield from _range_problems(site, nodes, where)
+
+
+def _rock_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
+    place = where.of(("rock",))
+    if (site.rock.mass is None) == (site.rock.density is None):
+        text = "a rock has a mass, or the density of a sphere"
+        yield Problem(place, text, "give one of the two")
+    if (site.rock.shape == "given") != (site.rock.moment_of_inertia is not None):
+        text = 'a moment_of_inertia and shape = "given" belong together'
+        yield Problem(place, text, "give both or none")
+
+
+def _name_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
+    names: list[tuple[str, Key]] = [
+        *((line.name, ("line", i, "name")) for i, line in enumerate(site.line)),
+        *((barrier.name, ("barrier", i, "name")) for i, barrier in enumerate(site.barrier)),
+    ]
+    every = [name for name, _ in names]
+    for name, key in names:
+        if every.count(name) > 1:
+            text = f"several lines or barriers are called {name!r}"
+            yield Problem(where.of(key), text, "give each a name of its own")
+
+
+def _line_problems(line: Line, key: Key, where: Places) -> Iterator[Problem]:
+    if (line.points is None) == (line.x is None):
+        text = "a search line has two points, or an x from which it goes up"
+        yield Problem(where.of(key), text, "give one of them")
+    elif line.points is not None and line.points[0] == line.points[1]:
+        place = where.of((*key, "points"))
+        yield Problem(place, "both points are the same", "give two points")
+
+
+def _range_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iterator[Problem]:
+    """Yield the places that are off the profile."""
+    left = nodes[0].x
+    right = nodes[-1].x
+    end = site.profile.end
+    for key, x in _places_along(site):
+        if not left <= x <= right:
+            text = f"x = {x:g} m is beside the profile"
+            yield Problem(where.of(key), text, f"give an x from {left:g} to {right:g} m")
+    if end is not None and end <= site.start.x <= right:
+        text = f"the trial ends at {end:g} m, and the rock starts at {site.start.x:g} m"
+        yield Problem(where.of(("profile", "end")), text, "let it end farther to the right")
+
+
+def _places_along(site: SlopeSite) -> Iterator[tuple[Key, float]]:
+    """Yield key and value of every x (m) that must lie on the profile."""
+    yield ("start", "x"), site.start.x
+    for i, barrier in enumerate(site.barrier):
+        yield ("barrier", i, "x"), barrier.x
+    for i, line in enumerate(site.line):
+        if line.x is not None:
+            yield ("line", i, "x"), line.x
+    if site.profile.end is not None:
+        yield ("profile", "end"), site.profile.end
+
+
+def free_border(barrier: Barrier, site: SlopeSite) -> float:
+    """Return the height below a barrier's upper edge in which it does not hold a rock.
+
+    Parameters
+    ----------
+    barrier : Barrier
+        Of the site.
+    site : SlopeSite
+        With the rock, whose radius is the default.
+
+    Returns
+    -------
+    float
+        Height (m), for the rock's centre.
+    """
+    return site.rock.radius if barrier.free_border is None else barrier.free_border
+
+
+def reach(barrier: Barrier, site: SlopeSite) -> float:
+    """Return the height up to which a barrier holds a rock.
+
+    Parameters
+    ----------
+    barrier : Barrier
+        Of the site.
+    site : SlopeSite
+        With the rock.
+
+    Returns
+    -------
+    float
+        Height (m) of the rock's centre above the barrier's foot.
+    """
+    return barrier.height - free_border(barrier, site)
