@@ -1,1 +1,5 @@
-"""The studies of Mogami and Tamura (1973), settlement of sand under an impulse: one file for each, found by its ``STUDY``."""
+"""Mogami and Tamura (1973): plastic settlement of sandy ground under an impulsive load.
+
+Reproduced are the virtual mass of the sand, equation (1); the settlement that follows from a
+resistance linear in time, (2) to (7); and the two fits to the 96 plate tests, (11) and (12).
+"""

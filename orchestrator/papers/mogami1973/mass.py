@@ -1,7 +1,7 @@
-"""The virtual mass of the sand in (1): derived, printed, and what the difference does to the 96 tests."""
+"""The virtual mass of the sand in (1): derived and printed, and the difference in the 96 tests."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,114 +16,129 @@ from rockshed.components.impulsive_ground.settlement import (
 )
 
 from ..study import Outcomes, Row, Study, verdict
-from .plate_tests import AREAS, BOX, DENSITY, DEPTH, SPREAD, mass, radius, trials
+from .plate_tests import AREAS, BOX, DENSITY, DEPTH, SPREAD, mass, plate_tests, radius
 
 
 def momentum(r: float) -> float:
-    """Momentum of the frustum of sand by quadrature, for a plate of radius r (m) that moves with 1 m/s."""
-    return float(
-        quad(
-            lambda z: DENSITY * math.pi * (r + z * math.tan(SPREAD)) ** 2 * (1.0 - z / DEPTH),
-            0.0,
-            DEPTH,
-            epsabs=0.0,
-            epsrel=1e-13,
-        )[0]
-    )
+    """Return the momentum (kg m/s) of the frustum of sand under a plate that moves with 1 m/s.
+
+    Parameters
+    ----------
+    r : float
+        Radius of the plate (m).
+
+    Returns
+    -------
+    float
+        By quadrature; the velocity falls linearly from the plate to 0 at the depth of the frustum.
+    """
+
+    def density(z: float) -> float:
+        return DENSITY * math.pi * (r + z * math.tan(SPREAD)) ** 2 * (1.0 - z / DEPTH)
+
+    return float(quad(density, 0.0, DEPTH, epsabs=0.0, epsrel=1e-13)[0])
 
 
 def square_coefficient() -> float:
-    """The number before r2 in the bracket of (1), from quadrature: its second difference over the radius."""
+    """Return the number before r2 in the bracket of (1).
+
+    It is the second difference of the momentum over the radius.
+    """
     r = 0.1
     second = (momentum(2.0 * r) - 2.0 * momentum(r) + momentum(0.0)) / r**2
     return 12.0 / math.pi / DENSITY / DEPTH * second
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """Printed against derived."""
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return the printed mass beside the derived one."""
+    return [
+        _number_before_square(),
+        *(_virtual_mass(area) for area in AREAS),
+        *_excesses(),
+        _foot(),
+    ]
+
+
+def _number_before_square() -> Row:
     number = square_coefficient()
-    made = [
-        Row(
-            "number before r² in (1)",
-            "1",
-            paper=3.0,
-            computed=number,
-            verdict=verdict(abs(number - 3.0) < 1e-6),
-            note="momentum of the frustum by quadrature; printed four times",
-        )
-    ]
-    for area in AREAS:
-        made.append(
-            Row(
-                f"virtual mass, plate of {area:g} cm²",
-                "kg",
-                paper=mass(area, PRINTED),
-                computed=mass(area),
-                note=f"paper: with 3 r²; quadrature {momentum(radius(area)):.3f} kg + plate",
-            )
-        )
-    each = [
-        (
-            t,
-            initial_velocity(t.impulse, mass(t.area, PRINTED))
-            / initial_velocity(t.impulse, mass(t.area))
-            - 1.0,
-        )
-        for t in trials()
-    ]
-    for area in AREAS:
-        values = [excess for t, excess in each if t.area == area]
-        made.append(
-            Row(
-                f"v0 and settlement (7) too large, plate of {area:g} cm²",
-                "%",
-                computed=100.0 * max(values),
-                note=f"{len(values)} tests, all alike to {max(values) - min(values):.0e}: I cancels",
-            )
-        )
-    foot = [2.0 * (radius(area) + DEPTH * math.tan(SPREAD)) / cm for area in AREAS]
-    made.append(
-        Row(
-            "width of the frustum's foot, smallest plate",
-            "cm",
-            paper=BOX[0] / cm,
-            computed=foot[0],
-            verdict=verdict(foot[0] <= BOX[0] / cm),
-            note="paper: width of the box it must fit into; the walls must have "
-            f"carried some of it; {foot[-1]:.0f} cm under the largest plate",
-        )
+    return Row(
+        "number before r² in (1)",
+        "1",
+        paper=3.0,
+        computed=number,
+        verdict=verdict(abs(number - 3.0) < 1e-6),
+        note="momentum of the frustum by quadrature; printed four times",
     )
-    return made
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """Both masses over the plate's area."""
+def _virtual_mass(area: float) -> Row:
+    return Row(
+        f"virtual mass, plate of {area:g} cm²",
+        "kg",
+        paper=mass(area, PRINTED),
+        computed=mass(area),
+        note=f"paper: with 3 r²; quadrature {momentum(radius(area)):.3f} kg + plate",
+    )
+
+
+def _excesses() -> Iterator[Row]:
+    """Yield by how much the printed mass makes the velocity too large, for each plate."""
+    for area in AREAS:
+        values = [
+            initial_velocity(t.impulse, mass(area, PRINTED))
+            / initial_velocity(t.impulse, mass(area))
+            - 1.0
+            for t in plate_tests()
+            if t.area == area
+        ]
+        yield Row(
+            f"v0 and settlement (7) too large, plate of {area:g} cm²",
+            "%",
+            computed=100.0 * max(values),
+            note=f"{len(values)} tests, all alike to {max(values) - min(values):.0e}: I cancels",
+        )
+
+
+def _foot() -> Row:
+    """Return the width of the frustum's foot beside that of the box."""
+    foot = [2.0 * (radius(area) + DEPTH * math.tan(SPREAD)) / cm for area in AREAS]
+    return Row(
+        "width of the frustum's foot, smallest plate",
+        "cm",
+        paper=BOX[0] / cm,
+        computed=foot[0],
+        verdict=verdict(foot[0] <= BOX[0] / cm),
+        note="paper: width of the box it must fit into; the walls must have "
+        f"carried some of it; {foot[-1]:.0f} cm under the largest plate",
+    )
+
+
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw both masses over the plate's area."""
     from ...pictures.style import GREY, INK, ROCK, WIDTH, captioned
 
     file = folder / "mass.png"
     areas = np.linspace(20.0, 450.0, 200)
     words = (
-        f"Mass of plate and sand that moves, the bracket of (1): depth 45 cm, 45°, {DENSITY:g} kg/m³ and plates of 2 cm of "
-        "steel assumed. Circles: quadrature of the frustum's momentum, for the paper's plates."
+        f"Mass of plate and sand that moves, the bracket of (1): depth 45 cm, 45°, {DENSITY:g} "
+        "kg/m³ and plates of 2 cm of steel assumed. Circles: quadrature of the frustum's momentum, "
+        "for the paper's plates."
     )
     with captioned([words], file, WIDTH, 3.4) as made:
         axes = made.subplots()
         axes.plot(areas, [mass(a) for a in areas], color=INK, label="derived, 12 r²")
         axes.plot(areas, [mass(a, PRINTED) for a in areas], "--", color=ROCK, label="printed, 3 r²")
-        plates = [
-            mass(a) - float(soil_mass(radius(a), DEPTH, SPREAD, DENSITY, DERIVED)) for a in AREAS
-        ]
-        axes.plot(
-            AREAS,
-            [momentum(radius(a)) + plate for a, plate in zip(AREAS, plates)],
-            "o",
-            color=GREY,
-            fillstyle="none",
-        )
+        axes.plot(AREAS, [_by_quadrature(a) for a in AREAS], "o", color=GREY, fillstyle="none")
         axes.set(xlabel="area of the plate (cm²)", ylabel="virtual mass (kg)")
         axes.set_ylim(bottom=0.0)
         axes.legend(loc="lower right")
     return [file]
+
+
+def _by_quadrature(area: float) -> float:
+    """Return the mass (kg) of plate and moving sand, the sand's by quadrature."""
+    sand = float(soil_mass(radius(area), DEPTH, SPREAD, DENSITY, DERIVED))
+    return momentum(radius(area)) + mass(area) - sand
 
 
 STUDY = Study(
@@ -133,6 +148,7 @@ STUDY = Study(
     rows,
     draw=draw,
     notes=(
-        "Density of the sand and mass of the plates are not printed: 1600 kg/m³ and 2 cm of steel are assumed.",
+        "Density of the sand and mass of the plates are not printed: 1600 kg/m³ and 2 cm of steel "
+        "are assumed.",
     ),
 )

@@ -1,1 +1,4 @@
-"""The studies of Ushiro, A study on computer simulation of rockfalls (DRSP): one file for each, found by its ``STUDY``."""
+"""Ushiro, A study on computer simulation of rockfalls (DRSP).
+
+Reproduced is figure 7, the coefficient of restitution over the normal speed of an impact.
+"""

@@ -1,24 +1,36 @@
-"""Figure 7: coefficient of restitution over the normal speed, and what the paper reads from it. Equations (26)-(28) as the
-component computes them; the parameters of the printed curves are not legible, so the curves stand for typical ground.
+"""Figure 7: coefficient of restitution over the normal speed, and the paper's reading of it.
+
+Equations (26)-(28) as the component computes them; the parameters of the printed curves are not
+legible, so the curves stand for typical ground.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockshed.components.common.units import kN
+from rockshed.components.common.units import kgf, kN
 from rockshed.components.slope_rockfall.declarations import CONSISTENT, NONE, PRINTED
 from rockshed.components.slope_rockfall.restitution import restitution
 
 from ..study import Outcomes, Row, Study, verdict
 
-GRAVITY, DENSITY, AREA_FACTOR = 9.80665, 2600.0, 0.25
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+GRAVITY = kgf
+"""Standard gravity (m/s2): the weight of a kilogram."""
+DENSITY = 2600.0
+"""Density of the rock (kg/m3)."""
+AREA_FACTOR = 0.25
+"""Contact area over the cross-section of the rock."""
 TREATMENTS = {"printed": PRINTED, "none": NONE, "consistent": CONSISTENT}
 """Gravity during the penetration, by name; see the README of the component."""
 SPEEDS = np.linspace(0.02, 20.0, 1000)
+"""Normal speeds (m/s) of the curves."""
 FAST = 10.0
 """Normal speed (m/s) at which curves are compared."""
 SLOW = 1e-3
@@ -29,7 +41,21 @@ HARDLY = 0.10
 
 @dataclass(frozen=True)
 class Impact:
-    """What e depends on besides the speed: q_d (Pa), k (N/m3), epsilon, r (m), inclination (rad)."""
+    """Ground and rock, on which e depends besides the speed.
+
+    Attributes
+    ----------
+    strength : float
+        q_d (Pa).
+    stiffness : float
+        k (N/m3).
+    hardening : float
+        Epsilon.
+    radius : float
+        r (m).
+    angle : float
+        Inclination (rad).
+    """
 
     strength: float = 3000.0 * kN
     stiffness: float = 30000.0 * kN
@@ -38,7 +64,7 @@ class Impact:
     angle: float = math.radians(40.0)
 
     def restitution(self, speed: float, treatment: int) -> float:
-        """Coefficient of restitution e at this normal speed (m/s)."""
+        """Return the coefficient of restitution e at a normal speed (m/s)."""
         mass = DENSITY * 4.0 / 3.0 * math.pi * self.radius**3
         area = AREA_FACTOR * math.pi * self.radius**2
         return float(
@@ -76,64 +102,69 @@ VARIATIONS: dict[str, tuple[str, list[tuple[str, Impact]]]] = {
         [(f"{value}°", replace(BASE, angle=math.radians(value))) for value in (0, 30, 60)],
     ),
 }
-"""What is varied, each from weak to strong decay; the last is not drawn in the paper."""
+"""Variations, each from weak to strong decay; the last is not drawn in the paper."""
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """The paper's reading of its figure, for every treatment of gravity."""
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return the paper's reading of its figure, for every treatment of gravity."""
     return [row for name, treatment in TREATMENTS.items() for row in _rows(name, treatment)]
 
 
 def _rows(model: str, treatment: int) -> list[Row]:
-    def kept(impact: Impact) -> float:
-        return impact.restitution(FAST, treatment) / math.sqrt(impact.hardening)
+    """Return the claims for one treatment of gravity."""
+    curve = np.array([BASE.restitution(speed, treatment) for speed in SPEEDS])
+    made = [_falls(curve), *_decays(treatment), _at_rest(curve, treatment), _inclination(treatment)]
+    return [replace(row, model=model) for row in made]
 
-    def claim(text: str, holds: bool, note: str, computed: float | None = None) -> Row:
-        return Row(text, "1", computed=computed, model=model, verdict=verdict(holds), note=note)
 
-    curve = [BASE.restitution(v, treatment) for v in SPEEDS]
+def _falls(curve: np.ndarray) -> Row:
     peak = int(np.argmax(curve))
     falls = bool(np.all(np.diff(curve[peak:]) < 0.0)) and curve[-1] < 0.5 * curve[peak]
-    made = [
-        claim(
-            "from its largest value on, e falls with v1, and to less than half",
-            falls,
-            f"from {curve[peak]:.2f} at {SPEEDS[peak]:.2f} m/s to {curve[-1]:.2f} at {SPEEDS[-1]:g} m/s",
-            curve[-1],
-        )
-    ]
+    return Row(
+        "from its largest value on, e falls with v1, and to less than half",
+        "1",
+        computed=float(curve[-1]),
+        verdict=verdict(falls),
+        note=f"from {curve[peak]:.2f} at {SPEEDS[peak]:.2f} m/s to {curve[-1]:.2f} at "
+        f"{SPEEDS[-1]:g} m/s",
+    )
+
+
+def _decays(treatment: int) -> Iterator[Row]:
+    """Yield whether strength, stiffness and size of the rock make e decay faster."""
     for key, text in (
         ("strength", "the smaller q_d, the stronger the decay"),
         ("ratio", "the larger k / q_d, the stronger the decay"),
         ("radius", "the larger the rock, the stronger the decay"),
     ):
-        values = [kept(impact) for _, impact in VARIATIONS[key][1]]
-        made.append(
-            claim(
-                text,
-                values == sorted(values, reverse=True) and len(set(values)) == len(values),
-                _kept(key, values),
-            )
-        )
+        values = [
+            impact.restitution(FAST, treatment) / math.sqrt(impact.hardening)
+            for _, impact in VARIATIONS[key][1]
+        ]
+        holds = values == sorted(values, reverse=True) and len(set(values)) == len(values)
+        yield Row(text, "1", verdict=verdict(holds), note=_kept(key, values))
+
+
+def _at_rest(curve: np.ndarray, treatment: int) -> Row:
     start = BASE.restitution(SLOW, treatment)
-    made.append(
-        claim(
-            "ε is about e at v1 ≈ 0",
-            abs(start / BASE.hardening - 1.0) < HARDLY,
-            f"e = {start:.3f} at {SLOW:g} m/s for ε = {BASE.hardening:g}; √ε = {math.sqrt(BASE.hardening):.3f}, "
-            f"largest e = {curve[peak]:.3f}",
-            start,
-        )
+    return Row(
+        "ε is about e at v1 ≈ 0",
+        "1",
+        computed=start,
+        verdict=verdict(abs(start / BASE.hardening - 1.0) < HARDLY),
+        note=f"e = {start:.3f} at {SLOW:g} m/s for ε = {BASE.hardening:g}; √ε = "
+        f"{math.sqrt(BASE.hardening):.3f}, largest e = {curve.max():.3f}",
     )
+
+
+def _inclination(treatment: int) -> Row:
     values = [impact.restitution(FAST, treatment) for _, impact in VARIATIONS["angle"][1]]
-    made.append(
-        claim(
-            "the inclination hardly matters",
-            max(values) / min(values) - 1.0 < HARDLY,
-            f"e at {FAST:g} m/s: {_listed('angle', values)}",
-        )
+    return Row(
+        "the inclination hardly matters",
+        "1",
+        verdict=verdict(max(values) / min(values) - 1.0 < HARDLY),
+        note=f"e at {FAST:g} m/s: {_listed('angle', values)}",
     )
-    return made
 
 
 def _kept(key: str, values: Sequence[float]) -> str:
@@ -147,38 +178,39 @@ def _listed(key: str, values: Sequence[float]) -> str:
     )
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """The four panels; solid: consistent gravity, dashed: as printed."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED, WIDTH, captioned
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw the four panels; solid: consistent gravity, dashed: as printed."""
+    from ...pictures.style import WIDTH, captioned
 
     file = folder / "figure7.png"
     words = (
-        f"Figure 7 of Ushiro: equations (26)-(28). Where not varied: q_d = 3000 kN/m², k = 30 MN/m³, ε = {BASE.hardening:g}, "
-        f"r = {BASE.radius:g} m, {DENSITY:g} kg/m³, θ = {math.degrees(BASE.angle):.0f}°. Solid: gravity counted on the way in "
-        "and out; dashed: as printed, on the way out only."
+        "Figure 7 of Ushiro: equations (26)-(28). Where not varied: q_d = 3000 kN/m², k = 30 "
+        f"MN/m³, ε = {BASE.hardening:g}, r = {BASE.radius:g} m, {DENSITY:g} kg/m³, θ = "
+        f"{math.degrees(BASE.angle):.0f}°. Solid: gravity counted on the way in and out; dashed: "
+        "as printed, on the way out only."
     )
     with captioned([words], file, WIDTH, 5.4) as made:
-        for axes, key in zip(
-            made.subplots(2, 2, sharex=True, sharey=True).ravel(),
-            ("strength", "ratio", "hardening", "radius"),
-        ):
-            title, variants = VARIATIONS[key]
-            for (label, impact), colour in zip(variants, (TRANSMITTED, INK, ROCK), strict=True):
-                for treatment, dashes in ((CONSISTENT, "-"), (PRINTED, "--")):
-                    axes.plot(
-                        SPEEDS,
-                        [impact.restitution(v, treatment) for v in SPEEDS],
-                        dashes,
-                        color=colour,
-                        linewidth=1.1,
-                        label=label if treatment == CONSISTENT else None,
-                    )
-            axes.legend(title=title, title_fontsize=8.5)
-            axes.label_outer()
+        panels = made.subplots(2, 2, sharex=True, sharey=True).ravel()
+        keys = ("strength", "ratio", "hardening", "radius")
+        for axes, key in zip(panels, keys, strict=True):
+            _draw_variation(axes, key)
         made.supylabel("coefficient of restitution e", fontsize=9.0)
-        for axes in made.axes[2:]:
+        for axes in panels[2:]:
             axes.set(xlabel="normal speed v1 (m/s)", xlim=(0.0, SPEEDS[-1]), ylim=(0.0, 1.0))
     return [file]
+
+
+def _draw_variation(axes: "Axes", key: str) -> None:
+    """Draw e over the normal speed for one variation."""
+    from ...pictures.style import INK, ROCK, TRANSMITTED
+
+    title, variants = VARIATIONS[key]
+    for (label, impact), colour in zip(variants, (TRANSMITTED, INK, ROCK), strict=True):
+        for treatment, dashes, shown in ((CONSISTENT, "-", label), (PRINTED, "--", None)):
+            curve = [impact.restitution(speed, treatment) for speed in SPEEDS]
+            axes.plot(SPEEDS, curve, dashes, color=colour, linewidth=1.1, label=shown)
+    axes.legend(title=title, title_fontsize=8.5)
+    axes.label_outer()
 
 
 STUDY = Study(
@@ -188,8 +220,8 @@ STUDY = Study(
     rows,
     draw=draw,
     notes=(
-        "The parameters of the printed curves are not legible: ground and rock are typical ones, and what the paper says of the curves "
-        "is checked.",
+        "The parameters of the printed curves are not legible: ground and rock are typical ones, "
+        "and the claims of the paper about the curves are checked.",
         "Models: gravity during the penetration, see components/slope_rockfall/README.md.",
     ),
 )

@@ -1,4 +1,4 @@
-"""The paper's standard penetration test (its table 1) on a rod by any scheme, and its traces over time."""
+"""The paper's standard penetration test (its table 1) on a rod, by any scheme."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,13 +9,21 @@ from numpy.typing import NDArray
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
-from rockshed.components.common.units import cm, cm2
+from rockshed.components.common.units import cm, cm2, kgf
 from rockshed.components.pile_rod.st_venant import StVenant
 
-MASS, DROP = 63.5, 75 * cm
-"""Hammer (kg) and fall (m); 4762.5 kg cm of energy."""
-AREA, DENSITY, SPEED = 5.8 * cm2, 7850.0, 5120.0
-GRAVITY = 9.80665
+MASS = 63.5
+"""Mass of the hammer (kg)."""
+DROP = 75 * cm
+"""Height of its fall (m)."""
+AREA = 5.8 * cm2
+"""Cross-section of the rod (m2)."""
+DENSITY = 7850.0
+"""Density of the rod (kg/m3)."""
+SPEED = 5120.0
+"""Speed of waves in the rod (m/s)."""
+GRAVITY = kgf
+"""Standard gravity (m/s2): the weight of a kilogram."""
 QUAKE = 2.5e-3
 """Displacement (m) at which Smith's ground yields, his 0.1 in; the paper's is not stated."""
 SOURCE = "Table 1: hammer 63.5 kg (the scan's 63.5 kN), 75 cm, rod 5.8 cm², 7.85 g/cm³, 5120 m/s."
@@ -23,9 +31,18 @@ SOURCE = "Table 1: hammer 63.5 kg (the scan's 63.5 kN), 75 cm, rod 5.8 cm², 7.8
 
 @dataclass(frozen=True)
 class Traces:
-    """What a run gave: times (s) at the ends of the steps, named outputs over them, and the rod as it was at the end.
+    """Outputs of a struck rod over time.
 
-    ended: whether the run came to its end; one that diverges ends where its numbers do.
+    Attributes
+    ----------
+    time : array, shape (steps,)
+        Ends of the steps (s).
+    values : mapping of str to array, shape (steps,)
+        Outputs by name (SI).
+    rod : Instance
+        The rod at the end.
+    ended : bool
+        Whether the run came to its end; one that diverges ends where its numbers do.
     """
 
     time: NDArray[np.float64]
@@ -43,26 +60,26 @@ class Traces:
 
     @property
     def travel_time(self) -> float:
-        """L/c (s)."""
+        """Travel time L/c of a wave along the rod (s)."""
         return float(self.rod["travel_time"])
 
     def relative(self, name: str) -> NDArray[np.float64]:
-        """A force over that with which the hammer strikes."""
+        """Return a force over that with which the hammer strikes, shape (steps,)."""
         return self[name] / self.front
 
     def first_without(self, name: str) -> float | None:
-        """Time (s) at which a force first is zero or less after the blow; None if it never is."""
+        """Return the time (s) at which a force first is not positive; None if it always is."""
         there = np.flatnonzero(self[name] <= 0.0)
         return float(self.time[there[0]]) if there.size else None
 
 
 def alpha(kappa: float) -> float:
-    """Reflection coefficient for the ratio of stiffnesses or impedances, eqs (8), (9)."""
+    """Return the reflection coefficient for a ratio of stiffnesses or impedances, eqs (8), (9)."""
     return (1.0 - kappa) / (1.0 + kappa)
 
 
 def kappa(reflection: float) -> float:
-    """Ratio of stiffnesses or impedances for a reflection coefficient, eqs (8), (9)."""
+    """Return the ratio of stiffnesses or impedances for a reflection coefficient, eqs (8), (9)."""
     return (1.0 - reflection) / (1.0 + reflection)
 
 
@@ -76,20 +93,45 @@ def strike(
     ground: int = 1,
     **parameters: Any,
 ) -> Traces:
-    """Strike a rod of this length (m) and follow it for a number of travel times.
+    """Strike a rod and follow the waves in it.
 
-    parts: of the critical step that make a step. ground: segments of the ground as a rod. ``__`` in names stands for a dot.
+    Parameters
+    ----------
+    length : float
+        Length of the rod (m).
+    segments : int
+        Number of its segments.
+    outputs : tuple of str
+        Outputs that are kept.
+    times : float
+        Number of travel times that are followed.
+    scheme : str
+        Scheme of the component.
+    parts : int
+        Steps in a critical step.
+    ground : int
+        Segments of the ground as a rod.
+    **parameters
+        Further parameters; ``__`` in a name stands for a dot.
+
+    Returns
+    -------
+    Traces
+        Outputs at the end of every step.
     """
     rod = component("PileRod").instance(segments=segments, ground_segments=ground)
-    rod["scheme"], rod["section.length"], rod["ram.mass"] = scheme, length, MASS
+    rod["scheme"] = scheme
+    rod["section.length"] = length
+    rod["ram.mass"] = MASS
     rod["ram.velocity"] = float(np.sqrt(2.0 * GRAVITY * DROP))
     for name, value in parameters.items():
         rod[name.replace("__", ".")] = value
     rod["internal_step"] = length / SPEED / segments / parts * (1.0 + 1e-12)
     rod.initialise()
     step = rod["time_step"]
+    steps = round(times * rod["travel_time"] / step)
     rows = []
-    for n in range(round(times * rod["travel_time"] / step)):
+    for n in range(steps):
         try:
             rod.step(n * step, step)
         except ComponentError:
@@ -99,17 +141,17 @@ def strike(
         name: np.array(column)
         for name, column in zip(outputs, zip(*rows, strict=True), strict=True)
     }
-    ended = len(rows) == round(times * rod["travel_time"] / step)
-    return Traces(np.arange(1, len(rows) + 1) * step, values, rod, ended)
+    time = np.arange(1, len(rows) + 1) * step
+    return Traces(time, values, rod, ended=len(rows) == steps)
 
 
 def reflecting(reflection: float) -> dict[str, Any]:
-    """Parameters of a toe that reflects this part of the displacement."""
+    """Return the parameters of a toe that reflects this part of the displacement."""
     return {"toe__condition": "reflection", "toe__reflection": reflection}
 
 
 def closed_form(traces: Traces, reflection: float) -> StVenant:
-    """St. Venant's solution for the same rod."""
+    """Return St. Venant's solution for the same rod."""
     return StVenant(
         MASS,
         traces.rod["ram.velocity"],
