@@ -6,7 +6,7 @@ Closed forms stand beside the component, stepped in time.
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -161,7 +161,7 @@ def _draw_blow(made: "Figure", test: PlateTest) -> None:
     velocity.plot([0.0, end / ms], [v0, 0.0], ":", color=ROCK)
     printed = printed_settlement(test.impulse, mass(test.area), r0, r1) / mm
     settlement.axhline(printed, color=ROCK, linestyle=":", linewidth=1.2)
-    where = {"xytext": (4, 3), "textcoords": "offset points"}
+    where: dict[str, Any] = {"xytext": (4, 3), "textcoords": "offset points"}
     settlement.annotate("(7)", (0.0, printed), **where, color=ROCK, fontsize=8.5)
     labels = ("R (kgf)", "v (m/s)", "settlement (mm)")
     for axes, label in zip(panels, labels, strict=True):

@@ -6,7 +6,7 @@ The scheme of the paper, and its repair at the interface of rod and ground.
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -146,7 +146,7 @@ def _draw_velocities(axes: "Axes") -> None:
         one = run(scheme, ALPHA)
         since = one.time + later * one.rod["time_step"] - one.travel_time
         velocity = one["toe.velocity"] / one.rod["ram.velocity"]
-        form = {"linewidth": 1.0, "markersize": 3}
+        form: dict[str, Any] = {"linewidth": 1.0, "markersize": 3}
         axes.plot(since / ms, velocity, look, color=colour, label=label, **form)
     axes.set(xlabel="time since the arrival (ms)", xlim=(-0.05, 0.25))
     axes.set(ylabel="velocity of the toe / V0")

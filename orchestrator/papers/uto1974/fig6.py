@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -128,7 +128,7 @@ def _draw_velocity(axes: "Axes") -> None:
 
     run = coarse()
     whole = critical()
-    form = {"color": TRANSMITTED, "label": "Smith, dx/c", "drawstyle": "steps-pre"}
+    form: dict[str, Any] = {"color": TRANSMITTED, "label": "Smith, dx/c", "drawstyle": "steps-pre"}
     axes.plot(run.time / ms, run["toe.velocity"], color=ROCK, label="Smith, dt/5")
     axes.plot(whole.time / ms, whole["toe.velocity"], **form)
     axes.set(ylabel="velocity of\nthe toe (m/s)")

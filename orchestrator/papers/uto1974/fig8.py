@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -105,7 +105,7 @@ def _draw_head(axes: "Axes") -> None:
     run = spring()
     exact = closed_form(run, -1.0)
     at = np.linspace(0.0, min(float(exact.separation() or 1.0), run.time[-1]), 800)
-    form = {"color": INK, "linewidth": 1.0, "label": "St. Venant, alpha = -1"}
+    form: dict[str, Any] = {"color": INK, "linewidth": 1.0, "label": "St. Venant, alpha = -1"}
     axes.plot(run.time / ms, run.relative("head.contact_force"), color=ROCK, label="Smith, k2 = k1")
     axes.plot(at / ms, exact.force(at) / exact.first_force, "--", **form)
     axes.set(ylabel="force under the\nhammer / Z V0")
@@ -116,12 +116,13 @@ def _draw_toe(axes: "Axes") -> None:
     """Draw the force on the toe of all three rods."""
     from ...pictures.style import INK, ROCK, TRANSMITTED
 
-    for run, look, form in (
-        (spring(), "-", {"color": ROCK, "label": "Smith, k2 = k1"}),
-        (longer(), "--", {"color": INK, "linewidth": 1.0, "label": "one segment more, fixed"}),
-        (matched(), "-", {"color": TRANSMITTED, "label": "toe without reflection"}),
+    for run, look, colour, label in (
+        (spring(), "-", ROCK, "Smith, k2 = k1"),
+        (longer(), "--", INK, "one segment more, fixed"),
+        (matched(), "-", TRANSMITTED, "toe without reflection"),
     ):
-        axes.plot(run.time / ms, run.relative("toe.contact_force"), look, **form)
+        force = run.relative("toe.contact_force")
+        axes.plot(run.time / ms, force, look, color=colour, linewidth=1.2, label=label)
     axes.set(ylabel="force on the\ntoe / Z V0")
     axes.legend()
 

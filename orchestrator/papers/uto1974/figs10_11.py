@@ -6,7 +6,7 @@ A stiff spring under the toe, and the total energy.
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -163,7 +163,7 @@ def _draw_forces(axes: "Axes") -> None:
     for ratio, colour in zip(STIFFNESSES, (TRANSMITTED, INK, "#8cc28a", ROCK), strict=True):
         run = stiff(ratio)
         label = f"k2/k1 = {ratio:g}, alpha = {alpha(ratio):.2f}"
-        form = {"color": colour, "linewidth": 1.0, "markersize": 3, "label": label}
+        form: dict[str, Any] = {"color": colour, "linewidth": 1.0, "markersize": 3, "label": label}
         axes.plot(run.time / ms, run.relative("toe.contact_force"), ".-", **form)
     axes.set_yscale("symlog", linthresh=5.0)
     axes.set(
@@ -184,7 +184,7 @@ def _draw_energies(axes: "Axes") -> None:
         run = energy(segments)
         total = run["energy.naive"] / run.rod["energy.start"]
         label = f"as printed, {segments} segments"
-        form = {"color": colour, "linewidth": 1.0, "marker": marker}
+        form: dict[str, Any] = {"color": colour, "linewidth": 1.0, "marker": marker}
         axes.plot(run.time / ms, total, label=label, **form)
     ten = energy(10)
     half_step = 1.0 + ten["energy.residual"] / ten.rod["energy.start"]
