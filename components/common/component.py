@@ -26,7 +26,8 @@ OK = 0
 Buffer = NDArray[np.float64]
 HEADER = struct.Struct("<8s16sqqq")
 """Of a serialized state: mark, kind, and the lengths of ``w``, ``x`` and ``k``, which follow."""
-_MAGIC = b"rockshed"
+MAGIC = b"rockshed"
+"""Mark at the beginning of a serialized state."""
 
 
 class ComponentError(Exception):
@@ -257,7 +258,7 @@ class Instance:
 
     def to_bytes(self) -> bytes:
         """The complete state, exact to the bit."""
-        header = HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
+        header = HEADER.pack(MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         return header + self.w.tobytes() + self.x.tobytes() + self.k.tobytes()
 
     def from_bytes(self, content: bytes) -> None:
@@ -266,7 +267,7 @@ class Instance:
         Raises:
             ComponentError: not such a state, of another component or size, or cut short.
         """
-        expected = HEADER.pack(_MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
+        expected = HEADER.pack(MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         if content[: HEADER.size] != expected or len(content) != len(expected) + 8 * (
             self.w.size + self.x.size + self.k.size
         ):

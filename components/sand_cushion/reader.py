@@ -5,17 +5,28 @@ Nothing is simulated here: positions are those of the state, and forces follow f
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..common.component import HEADER, ComponentError, Instance
+from ..common.component import HEADER, MAGIC, ComponentError, Instance
 from ..common.kernels import kernel
 from ..common.ports import view
 from . import COMPONENT
 from .contact_search import base_top, beam_count, disc_count, first_of, second_of
-from .declarations import ANGLE, BEAM_DISCS, KIND, LAW, LAYOUT, ON_BEAM, RADIUS, ROW, UNBOUNDED
+from .declarations import (
+    ANGLE,
+    BEAM_DISCS,
+    FLOOR,
+    KIND,
+    LAW,
+    LAYOUT,
+    ON_BEAM,
+    RADIUS,
+    ROW,
+    UNBOUNDED,
+)
 from .forces import kind_of, touch
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -197,3 +208,31 @@ def sizes_of(content: bytes) -> dict[str, int]:
     _, _, n_w, n_x, n_k = HEADER.unpack_from(content)
     table = np.frombuffer(content, np.int64, n_k, HEADER.size + 8 * (n_w + n_x))
     return {"discs": int(table[A.angle + 1]), "elements": int(table[A.beam_position_x + 1])}
+
+
+def decoded(content: bytes) -> SandState:
+    """Return the geometry in a state as an FMU of the cushion serializes it.
+
+    Parameters
+    ----------
+    content : bytes
+        State of the FMU, which ends with that of the component; the component's alone will do.
+
+    Returns
+    -------
+    SandState
+        Without beam discs where the sand lies on a floor: their places then mean nothing.
+
+    Raises
+    ------
+    ComponentError
+        Not such a state, of another version, or cut short.
+    """
+    state = content[max(content.find(MAGIC), 0) :]
+    instance = COMPONENT.instance(**sizes_of(state))
+    instance.from_bytes(state)
+    shown = snapshot(instance)
+    if instance["base"] != FLOOR:
+        return shown
+    none = Discs(*(np.zeros(0) for _ in fields(Discs)))
+    return replace(shown, beam=none)

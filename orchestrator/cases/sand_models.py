@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
-from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, kgf
+from rockshed.components.sand_cushion.models import MODELS, SPREAD, SandModel
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
@@ -58,48 +58,10 @@ class Changes:
     options: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class SandModel:
-    """parameters: of the sand. prepared: whether the layer is prepared in the state of the case's soil."""
-
-    summary: str
-    parameters: Mapping[str, Value]
-    prepared: bool = False
-
-
-ONE_LAW_MODULUS, ONE_LAW_UNLOADING = 35.0, 3.0
-"""E_bar (kgf/cm2) and unloading / loading stiffness: calibrated to twelve tests in the laboratory and to table 6, the
-same for all."""
-ROLLING, SPREAD = 0.3, 0.25
 LOOSE, DENSE = 0.735, 0.75
 """Solid fractions of discs (in the plane) that stand for sand as poured and compacted: calibrated with the same tests."""
 FULL_SCALE_SOIL = Soil(0.05 * _KGF_PER_CM2, DENSE)
 """Nothing is known of the sand on rigid base and girders; taken as moist and compacted."""
-
-MODELS: Mapping[str, SandModel] = {
-    "calibrated": SandModel(
-        "rotation locked and a factor on the stiffness, fitted to the paper's own figures", {}
-    ),
-    "literal": SandModel(
-        "eq. (1) to the letter: three freedoms a disc, no factor",
-        {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"},
-    ),
-    "one-law": SandModel(
-        "one contact law for all tests: discs of many sizes that resist rolling, yield and stick; the soil's "
-        "cohesion and solid fraction are what differs",
-        {
-            "rotation": "free",
-            "stiffness_factor": 1.0,
-            "modulus": ONE_LAW_MODULUS * _KGF_PER_CM2,
-            "packing": "prepared",
-            "disc.spread": SPREAD,
-            "rolling_resistance": ROLLING,
-            "unloading_ratio": ONE_LAW_UNLOADING,
-            "unit_weight_of": "layer",
-        },
-        prepared=True,
-    ),
-}
 
 
 def sand_model(name: str) -> SandModel:
@@ -117,39 +79,6 @@ def sand_model(name: str) -> SandModel:
             ]
         )
     return MODELS[name]
-
-
-def model_of(values: Mapping[str, Value]) -> str | None:
-    """The model that the parameters of a sand cushion belong to, whatever its soil and modulus; None if to none of them."""
-
-    def same(name: str, value: Value) -> bool:
-        return (
-            math.isclose(float(values[name]), float(value))
-            if isinstance(value, float)
-            else values[name] == value
-        )
-
-    own = {
-        v.name: v.choices[int(v.start_at(0, {})) - 1] if v.choices else v.start_at(0, {})
-        for v in component("SandCushion").layout.ordered
-        if v.name in {key for m in MODELS.values() for key in m.parameters}
-    }
-    return next(
-        (
-            name
-            for name, model in MODELS.items()
-            if all(
-                same(key, value)
-                for key, value in {**own, **model.parameters}.items()
-                if key not in _FREE
-            )
-        ),
-        None,
-    )
-
-
-_FREE = ("modulus", "packing", "disc.spread")
-"""Parameters that may differ within a model, packing and spread with lattices only."""
 
 
 @cache

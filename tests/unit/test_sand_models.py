@@ -6,8 +6,8 @@ import pytest
 
 from rockshed.cases import sonoda1993
 from rockshed.cases.registry import case, cases, model_changes
-from rockshed.cases.sand_models import MODELS
 from rockshed.components.common.units import cm, kgf
+from rockshed.components.sand_cushion.models import MODELS
 from rockshed.core.errors import InputRefused
 from rockshed.runs.job import Request, prepare
 

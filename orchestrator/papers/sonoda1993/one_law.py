@@ -7,13 +7,14 @@ from statistics import mean, stdev
 from typing import Any
 
 from rockshed.components.common.units import cm, kgf
+from rockshed.components.sand_cushion.models import ONE_LAW_MODULUS, ONE_LAW_UNLOADING, ROLLING
 
 from ...cases import full_scale, sonoda1993
-from ...cases.sand_models import DENSE, LOOSE, ONE_LAW_MODULUS, ONE_LAW_UNLOADING, ROLLING
+from ...cases.sand_models import DENSE, LOOSE
 from ...cases.static_loading import NAME as STATIC_TEST
 from ...cases.static_loading import SPEED
 from ...core.system.system import Value
-from ...metrics.headlines import (
+from ...metrics.names import (
     BEAM_SHARE_FROM_STRAIN,
     PEAK_TRANSMITTED,
     SETTLED_RATIO,

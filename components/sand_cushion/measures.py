@@ -1,0 +1,84 @@
+"""Measures of a sand cushion that follow from its parameters, for metrics and captions of a run."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from ..common.units import cm, kgf
+from .models import model_of
+
+Parameters = Mapping[str, float | str]
+
+_OPTIONAL = (
+    ("rolling_resistance", "rolling resistance", 0.0, 1.0, ""),
+    ("unloading_ratio", "unloading ratio", 1.0, 1.0, ""),
+    ("cohesion", "cohesion", 0.0, kgf / cm**2, " kgf/cm²"),
+)
+"""Parameters that are named where they are not idle: name, words, idle value, unit in SI, its name."""
+
+
+def contact_frequency(parameters: Parameters) -> float:
+    """Return the natural frequency of a sand disc on one contact, sqrt(k_n/m) / 2 pi.
+
+    Parameters
+    ----------
+    parameters : mapping of str to value
+        Parameters of the cushion.
+
+    Returns
+    -------
+    float
+        In Hz.
+    """
+    factor, modulus, density, radius, solid = (
+        float(parameters[name])
+        for name in ("stiffness_factor", "modulus", "unit_weight", "disc.radius", "solid_fraction")
+    )
+    if parameters["unit_weight_of"] == "layer":
+        density /= solid
+    return math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
+
+
+def base_height(parameters: Parameters, axis: Sequence[float]) -> float:
+    """Return the height of the base under the sand: the top of the beam's discs, or the floor.
+
+    Parameters
+    ----------
+    parameters : mapping of str to value
+        Parameters of the cushion.
+    axis : sequence of float
+        Heights (m) of the axis of the beam, empty without one.
+
+    Returns
+    -------
+    float
+        In m.
+    """
+    if parameters["base"] == "floor" or len(axis) == 0:
+        return float(parameters["base.y"])
+    return max(axis) + float(parameters["beam.radius"])
+
+
+def description(parameters: Parameters) -> str:
+    """Return the model of the sand in a line: its name, and the parameters that make it up.
+
+    Parameters
+    ----------
+    parameters : mapping of str to value
+        Parameters of the cushion.
+    """
+    optional = [
+        f"{words} {float(parameters[key]) / size:g}{unit}"
+        for key, words, idle, size, unit in _OPTIONAL
+        if float(parameters[key]) != idle
+    ]
+    packing = f"{parameters['packing']} packing"
+    if parameters["packing"] == "prepared":
+        packing += f" of {parameters['solid_fraction']}"
+    parts = [
+        f"rotation {parameters['rotation']}",
+        f"stiffness factor {float(parameters['stiffness_factor']):g}",
+        *optional,
+        packing,
+        f"fictitious modulus E_bar {float(parameters['modulus']) / kgf * cm**2:.1f} kgf/cm²",
+    ]
+    return f"{model_of(parameters) or 'modified'} sand: {', '.join(parts)}"
