@@ -53,9 +53,33 @@ class LoadCurve:
 
 
 def load_curve(series: Mapping[str, Values], sand: str) -> LoadCurve | None:
-    """The curve of a run with a driven rock, from the rows in which it sinks; None if the results have no such columns."""
+    """Return the load curve of a sand cushion from the columns of a run.
+
+    Parameters
+    ----------
+    series : mapping of str to array of float, shape (rows,)
+        Columns of the run.
+    sand : str
+        Name of the sand cushion in the system.
+
+    Returns
+    -------
+    LoadCurve or None
+        None if the results have no such columns.
+    """
     depth, load = series.get(f"{sand}.penetration"), series.get(f"{sand}.rock.force.y")
-    if depth is None or load is None:
-        return None
+    return None if depth is None or load is None else driven_curve(depth, load)
+
+
+def driven_curve(depth: Values, load: Values) -> LoadCurve:
+    """Return the load curve of a driven body from the rows in which it sinks.
+
+    Parameters
+    ----------
+    depth : array of float, shape (rows,)
+        Penetration (m).
+    load : array of float, shape (rows,)
+        Load on the body (N), upwards.
+    """
     sinking = np.concatenate(([True], depth[1:] > np.maximum.accumulate(depth)[:-1]))
     return LoadCurve(depth[sinking], load[sinking])

@@ -1,17 +1,22 @@
 """Pictures of a run, from its results alone: the same at the end of a run and later."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from rockshed.components.common.component import ComponentError
+from rockshed.components.common.roles import Role
 
 from ..core.errors import InputRefused, refusing_unwritable
 from ..core.results.reading import Run
 from ..metrics.comparison import known_of
-from ..metrics.headlines import driven, named, roles
+from ..metrics.contents import ForeignStateError, reader_of
+from ..metrics.cushion import cushions
+from ..metrics.energy import driven
+from ..metrics.roles import members
+from .declared import declared_pictures
+from .references import References
 
 Tell = Callable[[str], None]
 """Shows a line to the user."""
@@ -58,7 +63,7 @@ def draw_all(
         _make(folder)
         try:
             picture.draw(file)
-        except ComponentError as error:
+        except ForeignStateError as error:
             note(
                 f"no picture {picture.name}: the states were recorded by another version of the FMU ({error})"
             )
@@ -71,68 +76,58 @@ def draw_all(
 
 
 def _pictures(run: Run) -> list[_Picture]:
-    """The pictures of the components that take part."""
-    from . import curves, piles, sand
+    """Return the pictures of the components that take part."""
+    from .energy import energy  # matplotlib is imported when something is drawn
 
-    known, who = known_of(run), roles(run)
-    force, depth = (
-        [f"{who.sand}.transmitted_force", f"{who.sand}.rock.force.y"],
-        [f"{who.sand}.penetration"],
-    )
-    of_sand = (
-        []
-        if who.sand is None
-        else [
-            _Picture("load", partial(curves.load, run, known), [force[1], *depth]),
-            _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
-        ]
-        if driven(run)
-        else [
-            _Picture("overview", partial(sand.overview, run, known), force + depth, who.sand),
-            _Picture("sand", partial(sand.snapshots, run), force[:1] + depth, who.sand),
-            _Picture("forces", partial(curves.forces, run, known), force),
-            _Picture("penetration", partial(curves.penetration, run, known), depth),
-        ]
-    )
-    of_beam = (
-        []
-        if who.beam is None
-        else [
-            _Picture("beam", partial(curves.beam, run, known), [f"{who.beam}.midspan.deflection"])
-        ]
-    )
-    striking = [who.rock] if who.rock else named(run, "Hammer")
-    of_rock = (
-        []
-        if not striking
-        else [
-            _Picture(
-                "energy",
-                partial(curves.energy, run),
-                [f"{name}.energy.kinetic" for name in striking],
-            )
-        ]
-    )
-    rods, grounds = named(run, "PileRod"), named(run, "ImpulsiveGround")
-    of_piles = (
-        []
-        if not rods
-        else [
-            _Picture(
-                "piles",
-                partial(piles.blow, run),
-                [
-                    *(
-                        f"{rod}.{end}"
-                        for rod in rods
-                        for end in ("head.contact_force", "head.zv", "toe.contact_force")
-                    ),
-                    *(f"{ground}.settlement" for ground in grounds),
-                ],
-            )
-        ]
-    )
-    return of_sand + of_beam + of_piles + of_rock
+    known = known_of(run)
+    several = len(cushions(run)) > 1
+    of_cushions = [
+        replace(picture, name=f"{picture.name}_{cushion}" if several else picture.name)
+        for cushion in cushions(run)
+        for picture in _of_cushion(run, cushion, known)
+    ]
+    of_components = [
+        _Picture(picture.name, partial(picture.draw, run, known), picture.columns)
+        for picture in declared_pictures(run)
+    ]
+    striking = [member.column for member in members(run, Role.STRIKING)]
+    balance = [_Picture("energy", partial(energy, run), striking)] if striking else []
+    return of_cushions + of_components + balance
+
+
+def _of_cushion(run: Run, cushion: str, known: References) -> list[_Picture]:
+    """Return the pictures of a cushion; those of its grains only where they can be read."""
+    from . import cushion as curves
+    from . import sand
+
+    forces = _declared(run, cushion, Role.TRANSMITTED, Role.ON_BODY)
+    depth = _declared(run, cushion, Role.PENETRATION)
+    grains = []
+    overview = []
+    if reader_of(run, cushion) is not None:
+        draw = partial(sand.snapshots, run, cushion)
+        grains = [_Picture("sand", draw, forces[:1] + depth, cushion)]
+        draw = partial(sand.overview, run, cushion, known)
+        overview = [_Picture("overview", draw, forces + depth, cushion)]
+    if driven(run):
+        draw = partial(curves.load, run, cushion, known)
+        return [_Picture("load", draw, forces[1:] + depth), *grains]
+    return [
+        *overview,
+        *grains,
+        _Picture("forces", partial(curves.forces, run, cushion, known), forces),
+        _Picture("penetration", partial(curves.penetration, run, cushion, known), depth),
+    ]
+
+
+def _declared(run: Run, component: str, *roles: Role) -> list[str]:
+    """Return the columns of a component's outputs with these roles, recorded or not."""
+    return [
+        member.column
+        for role in roles
+        for member in members(run, role)
+        if member.component == component
+    ]
 
 
 def _make(folder: Path) -> None:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,14 +14,17 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from rockshed.components.common.roles import Role
 from rockshed.components.common.units import cm, kN, ms
-from rockshed.components.sand_cushion.reader import Box, Discs, SandState, read, sizes_of
-from rockshed.fmus.python.slave import component_state
 
 from ..core.results.reading import Run
-from ..metrics import headlines as h
-from ..metrics.comparison import caption
-from .curves import Known, force_axes
+from ..metrics.caption import caption
+from ..metrics.contents import decoded
+from ..metrics.energy import structures
+from ..metrics.roles import column, elements, members
+from ..metrics.values import extreme
+from .cushion import force_axes
+from .references import References
 from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
@@ -42,70 +46,101 @@ _SAND_FACE, _SAND_EDGE, _ROCK_FACE, _BEAM_FACE = "#f4ecdc", "#d9c9a8", "#6b6b6b"
 
 @dataclass(frozen=True)
 class Frame:
-    """The sand at a time (s)."""
+    """The sand at an instant.
+
+    Attributes
+    ----------
+    time : float
+        In s.
+    state : Any
+        Geometry that the reader of the cushion gives: discs, rock, beam, box and contacts.
+    """
 
     time: float
-    state: SandState
+    state: Any
 
 
-def frames(run: Run, wanted: Sequence[float]) -> list[Frame]:
-    """The recorded states nearest to the times (s) that are wanted, each once."""
-    name = h.roles(run).sand
-    recorded = list(run.states(name)) if name else []
+def frames(run: Run, cushion: str, wanted: Sequence[float]) -> list[Frame]:
+    """Return the recorded states nearest to the times that are wanted, each once.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    wanted : sequence of float
+        Times (s).
+    """
+    recorded = list(run.states(cushion))
     times = np.array([at for at, _ in recorded])
     chosen = sorted({int(abs(times - at).argmin()) for at in wanted}) if recorded else []
-    return [Frame(float(times[i]), _decoded(recorded[i][1])) for i in chosen]
+    return [Frame(float(times[i]), decoded(run, cushion, recorded[i][1])) for i in chosen]
 
 
-def _decoded(content: bytes) -> SandState:
-    state = component_state(content)
-    return read(state, sizes_of(state))
+def _evenly(run: Run, cushion: str) -> list[float]:
+    """Return times (s) evenly over that part of the run in which something happens."""
+    force = run.series[str(column(run, cushion, Role.TRANSMITTED))]
+    time = run.series["time"]
+    end = time[np.flatnonzero(force >= _INTERESTING * force.max())[-1]]
+    return list(np.linspace(time[0], end, FRAMES))
 
 
-def _evenly(run: Run) -> list[float]:
-    """Times (s) evenly over that part of the run in which something happens."""
-    force, time = run.series[f"{h.roles(run).sand}.transmitted_force"], run.series["time"]
-    return list(
-        np.linspace(time[0], time[np.flatnonzero(force >= _INTERESTING * force.max())[-1]], FRAMES)
-    )
+def _moments(run: Run, cushion: str) -> list[float]:
+    """Return the times (s) of half the peak of the transmitted force, of the peak, and of the greatest depth."""
+    transmitted = str(column(run, cushion, Role.TRANSMITTED))
+    force = run.series[transmitted]
+    half = float(run.series["time"][np.flatnonzero(force >= 0.5 * force.max())[0]])
+    deepest = extreme(run, str(column(run, cushion, Role.PENETRATION)))
+    return [half, extreme(run, transmitted)[1], deepest[1]]
 
 
-def _moments(run: Run) -> list[float]:
-    """Times (s) of half the peak of the transmitted force, of the peak, and of the greatest depth."""
-    sand, time = h.roles(run).sand, run.series["time"]
-    force = run.series[f"{sand}.transmitted_force"]
-    half = float(time[np.flatnonzero(force >= 0.5 * force.max())[0]])
-    return [
-        half,
-        h.extreme(run, f"{sand}.transmitted_force")[1],
-        h.extreme(run, f"{sand}.penetration")[1],
-    ]
+def snapshots(run: Run, cushion: str, file: Path) -> None:
+    """Draw six instants side by side, with one scale of colours.
 
-
-def snapshots(run: Run, file: Path) -> None:
-    """Six instants side by side, with one scale of colours."""
-    shown = frames(run, _evenly(run))
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    file : Path
+        File of the picture.
+    """
+    shown = frames(run, cushion, _evenly(run, cushion))
     columns = min(3, len(shown))
     lines = -(-len(shown) // columns)
     width = 3.5 * columns + 0.6
-    with captioned(
-        [_READ_AS, *caption(run)], file, width, (3.5 * _shape(shown) + 0.3) * lines + 0.6
-    ) as made:
+    height = (3.5 * _shape(shown) + 0.3) * lines + 0.6
+    with captioned([_READ_AS, *caption(run)], file, width, height) as made:
         panels = list(made.subplots(lines, columns, squeeze=False).ravel())
         for axes in panels[len(shown) :]:
             axes.set_axis_off()
-        draw(run, shown, made, panels[: len(shown)])
+        draw(run, cushion, shown, made, panels[: len(shown)])
 
 
-def overview(run: Run, known: Known, file: Path) -> None:
-    """Three instants and the forces over time in one wide picture."""
-    shown = frames(run, _moments(run))
+def overview(run: Run, cushion: str, known: References, file: Path) -> None:
+    """Draw three instants and the forces over time in one wide picture.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    known : mapping of str to Known
+        References by the name of the metric.
+    file : Path
+        File of the picture.
+    """
+    shown = frames(run, cushion, _moments(run, cushion))
     above = 9.3 / len(shown) * _shape(shown) + 0.3
     with captioned([_READ_AS, *caption(run)], file, 10.0, above + 3.8) as made:
         grid = made.add_gridspec(2, len(shown), height_ratios=(above, 3.2))
-        draw(run, shown, made, [made.add_subplot(grid[0, i]) for i in range(len(shown))])
+        upper = [made.add_subplot(grid[0, i]) for i in range(len(shown))]
+        draw(run, cushion, shown, made, upper)
         axes = made.add_subplot(grid[1, :])
-        force_axes(run, known, axes)
+        force_axes(run, cushion, known, axes)
         for frame in shown:
             axes.axvline(frame.time / ms, color=INK, linewidth=0.8, linestyle=(0, (1, 2)))
 
@@ -116,20 +151,32 @@ def _shape(shown: Sequence[Frame]) -> float:
     return (top - bottom) / (right - left)
 
 
-def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]) -> None:
-    """One frame in each panel; the scale of the forces, and their colour bar, are common to all."""
-    largest = (
-        max(
-            (float(frame.state.contacts.normal_force.max(initial=0.0)) for frame in shown),
-            default=0.0,
-        )
-        or 1.0
-    )
-    window = _window(shown)
+def draw(
+    run: Run, cushion: str, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]
+) -> None:
+    """Draw one frame in each panel; the scale of the forces, and their colour bar, are common to all.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    shown : sequence of Frame
+        What to draw.
+    made : Figure
+        The figure.
+    panels : sequence of Axes
+        As many as there are frames.
+    """
+    strongest = [float(frame.state.contacts.normal_force.max(initial=0.0)) for frame in shown]
+    largest = max(strongest, default=0.0) or 1.0
+    structure = next(iter(structures(run)), None)
+    view = _View(run, cushion, structure, _window(shown), _deflection_scale(run, structure, shown))
     for frame, axes in zip(shown, panels):
-        _panel(run, frame, axes, largest / kN, window)
-    if h.roles(run).beam:
-        _name_axis(panels[0], deflection_scale(run))
+        _panel(view, frame, axes, largest / kN)
+    if structure is not None:
+        _name_axis(panels[0], view.deflection_scale)
     _scale_bar(panels[0], shown[0].state.box.width / cm)
     bar = made.colorbar(
         ScalarMappable(Normalize(0.0, largest / kN), _CHAINS),
@@ -142,18 +189,26 @@ def draw(run: Run, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes])
     bar.outline.set_linewidth(0.5)
 
 
-def deflection_scale(run: Run) -> float:
-    """How many times too large the deflections of the beam are drawn."""
-    column = f"{h.roles(run).beam}.midspan.deflection"
-    if column not in run.series:
+@dataclass(frozen=True)
+class _View:
+    """What all panels have in common: run, cushion, structure under it, window (m), enlargement of deflections."""
+
+    run: Run
+    cushion: str
+    structure: str | None
+    window: tuple[float, float, float, float]
+    deflection_scale: float
+
+
+def _deflection_scale(run: Run, structure: str | None, shown: Sequence[Frame]) -> float:
+    """Return how many times too large the deflections of the structure are drawn."""
+    deflection = column(run, structure, Role.DEFLECTION) if structure else None
+    if deflection is None:
         return DEFLECTION_SCALES[-1]
-    diameter = 2.0 * float(
-        run.provenance["components"][h.roles(run).sand]["parameters"]["beam.radius"]["value"]
-    )
-    most = float(abs(run.series[column]).max())
-    return next(
-        (scale for scale in DEFLECTION_SCALES if scale * most <= diameter), DEFLECTION_SCALES[-1]
-    )
+    diameter = 2.0 * max(float(frame.state.beam.radius.max(initial=0.0)) for frame in shown)
+    most = float(abs(run.series[deflection]).max())
+    fitting = (scale for scale in DEFLECTION_SCALES if scale * most <= diameter)
+    return next(fitting, DEFLECTION_SCALES[-1])
 
 
 def _name_axis(axes: Axes, scale: float) -> None:
@@ -219,26 +274,23 @@ def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
     )
 
 
-def _panel(
-    run: Run, frame: Frame, axes: Axes, largest: float, window: tuple[float, float, float, float]
-) -> None:
-    left, right, bottom, top = (value / cm for value in window)
+def _panel(view: _View, frame: Frame, axes: Axes, largest: float) -> None:
+    left, right, bottom, top = (value / cm for value in view.window)
     state = frame.state
     axes.set(aspect="equal", xlim=(left, right), ylim=(bottom, top), xticks=[], yticks=[])
     axes.spines[:].set_visible(False)
     _discs(axes, state.discs, _SAND_FACE, _SAND_EDGE, 1)
     _chains(axes, state, largest)
-    if not _on_floor(run):
-        _discs(axes, state.beam, _BEAM_FACE, BEAM, 3)
+    _discs(axes, state.beam, _BEAM_FACE, BEAM, 3)
     _discs(axes, state.rock, _ROCK_FACE, INK, 3)
     _walls(axes, state.box, top)
     axes.axhline(state.box.base / cm, color=GREY, linewidth=0.5, zorder=2)
-    _axis_of_beam(run, frame, axes)
+    _axis_of_structure(view, frame, axes)
     axes.set_title(f"{frame.time / ms:g} ms")
-    axes.set_title(_words(run, frame), loc="right", fontsize=6.5, color=GREY)
+    axes.set_title(_words(view, frame), loc="right", fontsize=6.5, color=GREY)
 
 
-def _walls(axes: Axes, box: Box, top: float) -> None:
+def _walls(axes: Axes, box: Any, top: float) -> None:
     """The inner faces of the side walls; those of a finite height as thick as they are."""
     for face, outwards in ((box.left, -1.0), (box.left + box.width, 1.0)):
         if math.isinf(box.wall_top):
@@ -259,15 +311,7 @@ def _walls(axes: Axes, box: Box, top: float) -> None:
             )
 
 
-def _on_floor(run: Run) -> bool:
-    """Whether the sand lies on a rigid floor; the places of beam discs then mean nothing."""
-    return (
-        str(run.provenance["components"][h.roles(run).sand]["parameters"]["base"]["value"])
-        == "floor"
-    )
-
-
-def _discs(axes: Axes, discs: Discs, face: str, edge: str, order: int) -> None:
+def _discs(axes: Axes, discs: Any, face: str, edge: str, order: int) -> None:
     size = 2.0 * discs.radius / cm
     axes.add_collection(
         EllipseCollection(
@@ -285,7 +329,7 @@ def _discs(axes: Axes, discs: Discs, face: str, edge: str, order: int) -> None:
     )
 
 
-def _chains(axes: Axes, state: SandState, largest: float) -> None:
+def _chains(axes: Axes, state: Any, largest: float) -> None:
     """A line from centre to centre for each contact, width and colour by force / ``largest`` (kN); the strongest lie on top."""
     contacts = state.contacts
     share = contacts.normal_force / kN / largest
@@ -311,31 +355,33 @@ def _chains(axes: Axes, state: SandState, largest: float) -> None:
     )
 
 
-def _axis_of_beam(run: Run, frame: Frame, axes: Axes) -> None:
-    """The beam's axis, its deflections since the start enlarged."""
-    name = h.roles(run).beam
-    count = frame.state.beam.x.size
-    columns = [f"{name}.position.y[{i + 1}]" for i in range(count)]
-    if not count or any(column not in run.series for column in columns):
+def _axis_of_structure(view: _View, frame: Frame, axes: Axes) -> None:
+    """Draw the axis of the structure, its deflections since the start enlarged."""
+    heights = [
+        values
+        for member in members(view.run, Role.STRUCTURE)
+        if member.component == view.structure
+        for values in elements(view.run, member.column)
+    ]
+    if not heights or len(heights) != frame.state.beam.x.size:
         return
-    row = int(abs(run.series["time"] - frame.time).argmin())
-    start = np.array([run.series[column][0] for column in columns])
-    moved = np.array([run.series[column][row] for column in columns]) - start
+    row = int(abs(view.run.series["time"] - frame.time).argmin())
+    start = np.array([values[0] for values in heights])
+    moved = np.array([values[row] for values in heights]) - start
     axes.plot(
         frame.state.beam.x / cm,
-        (start + deflection_scale(run) * moved) / cm,
+        (start + view.deflection_scale * moved) / cm,
         color=BEAM,
         linewidth=1.4,
         zorder=4,
     )
 
 
-def _words(run: Run, frame: Frame) -> str:
-    """Depth of the rock and transmitted force at the time of the frame."""
-    sand, row = h.roles(run).sand, int(abs(run.series["time"] - frame.time).argmin())
-    depth, force = (
-        run.series[f"{sand}.penetration"][row],
-        run.series[f"{sand}.transmitted_force"][row],
-    )
+def _words(view: _View, frame: Frame) -> str:
+    """Return the depth of the rock and the transmitted force at the time of the frame."""
+    run = view.run
+    row = int(abs(run.series["time"] - frame.time).argmin())
+    depth = run.series[str(column(run, view.cushion, Role.PENETRATION))][row]
+    force = run.series[str(column(run, view.cushion, Role.TRANSMITTED))][row]
     place = f"{abs(depth) / cm:.1f} cm {'deep' if depth > 0.0 else 'above'}"
     return f"rock {place}, {force / kN:.{2 if abs(force) < 10.0 * kN else 0}f} kN transmitted"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..core.results.reading import Run
 from ..files import whole_file
-from ..metrics.comparison import caption
+from ..metrics.caption import caption
 
 WIDTH = 7.2
 """Width (inch) of a picture of curves."""

@@ -17,7 +17,7 @@ from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.system import System, load_system, system_from, with_values
-from ..metrics.headlines import LOAD_CELL_ROWS
+from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import Note, case_fmus, case_sizes, own_sizes, silent
 from .request import AUTO, Request
 

@@ -679,7 +679,7 @@ def test_pictures_of_the_sand_have_a_scale_and_one_unit_of_length(finished):
 
     run, made = read_run(finished[0]), Figure()
     panels = list(made.subplots(1, 2))
-    sand.draw(run, sand.frames(run, [0.0, 0.004]), made, panels)
+    sand.draw(run, "sand", sand.frames(run, "sand", [0.0, 0.004]), made, panels)
     words = [text.get_text() for text in made.findobj(Text) if text.get_text()]
     assert "rock 0.1 cm above, 0.05 kN transmitted" in words
     assert any(text.startswith("rock 3.0 cm deep, ") for text in words)

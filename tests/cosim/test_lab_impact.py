@@ -13,7 +13,9 @@ from rockshed.core.results.reading import Run, read_run
 from rockshed.core.run import simulate
 from rockshed.core.system.system import System, with_values
 from rockshed.fmus.build import build_if_needed
-from rockshed.metrics import headlines
+from rockshed.metrics import names
+from rockshed.metrics.headlines import headlines
+from rockshed.metrics.values import integral
 
 END = 0.02
 IMPACT_ENERGY = 0.5 * 4.0 * 8.0**2
@@ -152,9 +154,9 @@ def test_headline_impulses_do_not_depend_on_the_rows(fmus, paper, tmp_path):
     for run, tolerance in ((paper, 3e-4), (coarse, 3e-3)):
         change = run.series["rock.velocity.y"][-1] - run.series["rock.velocity.y"][0]
         gravity = run.provenance["components"]["rock"]["parameters"]["gravity"]["value"]
-        found = {figure.name: figure.value for figure in headlines.headlines(run)}
-        assert found[headlines.IMPULSE_ROCK] == pytest.approx(
+        found = {figure.name: figure.value for figure in headlines(run)}
+        assert found[names.IMPULSE_ROCK] == pytest.approx(
             4.0 * (change + gravity * END), rel=tolerance
         )
-    fine = headlines.integral(paper, "sand.transmitted_force")
-    assert headlines.integral(coarse, "sand.transmitted_force") == pytest.approx(fine, rel=0.02)
+    fine = integral(paper, "sand.transmitted_force")
+    assert integral(coarse, "sand.transmitted_force") == pytest.approx(fine, rel=0.02)

@@ -5,7 +5,7 @@ import pytest
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.run import simulate
-from rockshed.metrics.headlines import impact_energy, system_residual
+from rockshed.metrics.energy import impact_energy, system_residual
 from rockshed.runs.job import Request, prepare
 from tests.cosim.mocks import mass, spring, wired
 

@@ -10,8 +10,8 @@ from rockshed.analyses.rockfall.statistics import percentile
 from rockshed.cases import slope_to_cushion as case
 from rockshed.components.slope_rockfall.trajectory import PASSAGE
 from rockshed.core.run import simulate
-from rockshed.metrics import headlines as h
 from rockshed.metrics.comparison import table, warnings
+from rockshed.metrics.energy import impact_energy, system_residual
 from rockshed.pictures import draw_all
 from rockshed.runs.job import Request, prepare
 from rockshed.sites.rockfall.preparation import prepare as prepare_site
@@ -55,7 +55,7 @@ def test_the_rock_is_handed_over_as_the_campaign_has_it(run, landed):
         assert found == pytest.approx(value, rel=2e-3)
     assert run.series["rock.handover.time"][-1] == pytest.approx(at, abs=1e-9)
     assert run.series["rock.velocity.x"][0] > 5.0
-    assert h.impact_energy(run) == pytest.approx(passed[PASSAGE.kinetic], rel=2e-3)
+    assert impact_energy(run) == pytest.approx(passed[PASSAGE.kinetic], rel=2e-3)
 
 
 def test_it_hits_and_bounces(run):
@@ -68,8 +68,8 @@ def test_it_hits_and_bounces(run):
 
 
 def test_the_books_of_energy_close(run):
-    energy = h.impact_energy(run)
-    residual = h.system_residual(run)
+    energy = impact_energy(run)
+    residual = system_residual(run)
     assert np.abs(residual).max() < 0.005 * energy
     for bond in ("sand_rock", "sand_beam"):
         assert abs(run.metrics[f"coupling_{bond}_energy"].value) < 0.005 * energy
@@ -107,4 +107,4 @@ def test_afterwards_it_goes_on_down_the_slope(tmp_path):
     assert run.series["rock.position.y"][-1] < 0.0
     assert run.series["rock.impacts"][-1] > run.series["rock.impacts"][0]
     assert run.series["rock.height"].min() > -1.0
-    assert np.abs(h.system_residual(run)).max() < 0.01 * h.impact_energy(run)
+    assert np.abs(system_residual(run)).max() < 0.01 * impact_energy(run)

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.results.reading import read_run
-from rockshed.metrics import headlines as h
+from rockshed.metrics import names
 
 FAST = ["--set", "sand.internal_step=1e-4"]
 
@@ -26,12 +26,12 @@ def pushed(tmp_path_factory):
 def test_load_and_spring_constant_stand_beside_the_papers(pushed):
     content, _ = pushed
     figures = {figure["name"]: figure for figure in content["figures"]}
-    load, stiffness = figures[h.STATIC_LOAD], figures[h.STATIC_STIFFNESS]
+    load, stiffness = figures[names.STATIC_LOAD], figures[names.STATIC_STIFFNESS]
     assert load["value"] == pytest.approx(stiffness["value"] * 0.04)
     assert stiffness["references"]["paper"]["value"] == pytest.approx(1.29 * 30.4 * kgf / cm)
     assert stiffness["value"] == pytest.approx(1.29 * 30.4 * kgf / cm, rel=0.1)
-    assert figures[h.STATIC_DEPARTURE]["value"] < 0.15
-    assert h.IMPACT_ENERGY not in figures
+    assert figures[names.STATIC_DEPARTURE]["value"] < 0.15
+    assert names.IMPACT_ENERGY not in figures
     assert content["warnings"] == []
 
 
@@ -40,10 +40,10 @@ def test_the_machine_does_all_the_work(pushed):
     content, folder = pushed
     run = read_run(folder)
     figures = {figure["name"]: figure["value"] for figure in content["figures"]}
-    assert figures[h.MACHINE_WORK] == pytest.approx(
+    assert figures[names.MACHINE_WORK] == pytest.approx(
         run.series["sand.energy.work.rock"][-1], rel=0.06
     )  # less the rock's weight
-    assert abs(figures[h.RESIDUAL_WORK_SHARE]) < 5e-3
+    assert abs(figures[names.RESIDUAL_WORK_SHARE]) < 5e-3
     assert set(run.series["rock.velocity.y"]) == {-0.01}
 
 

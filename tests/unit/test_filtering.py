@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
-from rockshed.metrics.headlines import low_pass
+from rockshed.metrics.filtering import low_pass
 
 RATE = 1e4
 TIME = np.arange(400) / RATE

@@ -2,22 +2,38 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 from rockshed.cases import sonoda1993
 from rockshed.cases.registry import case, cases, differences, references
+from rockshed.components.catalogue import component
 from rockshed.core.errors import InputRefused
+from rockshed.core.fmu.fmu_slave import read_description
 from rockshed.core.results.metric import Metric, Metrics
+from rockshed.core.results.provenance import declarations
 from rockshed.core.results.reading import Run
-from rockshed.metrics import comparison
-from rockshed.metrics import headlines as h
-from rockshed.references import References
+from rockshed.fmus.description.fmi2 import model_description
+from rockshed.metrics import comparison, names
+from rockshed.metrics.caption import models
+from rockshed.metrics.energy import system_residual
+from rockshed.metrics.filtering import load_cell
+from rockshed.metrics.headlines import headlines
+from rockshed.references import Known, Reference, References
 from rockshed.runs.building import own_sizes
 from rockshed.runs.job import Request, prepare
 
 KGF = 9.80665
+
+
+@cache
+def declared(model):
+    """Contents, pictures and roles of a component, as its model description tells them."""
+    chosen = component(model)
+    xml = model_description(chosen, chosen.with_sizes(), "guid")
+    return declarations(read_description(xml))
 
 
 def made_up(length=0.02, summary=(), **columns):
@@ -71,6 +87,7 @@ def made_up(length=0.02, summary=(), **columns):
         "components": {
             name: {
                 "model": model,
+                **declared(model),
                 "parameters": {key: {"value": value} for key, value in parameters.items()},
             }
             for name, model, parameters in (
@@ -84,18 +101,18 @@ def made_up(length=0.02, summary=(), **columns):
 
 
 def figure(run, name):
-    return next(f.value for f in h.headlines(run) if f.name == name)
+    return next(f.value for f in headlines(run) if f.name == name)
 
 
 def test_peaks_impulse_and_duration_of_a_half_sine():
     run = made_up()
-    assert figure(run, h.PEAK_ROCK) == pytest.approx(1e3, rel=1e-3)
-    assert figure(run, h.PEAK_ROCK_AT) == pytest.approx(0.005, abs=1e-4)
-    assert figure(run, h.PEAK_TRANSMITTED) == pytest.approx(2050.0, rel=1e-3)
-    assert figure(run, h.PEAK_TRANSMITTED_AT) == pytest.approx(0.007, abs=1e-4)
-    assert figure(run, h.IMPULSE_ROCK) == pytest.approx(1e3 * 0.01 * 2 / np.pi, rel=1e-3)
-    assert figure(run, h.IMPULSE_TRANSMITTED) == pytest.approx(2e3 * 0.01 * 2 / np.pi, rel=1e-3)
-    assert figure(run, h.DURATION) == pytest.approx(0.01, rel=0.02)
+    assert figure(run, names.PEAK_ROCK) == pytest.approx(1e3, rel=1e-3)
+    assert figure(run, names.PEAK_ROCK_AT) == pytest.approx(0.005, abs=1e-4)
+    assert figure(run, names.PEAK_TRANSMITTED) == pytest.approx(2050.0, rel=1e-3)
+    assert figure(run, names.PEAK_TRANSMITTED_AT) == pytest.approx(0.007, abs=1e-4)
+    assert figure(run, names.IMPULSE_ROCK) == pytest.approx(1e3 * 0.01 * 2 / np.pi, rel=1e-3)
+    assert figure(run, names.IMPULSE_TRANSMITTED) == pytest.approx(2e3 * 0.01 * 2 / np.pi, rel=1e-3)
+    assert figure(run, names.DURATION) == pytest.approx(0.01, rel=0.02)
 
 
 def test_extremes_over_all_exchanges_go_before_those_of_the_rows():
@@ -105,22 +122,22 @@ def test_extremes_over_all_exchanges_go_before_those_of_the_rows():
             Metric("sand.rock.force.y maximum at", 0.0049, "s"),
         ]
     )
-    assert figure(run, h.PEAK_ROCK) == 1234.0
-    assert figure(run, h.PEAK_ROCK_AT) == 0.0049
+    assert figure(run, names.PEAK_ROCK) == 1234.0
+    assert figure(run, names.PEAK_ROCK_AT) == 0.0049
 
 
 def test_the_systems_residual_takes_what_the_works_leave():
     """Residuals 195 W, works -100 W: 95 W over 20 ms; the constant work at the start does not count."""
     run = made_up()
-    np.testing.assert_allclose(h.system_residual(run), 95.0 * run.series["time"], atol=1e-9)
-    assert figure(run, h.RESIDUAL_SHARE) == pytest.approx(95.0 * 0.02 / 100.0)
+    np.testing.assert_allclose(system_residual(run), 95.0 * run.series["time"], atol=1e-9)
+    assert figure(run, names.RESIDUAL_SHARE) == pytest.approx(95.0 * 0.02 / 100.0)
 
 
 def test_without_a_balance_of_every_component_there_is_none():
     run = made_up()
     del run.series["beam.energy.residual"]
-    assert h.system_residual(run) is None
-    assert h.RESIDUAL not in [f.name for f in h.headlines(run)]
+    assert system_residual(run) is None
+    assert names.RESIDUAL not in [f.name for f in headlines(run)]
 
 
 def test_a_rock_near_the_base_is_warned_of():
@@ -133,7 +150,7 @@ def test_a_rock_near_the_base_is_warned_of():
 
 
 def test_a_balance_that_does_not_close_is_warned_of():
-    assert h.system_residual(made_up())[-1] / 100.0 == pytest.approx(0.019)  # beyond 1 %
+    assert system_residual(made_up())[-1] / 100.0 == pytest.approx(0.019)  # beyond 1 %
     lost = made_up(**{"rock.energy.residual": -19.9 * np.linspace(0.0, 1.0, 401)})
     assert "does not close: -22 % of the impact energy" in comparison.warnings(lost)[0]
     row = next(row for row in comparison.rows(lost, {}) if row.label == "energy residual / E0")
@@ -156,7 +173,7 @@ def test_a_load_cell_shows_a_step_as_an_oscillator_of_damping_ratio_0_7_does():
     """Overshoot exp(-pi) at the time sqrt(2) pi / omega; nothing before the step; the level of the start is kept."""
     time = np.linspace(0.0, 0.02, 4001)
     force = np.where(time < 0.005, 300.0, 1300.0)
-    shown = h.load_cell(time, force, 1000.0)
+    shown = load_cell(time, force, 1000.0)
     assert shown[time < 0.005] == pytest.approx(300.0, rel=1e-9)
     assert shown.max() == pytest.approx(1300.0 + 1000.0 * np.exp(-np.pi), rel=1e-3)
     assert time[shown.argmax()] - 0.005 == pytest.approx(
@@ -172,23 +189,25 @@ def test_a_load_cell_passes_slow_forces_and_halves_the_power_at_its_cut_off():
         (1000.0, np.sqrt(0.5)),
         (4000.0, 1 / np.sqrt(1.0 + 4.0**4)),
     ):
-        shown = h.load_cell(time, np.sin(2.0 * np.pi * frequency * time), 1000.0)
+        shown = load_cell(time, np.sin(2.0 * np.pi * frequency * time), 1000.0)
         assert np.ptp(shown[10000:]) / 2.0 == pytest.approx(passed, rel=0.01)
 
 
 def test_rows_that_are_too_far_apart_for_a_load_cell_are_refused():
     time = np.linspace(0.0, 0.02, 201)
-    assert h.load_cell(time, time, 2000.0).size == 201
+    assert load_cell(time, time, 2000.0).size == 201
     with pytest.raises(ValueError, match=r"0\.0001 s apart carry a cut-off of 2000 Hz, not 2001"):
-        h.load_cell(time, time, 2001.0)
+        load_cell(time, time, 2001.0)
 
 
 def test_the_load_cell_that_a_run_was_asked_for_stands_beside_the_measurement():
     run = made_up()
-    assert h.PEAK_LOAD_CELL not in [f.name for f in h.headlines(run)]
+    assert names.PEAK_LOAD_CELL not in [f.name for f in headlines(run)]
     run.provenance["load_cell"] = 1000.0
-    assert figure(run, h.LOAD_CELL_CUT_OFF) == 1000.0
-    assert figure(run, h.PEAK_LOAD_CELL) == pytest.approx(figure(run, h.PEAK_TRANSMITTED), rel=5e-3)
+    assert figure(run, names.LOAD_CELL_CUT_OFF) == 1000.0
+    assert figure(run, names.PEAK_LOAD_CELL) == pytest.approx(
+        figure(run, names.PEAK_TRANSMITTED), rel=5e-3
+    )
     known = sonoda1993.known_of(sonoda1993.tests()[4])
     row = next(row for row in comparison.rows(run, known) if "load cell" in row.label)
     assert row.experiment == "5.09"
@@ -231,8 +250,8 @@ def test_a_beam_bent_by_another_weight_than_the_sands_is_warned_of():
 
 def test_energy_of_the_beam_counts_from_the_start():
     run = made_up(**{"beam.energy.elastic": 3.0 + 2.0 * np.linspace(0.0, 1.0, 401)})
-    assert figure(run, h.BEAM_ENERGY) == pytest.approx(2.0)
-    assert figure(run, h.BEAM_SHARE) == pytest.approx(0.02)
+    assert figure(run, names.BEAM_ENERGY) == pytest.approx(2.0)
+    assert figure(run, names.BEAM_SHARE) == pytest.approx(0.02)
 
 
 def test_without_impact_energy_there_are_no_shares_of_it():
@@ -260,19 +279,17 @@ def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
 
 
 def test_energies_that_are_all_zero_are_drawn(tmp_path):
-    from rockshed.pictures import curves
+    from rockshed.pictures.energy import energy
 
     run = made_up()
-    curves.energy(
-        replace(run, series={name: np.zeros(1) for name in run.series}), tmp_path / "energy.png"
-    )
+    energy(replace(run, series={name: np.zeros(1) for name in run.series}), tmp_path / "energy.png")
     assert (tmp_path / "energy.png").is_file()
 
 
 def test_models_of_the_sand_have_their_names():
     run = made_up()
     sand = run.provenance["components"]["sand"]["parameters"]
-    assert comparison.model(run) == (
+    assert models(run)[0] == (
         "calibrated sand: rotation locked, stiffness factor 0.37, "
         "square packing, fictitious modulus E_bar 30.0 kgf/cm²"
     )
@@ -281,17 +298,17 @@ def test_models_of_the_sand_have_their_names():
         1.0,
         "round",
     )
-    assert comparison.model(run).startswith("literal sand: rotation free")
+    assert models(run)[0].startswith("literal sand: rotation free")
     sand["rolling_resistance"]["value"] = 0.3
-    assert comparison.model(run).startswith(
+    assert models(run)[0].startswith(
         "modified sand: rotation free, stiffness factor 1, rolling resistance 0.3, "
     )
     sand["rotation"]["value"], sand["rolling_resistance"]["value"] = "locked", 0.0
-    assert comparison.model(run).startswith("modified sand")
+    assert models(run)[0].startswith("modified sand")
 
 
 def test_deviations_stand_beside_the_references():
-    known = {h.PEAK_TRANSMITTED: h.Known(h.Reference(2500.0, "a guess"), h.Reference(1640.0))}
+    known = {names.PEAK_TRANSMITTED: Known(Reference(2500.0, "a guess"), Reference(1640.0))}
     row = comparison.rows(made_up(), known)[0]
     assert (row.computed, row.paper, row.experiment) == ("2.05", "≈ 2.50", "1.64")
     assert row.paper_deviation == pytest.approx(-0.18, abs=1e-3)
@@ -300,7 +317,7 @@ def test_deviations_stand_beside_the_references():
 
 
 def test_a_run_that_ends_too_soon_is_not_compared():
-    known = {h.PEAK_TRANSMITTED: h.Known(experiment=h.Reference(1640.0))}
+    known = {names.PEAK_TRANSMITTED: Known(experiment=Reference(1640.0))}
     short = made_up(length=0.008)
     assert comparison.rows(short, known)[0].experiment == ""
     assert "nothing is compared" in comparison.notes(short, known)[0]
@@ -319,23 +336,25 @@ def test_a_force_that_has_not_ended_is_told():
 def test_the_papers_trend_goes_through_its_table_and_grows_with_the_modulus():
     known = {n: sonoda1993.known_of(test) for n, test in sonoda1993.tests().items()}
     for number, entry in known.items():
-        assert entry[h.PEAK_TRANSMITTED].experiment.value == sonoda1993.tests()[number].peak_force
+        assert (
+            entry[names.PEAK_TRANSMITTED].experiment.value == sonoda1993.tests()[number].peak_force
+        )
     by_modulus = sorted(known, key=lambda n: sonoda1993.tests()[n].modulus)
-    peaks = [known[n][h.PEAK_TRANSMITTED].paper.value for n in by_modulus]
-    depths = [known[n][h.PENETRATION].paper.value for n in by_modulus]
+    peaks = [known[n][names.PEAK_TRANSMITTED].paper.value for n in by_modulus]
+    depths = [known[n][names.PENETRATION].paper.value for n in by_modulus]
     assert peaks == sorted(peaks)
     assert depths == sorted(depths, reverse=True)
-    between = known[4][h.PEAK_TRANSMITTED].paper  # E_bar = 30.4 lies between 20 and 40
+    between = known[4][names.PEAK_TRANSMITTED].paper  # E_bar = 30.4 lies between 20 and 40
     assert 351.2 < between.value / KGF < 449.5
     assert "interpolated" in between.note
-    assert "extrapolated" in known[10][h.PEAK_TRANSMITTED].paper.note
+    assert "extrapolated" in known[10][names.PEAK_TRANSMITTED].paper.note
 
 
 def test_every_test_of_the_paper_is_a_case_and_finds_its_references_again():
     assert len(cases()) == 26
     assert next(iter(cases())) == "lab-impact"
     found = references(case("lab-impact-10"), {})
-    measured = found.known[h.PEAK_TRANSMITTED].experiment
+    measured = found.known[names.PEAK_TRANSMITTED].experiment
     assert measured.value == pytest.approx(673.2 * KGF)
     assert References.from_data(json.loads(json.dumps(found.as_data()))) == replace(
         found, remarks=()
@@ -400,8 +419,8 @@ def test_another_system_is_not_compared_and_the_reason_is_named(changed, sizes, 
 
 def test_another_sand_is_compared_with_table_5_only():
     found = references_of(of_lab_impact({"sand.modulus": 40 * KGF / 1e-4, "sand.damping": 0.3}))
-    assert found.known[h.PEAK_TRANSMITTED] == h.Known(h.Reference(pytest.approx(456.5 * KGF)))
-    assert found.known[h.PENETRATION].paper.value == pytest.approx(0.0634)
+    assert found.known[names.PEAK_TRANSMITTED] == Known(Reference(pytest.approx(456.5 * KGF)))
+    assert found.known[names.PENETRATION].paper.value == pytest.approx(0.0634)
     assert "experiment: sand.modulus, sand.damping differ" in found.remarks[0]
     none = references_of(of_lab_impact({"sand.damping": 0.25}))
     assert none.known == {}

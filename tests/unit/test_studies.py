@@ -8,7 +8,7 @@ from jsonschema import validate
 
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
-from rockshed.metrics import headlines as h
+from rockshed.metrics import names
 from rockshed.papers.reproduction import DATA, PAGE, chosen, reproduce, studies
 from rockshed.papers.sonoda1993 import girders, rigid_base, section2, table2
 from rockshed.papers.sonoda1993.fig19 import order
@@ -223,7 +223,7 @@ def test_forces_through_a_load_cell_come_from_the_same_runs():
             t.key: Outcome(
                 t.key,
                 COMPLETE,
-                metrics={h.PEAK_TRANSMITTED: 4000.0},
+                metrics={names.PEAK_TRANSMITTED: 4000.0},
                 options={"modulus": 1.0},
                 series={"time": time, "sand.transmitted_force": spike},
             )
@@ -259,11 +259,11 @@ def test_energies_of_the_girders_are_shares_of_the_rocks_wherever_it_started():
             COMPLETE,
             options={},
             metrics={
-                h.BEAM_ENERGY_FROM_STRAIN: energies[task.request.target],
-                h.BEAM_ENERGY: 2 * energies[task.request.target],
-                h.SETTLED_RATIO: 1.0,
-                h.SETTLED_TRANSMITTED: 1.0,
-                h.SETTLED_ROCK: 1.0,
+                names.BEAM_ENERGY_FROM_STRAIN: energies[task.request.target],
+                names.BEAM_ENERGY: 2 * energies[task.request.target],
+                names.SETTLED_RATIO: 1.0,
+                names.SETTLED_TRANSMITTED: 1.0,
+                names.SETTLED_ROCK: 1.0,
             },
         )
         for task in girders.tasks(False)

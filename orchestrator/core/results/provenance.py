@@ -37,20 +37,32 @@ def _component(plan: Plan, source: Source, slave: Slave) -> dict[str, Any]:
         "model": description.model,
         "guid": description.guid,
         "generation_tool": description.generation_tool,
-        "contents": description.contents,
-        "pictures": list(description.pictures),
-        "variables": _variables(description),
+        **declarations(description),
         "parameters": _parameters(plan, slave),
     }
 
 
-def _variables(description: Description) -> dict[str, Any]:
-    """Return roles, labels and figures of the variables that have any; of an array once, without the number of an element."""
-    return {
+def declarations(description: Description) -> dict[str, Any]:
+    """Return what a component declares of itself for metrics and pictures.
+
+    Parameters
+    ----------
+    description : Description
+        Its description.
+
+    Returns
+    -------
+    dict
+        ``contents`` of its states, ``pictures``, and ``variables``: roles, labels and figures of those
+        that have any; of an array once, without the number of an element.
+    """
+    variables = {
         port.name.partition("[")[0]: data
         for port in description.ports.values()
         if (data := port.annotation.as_data())
     }
+    pictures = list(description.pictures)
+    return {"contents": description.contents, "pictures": pictures, "variables": variables}
 
 
 def _parameters(plan: Plan, slave: Slave) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from rockshed.components.common.units import cm, kgf, ms
 
 from ...cases.sonoda1993 import DEFAULT_TEST, case_name
 from ...core.system.system import Value
-from ...metrics.headlines import IMPACT_ENERGY, PEAK_TRANSMITTED
+from ...metrics.names import IMPACT_ENERGY, PEAK_TRANSMITTED
 from ...runs.batch import COMPLETE, FAILED, Outcome, Task
 from ...runs.job import Request
 from ..statistics import power_law

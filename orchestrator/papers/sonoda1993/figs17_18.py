@@ -6,7 +6,7 @@ from pathlib import Path
 from rockshed.components.common.units import cm, kgf, ms
 
 from ...cases import sonoda1993
-from ...metrics.headlines import (
+from ...metrics.names import (
     BEAM_ENERGY,
     BEAM_ENERGY_FROM_STRAIN,
     BEAM_SHARE,

@@ -10,7 +10,8 @@ from rockshed.components.common.units import cm, kgf, ms, tf
 from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
 from ...cases.sand_models import LATTICE_SHIFT, LOOSE
 from ...core.system.system import Value
-from ...metrics.headlines import SETTLED_CUT_OFF, low_pass
+from ...metrics.filtering import low_pass
+from ...metrics.names import SETTLED_CUT_OFF
 from ...runs.batch import COMPLETE, Outcome, Task
 from ...runs.job import Request
 from .laboratory import MODELS as LABORATORY

@@ -6,7 +6,7 @@ from pathlib import Path
 from rockshed.components.common.units import tf
 
 from ...cases.full_scale import ROCK_MASS, ROCK_SPEED, Impact, impacts, known_of
-from ...metrics.headlines import (
+from ...metrics.names import (
     BEAM_ENERGY,
     BEAM_ENERGY_FROM_STRAIN,
     BEAM_SHARE,

@@ -15,7 +15,7 @@ from ...cases.full_scale import (
     hertz_force,
     impacts,
 )
-from ...metrics.headlines import (
+from ...metrics.names import (
     PENETRATION,
     SETTLED_CUT_OFF,
     SETTLED_RATIO,

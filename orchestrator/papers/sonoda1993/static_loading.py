@@ -13,8 +13,8 @@ from ...cases.sand_models import LATTICE_SHIFT
 from ...cases.sonoda1993 import LAYER, STATIC_RATIO, printed_rows
 from ...cases.static_loading import E_BAR, NAME, SPEED, STOP, rock_height
 from ...core.system.system import Value
-from ...metrics.headlines import STATIC_DEPARTURE, STATIC_LOAD, STATIC_STIFFNESS
 from ...metrics.load_curve import DEPTH, load_curve
+from ...metrics.names import STATIC_DEPARTURE, STATIC_LOAD, STATIC_STIFFNESS
 from ...runs.batch import COMPLETE, Task
 from ...runs.job import Request
 from ..statistics import line_through_origin

@@ -8,7 +8,8 @@ from rockshed.components.common.units import cm, kgf
 
 from ...cases import sonoda1993
 from ...cases.sonoda1993 import Test
-from ...metrics.headlines import PEAK_TRANSMITTED, load_cell
+from ...metrics.filtering import load_cell
+from ...metrics.names import PEAK_TRANSMITTED
 from ...runs.batch import Outcome, Task
 from ..statistics import (
     by_power_law,

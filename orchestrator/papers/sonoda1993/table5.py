@@ -7,7 +7,7 @@ from typing import Any
 from rockshed.components.common.units import cm, kgf
 
 from ...cases.sonoda1993 import DEFAULT_TEST, TableFiveRow, table_5
-from ...metrics.headlines import PEAK_TRANSMITTED, PENETRATION
+from ...metrics.names import PEAK_TRANSMITTED, PENETRATION
 from ...runs.batch import Task
 from ..study import Measure, Outcomes, Row, Study, origin, row_of_runs, verdict
 from .laboratory import READINGS, SEED_NOTE, impacts

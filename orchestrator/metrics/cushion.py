@@ -1,0 +1,276 @@
+"""Forces on both sides of a cushion, and the way that the striking body makes into it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockshed.components.common.roles import Role
+
+from ..core.results.metric import Metric
+from ..core.results.reading import Run
+from . import contents, names
+from .energy import driven
+from .filtering import load_cell, low_pass
+from .load_curve import DEPTH, LoadCurve, driven_curve
+from .roles import column, elements, members, owners, parameters
+from .values import extreme, integral, of_each
+
+Values = NDArray[np.float64]
+
+SETTLING = 0.5
+"""Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one contact."""
+CONTACT_SHARE = 0.01
+"""Part of its peak above which the force on the rock counts towards its duration."""
+
+
+def cushions(run: Run) -> list[str]:
+    """Return the components that are cushions: those that transmit a force.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    return owners(run, Role.TRANSMITTED)
+
+
+def of_cushions(run: Run) -> Iterator[Metric]:
+    """Yield the metrics of each cushion.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    return of_each(run, cushions(run), _of_cushion)
+
+
+def _of_cushion(run: Run, cushion: str) -> Iterator[Metric]:
+    if driven(run):
+        yield from _static(run, cushion)
+    else:
+        yield from _forces(run, cushion)
+        yield from _through_load_cell(run, cushion)
+        yield from _settled(run, cushion)
+    yield from _way(run, cushion)
+
+
+def both_forces(run: Run, cushion: str) -> tuple[str, str] | None:
+    """Return the columns of the transmitted force and of the force on the striking body.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+
+    Returns
+    -------
+    tuple of str, or None
+        None if one of them was not recorded.
+    """
+    transmitted = column(run, cushion, Role.TRANSMITTED)
+    on_body = column(run, cushion, Role.ON_BODY)
+    return (transmitted, on_body) if transmitted and on_body else None
+
+
+def curve_of(run: Run, cushion: str) -> LoadCurve | None:
+    """Return the load on a driven body over its penetration; None if it was not recorded.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    """
+    depth, load = column(run, cushion, Role.PENETRATION), column(run, cushion, Role.ON_BODY)
+    return driven_curve(run.series[depth], run.series[load]) if depth and load else None
+
+
+def _static(run: Run, cushion: str) -> Iterator[Metric]:
+    """Yield load and secant spring constant at 4 cm."""
+    curve = curve_of(run, cushion)
+    if curve is not None and curve.reaches(DEPTH):
+        load = float(curve.at(DEPTH))
+        yield Metric(names.STATIC_LOAD, load, "N")
+        yield Metric(names.STATIC_STIFFNESS, load / DEPTH, "N/m")
+        yield Metric(names.STATIC_DEPARTURE, curve.departure(DEPTH))
+
+
+def _forces(run: Run, cushion: str) -> Iterator[Metric]:
+    """Yield peaks, impulses and duration."""
+    columns = both_forces(run, cushion)
+    if columns is None:
+        return
+    transmitted, on_body = columns
+    peak, peak_at = extreme(run, transmitted)
+    on_rock, on_rock_at = extreme(run, on_body)
+    yield Metric(names.PEAK_TRANSMITTED, peak, "N")
+    yield Metric(names.PEAK_TRANSMITTED_AT, peak_at, "s")
+    yield Metric(names.PEAK_ROCK, on_rock, "N")
+    yield Metric(names.PEAK_ROCK_AT, on_rock_at, "s")
+    if on_rock > 0.0:
+        yield Metric(names.RATIO, peak / on_rock)
+    time, force = run.series["time"], run.series[on_body]
+    yield Metric(names.IMPULSE_ROCK, integral(run, on_body), "N.s")
+    at_rest = float(run.series[transmitted][0]) * float(time[-1] - time[0])
+    yield Metric(names.IMPULSE_TRANSMITTED, integral(run, transmitted) - at_rest, "N.s")
+    touching = time[force > CONTACT_SHARE * on_rock]
+    if touching.size:
+        yield Metric(names.DURATION, float(touching[-1] - touching[0]), "s")
+
+
+def _through_load_cell(run: Run, cushion: str) -> Iterator[Metric]:
+    """Yield the peak through the load cell that the run was asked to have."""
+    cut_off = run.provenance.get("load_cell")
+    transmitted = column(run, cushion, Role.TRANSMITTED)
+    if cut_off and transmitted and run.series["time"].size > 1:
+        shown = load_cell(run.series["time"], run.series[transmitted], cut_off)
+        yield Metric(names.PEAK_LOAD_CELL, float(shown.max()), "N")
+        yield Metric(names.LOAD_CELL_CUT_OFF, cut_off, "1/s")
+
+
+def cut_off(run: Run, cushion: str) -> float | None:
+    """Return the cut-off frequency of the settled forces.
+
+    Discs that meet, or are struck one by one, give spikes at the natural frequency of a disc: they
+    come from the size of the discs, not from the impact, which lasts many times as long.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+
+    Returns
+    -------
+    float or None
+        In Hz; None for a cushion whose contacts are not known.
+    """
+    known = contents.measures(run, cushion)
+    if known is None:
+        return None
+    return SETTLING * float(known.contact_frequency(parameters(run, cushion)))
+
+
+def settled(run: Run, cushion: str, name: str) -> Values | None:
+    """Return an output of a cushion without what is faster than its cut-off.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    name : str
+        Column of the output.
+
+    Returns
+    -------
+    array of float, shape (rows,), or None
+        None where the rows cannot tell; see :func:`~rockshed.metrics.filtering.low_pass`.
+    """
+    fastest = cut_off(run, cushion)
+    return None if fastest is None else low_pass(run.series["time"], run.series[name], fastest)
+
+
+def _settled(run: Run, cushion: str) -> Iterator[Metric]:
+    """Yield the largest forces without their spikes."""
+    columns, fastest = both_forces(run, cushion), cut_off(run, cushion)
+    if columns is None or fastest is None:
+        return
+    curves = [settled(run, cushion, name) for name in columns]
+    peaks = [float(curve.max()) for curve in curves if curve is not None]
+    if len(peaks) < len(columns):
+        return
+    transmitted, rock = peaks
+    yield Metric(names.SETTLED_TRANSMITTED, transmitted, "N")
+    yield Metric(names.SETTLED_ROCK, rock, "N")
+    if rock > 0.0:
+        yield Metric(names.SETTLED_RATIO, transmitted / rock)
+    yield Metric(names.SETTLED_CUT_OFF, fastest, "1/s")
+
+
+def _way(run: Run, cushion: str) -> Iterator[Metric]:
+    """Yield penetration and the least distance of rock and base."""
+    penetration = column(run, cushion, Role.PENETRATION)
+    if penetration is None:
+        return
+    depth, _ = extreme(run, penetration)
+    yield Metric(names.PENETRATION, depth, "m")
+    surface, base = column(run, cushion, Role.SURFACE), base_height(run, cushion)
+    if surface is not None and base is not None:
+        yield Metric(names.CLEARANCE, float(run.series[surface][0]) - base - depth, "m")
+
+
+def base_height(run: Run, cushion: str) -> float | None:
+    """Return the height of what a cushion rests on, at the start.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+
+    Returns
+    -------
+    float or None
+        In m: the top of the structure's discs, or the floor. None where it is not known.
+    """
+    known = contents.measures(run, cushion)
+    if known is None:
+        return None
+    axis = [
+        float(values[0])
+        for member in members(run, Role.STRUCTURE)
+        for values in elements(run, member.column)
+    ]
+    return float(known.base_height(parameters(run, cushion), axis))
+
+
+def still_in_contact(run: Run) -> bool:
+    """Return whether a force on a striking body has not ended with the run, as it does after an impact.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    forces = [name for cushion in cushions(run) if (name := column(run, cushion, Role.ON_BODY))]
+    return not driven(run) and any(
+        bool(run.series[name][-1] > CONTACT_SHARE * extreme(run, name)[0]) for name in forces
+    )
+
+
+def still_sinking(run: Run) -> bool:
+    """Return whether a body had not come to a stop when the run ended.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    bool
+        Of a driven body, whether it was not 4 cm deep.
+    """
+    if driven(run):
+        return not any(
+            metric.name == names.STATIC_STIFFNESS
+            for cushion in cushions(run)
+            for metric in _static(run, cushion)
+        )
+    depths = [
+        run.series[name]
+        for cushion in cushions(run)
+        if (name := column(run, cushion, Role.PENETRATION))
+    ]
+    return any(
+        int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0 for depth in depths
+    )

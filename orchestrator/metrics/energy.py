@@ -1,0 +1,224 @@
+"""Energy of an impact, its balance over the whole system, and what of it reaches a structure."""
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockshed.components.common.roles import Role
+
+from ..core.results.metric import Metric
+from ..core.results.reading import Run
+from . import names
+from .roles import column, owners, parameter, recorded
+from .values import extreme, of_each
+
+Values = NDArray[np.float64]
+
+
+def driven(run: Run) -> bool:
+    """Return whether a machine moves a body: a static test, no impact.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    values = [parameter(run, owner, Role.DRIVEN) for owner in owners(run, Role.DRIVEN)]
+    return any(value in ("driven", True) for value in values)
+
+
+def machine_work(run: Run) -> Values | None:
+    """Return the work of the machines on driven bodies since the start.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    array of float, shape (rows,), or None
+        In J; None without a driven body.
+    """
+    works = [run.series[member.column] for member in recorded(run, Role.MACHINE_WORK)]
+    return sum(works[1:], works[0]) if works and driven(run) else None
+
+
+def system_residual(run: Run) -> Values | None:
+    """Return the energy that the whole system has made since the start.
+
+    That is what is stored and dissipated less what came in. A component's residual is the change of
+    its energies less the work done on it. The works of both sides of an interface cancel but for
+    what the coupling makes; with them the sum over all components is the balance of the system. The
+    work of a machine and of a weight comes from outside and stays in the balance. The load that a
+    rod carries at rest does work on its way down to the ground, which counts it as a potential; the
+    rod leaves it out.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    array of float, shape (rows,), or None
+        In J; None if a component gives no balance.
+    """
+    total = None
+    for component in run.provenance["components"]:
+        residual = column(run, component, Role.RESIDUAL)
+        if residual is None:
+            return None
+        inside = [m.column for m in recorded(run, Role.WORK_INSIDE) if m.component == component]
+        for name in [residual, *inside]:
+            part = run.series[name] - run.series[name][0]
+            total = part if total is None else total + part
+    carried = carried_work(run)
+    return total if total is None or carried is None else total - carried
+
+
+def carried_work(run: Run) -> Values | None:
+    """Return the work of loads at rest that no component counts, on the way of the points they act on.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    array of float, shape (rows,), or None
+        In J; None where no component carries such a load.
+    """
+    works = [
+        load_at_rest(run, member.component) * run.series[member.column]
+        for member in recorded(run, Role.LOADED_POSITION)
+    ]
+    return sum(works[1:], works[0]) if works else None
+
+
+def load_at_rest(run: Run, component: str) -> float:
+    """Return the load that a component carries at rest and leaves out of its balance.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    component : str
+        Name of the component in the system.
+
+    Returns
+    -------
+    float
+        In N, in the direction in which the component counts force and way.
+    """
+    return float(parameter(run, component, Role.LOAD_AT_REST) or 0.0)
+
+
+def impact_energy(run: Run) -> float | None:
+    """Return the kinetic energy of what strikes, at the start or when it is handed over.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    float or None
+        In J; None where nothing strikes or a machine drives it.
+    """
+    striking = recorded(run, Role.STRIKING)
+    if not striking or driven(run):
+        return None
+    return sum(float(run.series[m.column][_handed_over(run, m.component)]) for m in striking)
+
+
+def _handed_over(run: Run, component: str) -> int:
+    """Return the row in which a body is handed over to the system; the first one if it is there."""
+    received = column(run, component, Role.HANDED_OVER)
+    return 0 if received is None else int(run.series[received].argmax())
+
+
+def structures(run: Run) -> list[str]:
+    """Return the components that are structures: those with a deflection.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    return owners(run, Role.DEFLECTION)
+
+
+def of_structures(run: Run) -> Iterator[Metric]:
+    """Yield deflection and energies of each structure.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    return of_each(run, structures(run), _of_structure)
+
+
+def _of_structure(run: Run, structure: str) -> Iterator[Metric]:
+    deflection = column(run, structure, Role.DEFLECTION)
+    if deflection is not None:
+        yield Metric(names.DEFLECTION, extreme(run, deflection)[0], "m")
+    for name, energy in _structure_energies(run, structure):
+        yield Metric(name, energy, "J")
+
+
+def _structure_energies(run: Run, structure: str) -> Iterator[tuple[str, float]]:
+    """Yield the largest energy (J) that the impact has put in: the springs' beyond the start, and by the strain."""
+    elastic = column(run, structure, Role.ELASTIC)
+    if elastic is not None:
+        yield names.BEAM_ENERGY, extreme(run, elastic)[0] - float(run.series[elastic][0])
+    estimated = column(run, structure, Role.ESTIMATED)
+    if estimated is not None:
+        yield names.BEAM_ENERGY_FROM_STRAIN, extreme(run, estimated)[0]
+
+
+_SHARES = {
+    names.BEAM_ENERGY: names.BEAM_SHARE,
+    names.BEAM_ENERGY_FROM_STRAIN: names.BEAM_SHARE_FROM_STRAIN,
+}
+
+
+def of_system(run: Run) -> Iterator[Metric]:
+    """Yield impact energy, residual of the balance, and the shares of the impact energy.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    impact, residual = impact_energy(run), system_residual(run)
+    if impact is not None:
+        yield Metric(names.IMPACT_ENERGY, impact, "J")
+    if residual is not None:
+        yield Metric(names.RESIDUAL, largest(residual), "J")
+    if not impact:
+        return
+    if residual is not None:
+        yield Metric(names.RESIDUAL_SHARE, largest(residual) / impact)
+    yield from of_each(run, structures(run), partial(_structure_shares, impact))
+
+
+def _structure_shares(impact: float, run: Run, structure: str) -> Iterator[Metric]:
+    for name, energy in _structure_energies(run, structure):
+        yield Metric(_SHARES[name], energy / impact)
+
+
+def largest(values: Values) -> float:
+    """Return the value that is farthest from zero.
+
+    Parameters
+    ----------
+    values : array of float, shape (rows,)
+        In any unit.
+    """
+    return float(max(values, key=abs))

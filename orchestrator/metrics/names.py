@@ -1,0 +1,58 @@
+"""Names of the metrics of a run in words; their identifiers follow from them and stay."""
+
+PEAK_TRANSMITTED = "peak transmitted force"
+PEAK_TRANSMITTED_AT = "peak transmitted force at"
+PEAK_ROCK = "peak force on the rock"
+PEAK_ROCK_AT = "peak force on the rock at"
+PEAK_LOAD_CELL = "peak transmitted force through the load cell"
+LOAD_CELL_CUT_OFF = "cut-off frequency of the load cell"
+RATIO = "peak transmitted force / peak force on the rock"
+SETTLED_TRANSMITTED = "settled maximum of the transmitted force"
+SETTLED_ROCK = "settled maximum of the force on the rock"
+SETTLED_RATIO = "settled transmitted force / settled force on the rock"
+SETTLED_CUT_OFF = "cut-off frequency of the settled forces"
+PENETRATION = "penetration"
+CLEARANCE = "least distance of rock and base"
+DEFLECTION = "peak midspan deflection"
+BEAM_ENERGY = "peak beam energy"
+"""Largest elastic energy less that at the start, under dead load."""
+BEAM_ENERGY_FROM_STRAIN = "peak beam energy from the midspan strain"
+BEAM_SHARE = "peak beam energy / impact energy"
+BEAM_SHARE_FROM_STRAIN = "peak beam energy from the midspan strain / impact energy"
+IMPULSE_ROCK = "impulse on the rock"
+IMPULSE_TRANSMITTED = "transmitted impulse"
+DURATION = "duration of the force on the rock"
+IMPACT_ENERGY = "impact energy"
+RESIDUAL = "largest energy residual of the system"
+RESIDUAL_SHARE = "largest energy residual of the system / impact energy"
+STATIC_LOAD = "load at 4 cm"
+STATIC_STIFFNESS = "secant spring constant k"
+STATIC_DEPARTURE = "departure of the load from the secant line / largest load"
+MACHINE_WORK = "work of the machine"
+RESIDUAL_WORK_SHARE = "largest energy residual of the system / work of the machine"
+
+_SEPARATOR = ": "
+
+
+def of_component(component: str, name: str) -> str:
+    """Return the name of a metric of one component among several.
+
+    Parameters
+    ----------
+    component : str
+        Name of the component in the system.
+    name : str
+        Name of the metric.
+    """
+    return f"{component}{_SEPARATOR}{name}"
+
+
+def without_component(name: str) -> str:
+    """Return the name of a metric without that of its component.
+
+    Parameters
+    ----------
+    name : str
+        Name of a metric, with or without a component.
+    """
+    return name.rpartition(_SEPARATOR)[2]

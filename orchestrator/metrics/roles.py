@@ -1,0 +1,155 @@
+"""Variables of a run by their role, as the components declare it; see :mod:`rockshed.components.common.roles`.
+
+A component of another tool has no roles, and is passed over.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockshed.components.common.roles import Role
+
+from ..core.results.reading import Run
+
+
+@dataclass(frozen=True)
+class Member:
+    """A variable that plays a role.
+
+    Attributes
+    ----------
+    component : str
+        Name of the component in the system.
+    variable : str
+        Name of the variable; of an array without the number of an element.
+    role : Role
+        Its role.
+    label : str
+        Its short name in legends.
+    """
+
+    component: str
+    variable: str
+    role: Role
+    label: str
+
+    @property
+    def column(self) -> str:
+        """Name of a scalar in the results."""
+        return f"{self.component}.{self.variable}"
+
+
+def members(run: Run, role: Role) -> list[Member]:
+    """Return the variables that are declared with a role, or with a kind of it.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    role : Role
+        The role that is asked for.
+
+    Returns
+    -------
+    list of Member
+        In the order of the components and their declarations, recorded or not.
+    """
+    return [
+        Member(component, variable, Role(told["role"]), told.get("label", ""))
+        for component, facts in run.provenance["components"].items()
+        for variable, told in facts.get("variables", {}).items()
+        if told.get("role") and role.includes(told["role"])
+    ]
+
+
+def recorded(run: Run, role: Role) -> list[Member]:
+    """Return the scalar outputs with a role that the results have.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    role : Role
+        The role that is asked for.
+    """
+    return [member for member in members(run, role) if member.column in run.series]
+
+
+def column(run: Run, component: str, role: Role) -> str | None:
+    """Return the first recorded output of a component with a role; None if there is none.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    component : str
+        Name of the component in the system.
+    role : Role
+        The role that is asked for.
+    """
+    return next((m.column for m in recorded(run, role) if m.component == component), None)
+
+
+def owners(run: Run, role: Role) -> list[str]:
+    """Return the components that declare a variable with a role, each once.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    role : Role
+        The role that is asked for.
+    """
+    return list(dict.fromkeys(member.component for member in members(run, role)))
+
+
+def elements(run: Run, name: str) -> list[NDArray[np.float64]]:
+    """Return the series of an array's elements, as far as they were recorded.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    name : str
+        ``component.variable`` of the array, without the number of an element.
+
+    Returns
+    -------
+    list of array of float, shape (rows,)
+        One for each element.
+    """
+    return [values for key, values in run.series.items() if key.startswith(f"{name}[")]
+
+
+def parameters(run: Run, component: str) -> dict[str, Any]:
+    """Return the values of a component's parameters by name.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    component : str
+        Name of the component in the system.
+    """
+    told: Mapping[str, Any] = run.provenance["components"][component]["parameters"]
+    return {name: entry["value"] for name, entry in told.items()}
+
+
+def parameter(run: Run, component: str, role: Role) -> Any:
+    """Return the value of a component's parameter with a role; None if it has none.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    component : str
+        Name of the component in the system.
+    role : Role
+        The role that is asked for.
+    """
+    values = parameters(run, component)
+    named = [m.variable for m in members(run, role) if m.component == component]
+    return next((values[name] for name in named if name in values), None)

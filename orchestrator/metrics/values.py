@@ -1,0 +1,76 @@
+"""Single values of an output: its extreme and its integral over the run; metrics of several components."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from ..core.results.metric import Metric
+from ..core.results.reading import Run
+from .names import of_component
+
+
+def extreme(run: Run, column: str) -> tuple[float, float]:
+    """Return the largest value of an output and its time.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    column : str
+        ``component.output``.
+
+    Returns
+    -------
+    value : float
+        Over all exchanges if the run watched the output and has ended, else over the rows.
+    time : float
+        In s.
+    """
+    known = {metric.name: metric.value for metric in run.metrics.values()}
+    if f"{column} maximum" in known:
+        return float(known[f"{column} maximum"]), float(known[f"{column} maximum at"])
+    at = int(run.series[column].argmax())
+    return float(run.series[column][at]), float(run.series["time"][at])
+
+
+def integral(run: Run, column: str) -> float:
+    """Return the integral of an output over the time.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    column : str
+        ``component.output``.
+
+    Returns
+    -------
+    float
+        Over all exchanges if the run watched the output and has ended, else over the rows.
+    """
+    name = f"{column} integral"
+    known = next((metric.value for metric in run.metrics.values() if metric.name == name), None)
+    if known is not None:
+        return float(known)
+    values, time = run.series[column], run.series["time"]
+    return float((0.5 * (values[1:] + values[:-1]) * (time[1:] - time[:-1])).sum())
+
+
+def of_each(
+    run: Run, components: Sequence[str], measure: Callable[[Run, str], Iterable[Metric]]
+) -> Iterator[Metric]:
+    """Yield the metrics of each component; among several, each under the name of its component.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    components : sequence of str
+        Names of the components in the system.
+    measure : callable
+        Gives the metrics of one component of the run.
+    """
+    for component in components:
+        for metric in measure(run, component):
+            several = len(components) > 1
+            name = of_component(component, metric.name) if several else metric.name
+            yield replace(metric, name=name)

@@ -1,0 +1,192 @@
+"""Curves of a cushion: forces, penetration; of a static test the load over the penetration."""
+
+from pathlib import Path
+
+from matplotlib.axes import Axes
+
+from rockshed.components.common.roles import Role
+from rockshed.components.common.units import cm, kgf, kN, ms
+
+from ..core.results.reading import Run
+from ..metrics import names
+from ..metrics.cushion import base_height, both_forces, curve_of, cut_off, settled
+from ..metrics.load_curve import DEPTH
+from ..metrics.roles import column
+from ..metrics.values import extreme
+from ..references import Known
+from .references import References, draw_references
+from .style import (
+    GREY,
+    INK,
+    ROCK,
+    TRANSMITTED,
+    WIDTH,
+    figure,
+    over_time,
+    reference_line,
+    second_scale,
+)
+
+
+def forces(run: Run, cushion: str, known: References, file: Path) -> None:
+    """Draw transmitted force and force on the rock, with the measured peak.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    known : mapping of str to Known
+        References by the name of the metric.
+    file : Path
+        File of the picture.
+    """
+    with figure(run, file, WIDTH, 3.6) as made:
+        axes = made.subplots()
+        force_axes(run, cushion, known, axes)
+        _settled_forces(run, cushion, axes)
+        on_rock = known.get(names.SETTLED_ROCK, Known())
+        draw_references(axes, on_rock, "kN", "force on the rock")
+        highest = [1.2 * reference.value / kN for reference in on_rock.by().values()]
+        axes.set_ylim(top=max([axes.get_ylim()[1], *highest]))
+
+
+def force_axes(run: Run, cushion: str, known: References, axes: Axes) -> None:
+    """Draw both forces in kN, with kgf at the right.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    known : mapping of str to Known
+        References by the name of the metric.
+    axes : Axes
+        Where to draw.
+    """
+    time = run.series["time"] / ms
+    words = (("transmitted to the base", TRANSMITTED), ("on the rock", ROCK))
+    for (name, colour), force in zip(words, both_forces(run, cushion) or ()):
+        peak, at = extreme(run, force)
+        text = f"{name}, peak {peak / kN:.2f} kN at {at / ms:.1f} ms"
+        axes.plot(time, run.series[force] / kN, color=colour, label=text)
+        axes.plot(at / ms, peak / kN, "o", color=colour, markersize=3.5)
+    draw_references(axes, known.get(names.PEAK_TRANSMITTED), "kN", "peak transmitted force")
+    axes.set(xlabel="time (ms)", ylabel="force (kN)")
+    over_time(axes, time)
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.12 * axes.get_ylim()[1])
+    second_scale(axes, kN / kgf, "(kgf)")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+
+
+def _settled_forces(run: Run, cushion: str, axes: Axes) -> None:
+    """Draw both forces without their spikes."""
+    fastest = cut_off(run, cushion)
+    for colour, force in zip((TRANSMITTED, ROCK), both_forces(run, cushion) or ()):
+        curve = settled(run, cushion, force)
+        if curve is None:
+            return
+        time = run.series["time"] / ms
+        axes.plot(time, curve / kN, color=colour, linewidth=0.9, linestyle=(0, (3, 2)))
+    axes.annotate(
+        f"dashed: settled, below {fastest:.0f} Hz",
+        (1.0, 1.0),
+        xycoords="axes fraction",
+        xytext=(-2, -3),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        fontsize=8,
+        color=GREY,
+    )
+
+
+def penetration(run: Run, cushion: str, known: References, file: Path) -> None:
+    """Draw the depth of the rock's lowest point under the surface, downwards, and the base.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    known : mapping of str to Known
+        References by the name of the metric.
+    file : Path
+        File of the picture.
+    """
+    depth = str(column(run, cushion, Role.PENETRATION))
+    time = run.series["time"] / ms
+    with figure(run, file, WIDTH, 3.2) as made:
+        axes = made.subplots()
+        axes.plot(time, run.series[depth] / cm, color=ROCK)
+        most, at = extreme(run, depth)
+        axes.annotate(
+            f"{most / cm:.2f} cm at {at / ms:.1f} ms",
+            (at / ms, most / cm),
+            xytext=(0, 6),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=8.5,
+            color=ROCK,
+        )
+        surface, base = column(run, cushion, Role.SURFACE), base_height(run, cushion)
+        if surface is not None and base is not None:
+            thickness = float(run.series[surface][0]) - base
+            reference_line(axes, thickness / cm, "base", "-")
+        draw_references(axes, known.get(names.PENETRATION), "cm", "largest")
+        axes.axhline(0.0, color=GREY, linewidth=0.7)
+        axes.set(xlabel="time (ms)", ylabel="penetration (cm)")
+        over_time(axes, time)
+        axes.invert_yaxis()
+
+
+def load(run: Run, cushion: str, known: References, file: Path) -> None:
+    """Draw the load on a driven rock over its penetration, with the secant at 4 cm and the paper's.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    cushion : str
+        Name of the component in the system.
+    known : mapping of str to Known
+        References by the name of the metric.
+    file : Path
+        File of the picture.
+    """
+    curve = curve_of(run, cushion)
+    assert curve is not None
+    with figure(run, file, WIDTH, 3.6) as made:
+        axes = made.subplots()
+        axes.plot(curve.depth / cm, curve.load / kN, color=ROCK, linewidth=0.5, alpha=0.45)
+        mean = curve.at(curve.depth) / kN
+        axes.plot(curve.depth / cm, mean, color=ROCK, label="load, mean over 0.5 mm")
+        if curve.reaches(DEPTH):
+            _secant(axes, float(curve.at(DEPTH)) / DEPTH, INK, "-", "secant, k =")
+        paper = known.get(names.STATIC_STIFFNESS, Known()).paper
+        if paper:
+            _secant(axes, paper.value, GREY, "--", "paper,")
+        axes.axhline(0.0, color=GREY, linewidth=0.7)
+        axes.set(xlabel="penetration (cm)", ylabel="load (kN)")
+        axes.set_xlim(left=0.0)
+        second_scale(axes, kN / kgf, "(kgf)")
+        axes.legend(loc="upper left")
+
+
+def _secant(axes: Axes, stiffness: float, colour: str, dashes: str, words: str) -> None:
+    """Draw a line from the origin to 4 cm with a spring constant (N/m)."""
+    axes.plot(
+        [0.0, DEPTH / cm],
+        [0.0, stiffness * DEPTH / kN],
+        dashes,
+        color=colour,
+        linewidth=1.0,
+        marker="o",
+        markevery=[1],
+        markersize=3.5,
+        label=f"{words} {stiffness / kN:.1f} kN/m = {stiffness * cm / kgf:.1f} kgf/cm",
+    )

@@ -1,0 +1,183 @@
+"""Pictures that components declare as data: curves of their outputs, in panels over the time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from rockshed.components.common.units import SCREEN_UNITS, ms
+
+from ..core.results.metric import identifier
+from ..core.results.reading import Run
+from ..metrics.energy import load_at_rest
+from ..metrics.names import without_component
+from .references import References, draw_references
+from .style import (
+    BEAM,
+    GREY,
+    INK,
+    ROCK,
+    TRANSMITTED,
+    WIDTH,
+    figure,
+    legend,
+    over_time,
+    second_scale,
+)
+
+_COLOURS = (ROCK, TRANSMITTED, BEAM, INK, "#8a6d4b", "#6a4c93")
+_PANEL = 2.0
+"""Height of a panel (inch)."""
+_FORCES = ("N", "kN", "kgf")
+
+
+@dataclass
+class _Panel:
+    """A panel as it is declared, and the components that are drawn into it."""
+
+    told: Mapping[str, Any]
+    components: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class DeclaredPicture:
+    """A picture with the panels of all components that declare it.
+
+    Attributes
+    ----------
+    name : str
+        Name of the file without its ending.
+    panels : sequence of panels
+        From top to bottom.
+    """
+
+    name: str
+    panels: Sequence[_Panel]
+
+    @property
+    def columns(self) -> list[str]:
+        """Columns of the results without which it is not drawn: the first curve of each panel."""
+        return [
+            f"{component}.{panel.told['curves'][0]['variable']}"
+            for panel in self.panels
+            for component in panel.components
+        ]
+
+    def draw(self, run: Run, known: References, file: Path) -> None:
+        """Draw the picture.
+
+        Parameters
+        ----------
+        run : Run
+            The run.
+        known : mapping of str to Known
+            References by the name of the metric.
+        file : Path
+            File of the picture.
+        """
+        time = run.series["time"] / ms
+        with figure(run, file, WIDTH, 1.0 + _PANEL * len(self.panels)) as made:
+            rows = made.subplots(len(self.panels), 1, sharex=True, squeeze=False).ravel()
+            owners = {panel.components[0] for panel in self.panels if not panel.told["common"]}
+            for axes, panel in zip(rows, self.panels, strict=True):
+                _draw_panel(run, panel, axes, several=len(owners) > 1)
+                _draw_known(panel, known, axes)
+            rows[-1].set(xlabel="time (ms)")
+            over_time(rows[-1], time)
+
+
+def declared_pictures(run: Run) -> list[DeclaredPicture]:
+    """Return the pictures that the components of a run declare.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    list of DeclaredPicture
+        One for each name.
+    """
+    pictures: dict[str, list[_Panel]] = {}
+    for component, facts in run.provenance["components"].items():
+        for picture in facts.get("pictures", ()):
+            panels = pictures.setdefault(picture["name"], [])
+            for told in picture["panels"]:
+                shared = [p for p in panels if told["common"] and p.told == told]
+                panels += [] if shared else [_Panel(told)]
+                (shared or panels[-1:])[0].components.append(component)
+    return [
+        DeclaredPicture(name, sorted(panels, key=lambda panel: panel.told["common"]))
+        for name, panels in pictures.items()
+    ]
+
+
+def _draw_panel(run: Run, panel: _Panel, axes: Axes, several: bool) -> None:
+    """Draw the curves of a panel."""
+    told, colours = panel.told, cycle(_COLOURS)
+    unit = told["unit"]
+    for component in panel.components:
+        colour = ""
+        for curve in told["curves"]:
+            colour = colour if curve["dashed"] and colour else next(colours)
+            _draw_curve(run, panel, component, curve, axes, colour)
+        if unit in _FORCES and (load := load_at_rest(run, component)):
+            _note(axes, f"beyond the load at rest, {abs(load) / SCREEN_UNITS[unit]:.1f} {unit}")
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
+    owner = f"{panel.components[0]}: " if several and not told["common"] else ""
+    shown = "" if unit == "1" else f" ({unit})"
+    shown += "\ndownwards" if told["downwards"] else ""
+    axes.set(ylabel=f"{owner}{told['label']}{shown}")
+    if told["downwards"]:
+        axes.invert_yaxis()
+    if told["second_unit"]:
+        factor = SCREEN_UNITS[unit] / SCREEN_UNITS[told["second_unit"]]
+        second_scale(axes, factor, f"({told['second_unit']})")
+    legend(axes, loc="best")
+
+
+def _draw_curve(
+    run: Run, panel: _Panel, component: str, curve: Mapping[str, Any], axes: Axes, colour: str
+) -> None:
+    """Draw a curve of a component, if its output was recorded."""
+    name = f"{component}.{curve['variable']}"
+    if name not in run.series:
+        return
+    values = curve["factor"] * run.series[name]
+    if curve["from_start"]:
+        values = values - values[0]
+    words = [component] if panel.told["common"] else []
+    label = ", ".join(filter(None, [*words, curve["label"]]))
+    axes.plot(
+        run.series["time"] / ms,
+        values / SCREEN_UNITS[panel.told["unit"]],
+        "--" if curve["dashed"] else "-",
+        color=colour,
+        linewidth=1.1,
+        label=label or None,
+    )
+
+
+def _draw_known(panel: _Panel, known: References, axes: Axes) -> None:
+    """Draw the references of the metric that a panel names."""
+    for name, references in known.items():
+        if identifier(without_component(name)) == panel.told["references"]:
+            draw_references(axes, references, panel.told["unit"], name)
+
+
+def _note(axes: Axes, text: str) -> None:
+    axes.annotate(
+        text,
+        (1.0, 0.0),
+        xycoords="axes fraction",
+        xytext=(-3, 3),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        fontsize=8,
+        color=GREY,
+    )

@@ -1,0 +1,41 @@
+"""Lines at the values that others found for a metric."""
+
+from collections.abc import Mapping
+
+from matplotlib.axes import Axes
+
+from rockshed.components.common.units import SCREEN_UNITS
+
+from ..references import Known
+from .style import reference_line
+
+References = Mapping[str, Known]
+"""References by the name of the metric."""
+
+_FOUND_BY = {
+    "experiment": ("{what} measured, {about}{value:.2f} {unit}", "--"),
+    "paper": ("{what} in the paper's analysis, {about}{value:.2f} {unit}", ":"),
+    "handbook": ("{what} by the handbook's formula, {value:.0f} {unit}", "-."),
+}
+
+
+def draw_references(axes: Axes, known: Known | None, unit: str, what: str) -> None:
+    """Draw a line for each reference of a metric.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw.
+    known : Known, optional
+        References of the metric.
+    unit : str
+        Unit of the axis.
+    what : str
+        Name of the metric in words.
+    """
+    for who, reference in ({} if known is None else known.by()).items():
+        words, dashes = _FOUND_BY[who]
+        value = reference.value / SCREEN_UNITS[unit]
+        about = "≈ " if reference.note else ""
+        text = words.format(what=what, about=about, value=value, unit=unit)
+        reference_line(axes, value, text, dashes)
