@@ -13,6 +13,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .analyses.pile.run import pile
+    from .analyses.rockfall.run import rockfall
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunFailed, UnknownName
     from .runs.building import build_fmu
@@ -37,7 +39,9 @@ _HOMES = {
     "build_fmu": "runs.building",
     "case": "runs.system",
     "component": "runs.subsystem",
+    "pile": "analyses.pile.run",
     "read_run": "runs.run",
+    "rockfall": "analyses.rockfall.run",
     "simulate": "runs.simulation",
 }
 """Modules of the public names."""
@@ -56,7 +60,9 @@ __all__ = [
     "build_fmu",
     "case",
     "component",
+    "pile",
     "read_run",
+    "rockfall",
     "simulate",
 ]
 

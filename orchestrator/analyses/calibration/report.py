@@ -7,17 +7,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
-
 from rockshed.components.common.units import cm, kgf
 
 from ...cases.sonoda1993 import tests
-from ...commands.screen import plain_table
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...files import write_json
 from ...runs.batch import Counted
 from ...runs.building import Note
+from ...tables import Table
 from .measurement import Measurement, of_stiffness, read_curve, stiffness_from
 from .run import ROTATIONS, Calibration, Fit, Unreachable, by_misfit, calibrate
 
@@ -169,9 +167,9 @@ def table(found: Found) -> Table:
     """For the screen; columns in which nothing stands are left out."""
     rows = cells(found)
     shown = [i for i in range(len(_HEADINGS)) if any(row[i] for row in rows)]
-    made = plain_table(*(_HEADINGS[i] for i in shown), right=_HEADINGS[2:])
+    made = Table([_HEADINGS[i] for i in shown], right=_HEADINGS[2:])
     for row in rows:
-        made.add_row(*(row[i] for i in shown))
+        made.add(*(row[i] for i in shown))
     return made
 
 
