@@ -236,7 +236,10 @@ class System:
             sources[name] = _in_process(made, sizes)
             fmu = f"{made.name} (in process)"
         spec = {"fmu": fmu, "step": step, "parameters": dict(values or {})}
-        made_system = self._detached({"components": {**self._data()["components"], name: spec}})
+        entries: dict[str, Any] = {"components": {**self._data()["components"], name: spec}}
+        if self.spec.order:  # a component that is added comes last
+            entries["order"] = [*self.spec.order, name]
+        made_system = self._detached(entries)
         return System(replace(made_system.job, sources=sources))
 
     def connect(self, *connections: str) -> "System":
