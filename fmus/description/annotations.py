@@ -1,6 +1,7 @@
-"""Annotations of a model description: roles, older names, figures and pictures, which FMI has no words for.
+"""Annotations of a model description for what FMI has no words for.
 
-Each variable that has any, and the component, carry an element with the name of this program; other tools pass it over.
+They tell roles, older names, figures and pictures. Each variable that has any, and the component,
+carry an element with the name of this program; other tools pass it over.
 """
 
 from dataclasses import fields
@@ -40,7 +41,10 @@ def of_component(component: Component) -> etree._Element | None:
 
 
 def _filled(element: etree._Element, declared: Any, names: tuple[str, ...]) -> Any:
-    """Fill in the fields that are set: text as attributes, declarations as children; None if there are none."""
+    """Fill in the fields that are set: text as attributes, declarations as children.
+
+    Returns None where there are none.
+    """
     for name in names:
         value = getattr(declared, name)
         if isinstance(value, tuple) and not all(isinstance(entry, str) for entry in value):

@@ -1,4 +1,4 @@
-"""Documentation inside an FMU: the component's README and tables of its variables and sizes, as one HTML page."""
+"""Documentation inside an FMU: README, variables and sizes of its component as an HTML page."""
 
 from collections.abc import Iterable
 from html import escape
@@ -10,13 +10,22 @@ from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 
 _STYLE = (
     "body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
-    "table{border-collapse:collapse}th,td{border:1px solid #bbb;padding:.2em .5em;text-align:left;vertical-align:top}"
+    "table{border-collapse:collapse}th,td{border:1px solid #bbb;"
+    "padding:.2em .5em;text-align:left;vertical-align:top}"
     "pre{background:#f4f4f4;padding:.5em;overflow-x:auto}"
 )
 
 
 def index_html(component: Component, sizes: Sizes) -> str:
-    """The page ``documentation/index.html``."""
+    """Return the page ``documentation/index.html``.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        Sizes that the FMU is built with.
+    """
     body = MarkdownIt("commonmark").enable("table").render(component.documentation())
     body += "<h2>Variables</h2>\n" + _table(
         ("name", "causality", "unit", "start", "range", "description", "source"),
@@ -31,7 +40,8 @@ def index_html(component: Component, sizes: Sizes) -> str:
             ),
         )
     return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(component.title)}</title>'
+        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8">'
+        f"<title>{escape(component.title)}</title>"
         f"<style>{_STYLE}</style></head>\n<body>\n{body}</body>\n</html>\n"
     )
 

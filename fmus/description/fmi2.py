@@ -1,4 +1,4 @@
-"""The model description of an FMU, derived from a component's declarations: the ``modelDescription.xml`` of FMI 2.0.
+"""The ``modelDescription.xml`` of FMI 2.0, derived from a component's declarations.
 
 That of FMI 3.0, :mod:`rockshed.fmus.description.fmi3`, shares what does not differ.
 """
@@ -31,20 +31,42 @@ _CAPABILITIES = {
 
 
 _NEEDS_TOOL = {Runtime.PYTHON: "true", Runtime.NATIVE: "false"}
-"""An FMU with Python needs one with numpy and numba on the computer; the name of the tool stands in generationTool."""
+"""An FMU with Python needs one with numpy and numba on the computer; the name of the tool stands in
+generationTool."""
 
 
 def generation_tool(runtime: Runtime) -> str:
-    """The attribute ``generationTool``."""
+    """Return the attribute ``generationTool``.
+
+    Parameters
+    ----------
+    runtime : Runtime
+        What carries out the kernels.
+    """
     if runtime is Runtime.NATIVE:
         return f"rockshed {version('rockshed')}, native code"
-    return f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}; runs in Python >= 3.11 with numpy and numba"
+    made_with = f"rockshed {version('rockshed')} with PythonFMU {version('pythonfmu')}"
+    return f"{made_with}; runs in Python >= 3.11 with numpy and numba"
 
 
 def model_description(
     component: Component, sizes: Mapping[str, int], guid: str, runtime: Runtime = Runtime.PYTHON
 ) -> bytes:
-    """The complete ``modelDescription.xml``. The index of a variable is its value reference + 1; the sizes stand last."""
+    """Return the complete ``modelDescription.xml``.
+
+    The index of a variable is its value reference + 1; the sizes stand last.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        Sizes that the FMU is built with.
+    guid : str
+        Identifies the content of the FMU.
+    runtime : Runtime
+        What carries out the kernels.
+    """
     root = etree.Element(
         "fmiModelDescription",
         {
@@ -79,7 +101,7 @@ def model_description(
 
 
 def log_categories_and_experiment(root: etree._Element, component: Component) -> None:
-    """The elements LogCategories and DefaultExperiment."""
+    """Append the elements LogCategories and DefaultExperiment to the root."""
     categories = etree.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
         etree.SubElement(categories, "Category", name=name, description=description)
@@ -93,13 +115,13 @@ def log_categories_and_experiment(root: etree._Element, component: Component) ->
 
 
 def used_units(component: Component) -> list[str]:
-    """The units of the component's variables."""
+    """Return the units of the component's variables, in the order of :data:`UNITS`."""
     used = {v.unit for v in component.layout.variables if v.kind is Kind.REAL}
     return [unit for unit in UNITS if unit in used]
 
 
 def unit_definitions(root: etree._Element, component: Component) -> None:
-    """The element UnitDefinitions."""
+    """Append the element UnitDefinitions to the root."""
     definitions = etree.SubElement(root, "UnitDefinitions")
     for name in used_units(component):
         exponents = {base: str(exponent) for base, exponent in UNITS[name].base.items()}
@@ -126,7 +148,7 @@ def _type_definitions(root: etree._Element, component: Component) -> None:
 
 
 def add_items(enumeration: etree._Element, variable: Variable) -> None:
-    """The words of an enumeration and their numbers."""
+    """Append the words of an enumeration with their numbers."""
     for value, word in enumerate(variable.choices, start=1):
         etree.SubElement(enumeration, "Item", name=word, value=str(value))
 
@@ -197,13 +219,13 @@ def _annotate(parent: etree._Element, name: str, annotation: etree._Element | No
 
 
 def initial(variable: Variable) -> dict[str, str]:
-    """The attribute ``initial``; inputs have none."""
+    """Return the attribute ``initial``; inputs have none."""
     kinds = {Causality.PARAMETER: "exact", Causality.OUTPUT: "calculated"}
     return {"initial": kinds[variable.causality]} if variable.causality in kinds else {}
 
 
 def type_and_bounds(component: Component, variable: Variable) -> dict[str, str]:
-    """The attributes that tell a variable's type, unit and range."""
+    """Return the attributes that tell a variable's type, unit and range."""
     attributes = {}
     if variable.kind is Kind.REAL:
         attributes = {"declaredType": UNITS[variable.unit].quantity, "unit": variable.unit}
@@ -218,21 +240,25 @@ def type_and_bounds(component: Component, variable: Variable) -> dict[str, str]:
 
 
 def variability(variable: Variable) -> str:
-    """The attribute ``variability``."""
+    """Return the attribute ``variability`` of a variable."""
     if variable.causality is Causality.PARAMETER:
         return "fixed"
     return "continuous" if variable.kind is Kind.REAL else "discrete"
 
 
 def literal(kind: Kind, value: float) -> str:
-    """A value as XML writes it for a variable of this kind."""
+    """Return a value as XML writes it for a variable of this kind."""
     if kind is Kind.REAL:
         return repr(float(value))
     return str(bool(value)).lower() if kind is Kind.BOOLEAN else str(int(value))
 
 
 def _model_structure(root: etree._Element, component: Component, sizes: Sizes) -> None:
-    """No output depends on an input between two steps; what it depends on at the start is declared with it."""
+    """Append outputs and initial unknowns.
+
+    No output depends on an input between two steps; what it depends on at the start is declared
+    with it.
+    """
     indices: dict[str, list[int]] = {}
     for variable in component.layout.ordered:
         first = 1 + sum(map(len, indices.values()))
@@ -243,7 +269,8 @@ def _model_structure(root: etree._Element, component: Component, sizes: Sizes) -
     for variable in component.layout.ordered:
         if variable.causality is Causality.OUTPUT:
             known = variable.initial_dependencies
-            # without the attribute an unknown depends on everything known: all parameters and inputs
+            # without the attribute an unknown depends on everything known: all parameters and
+            # inputs
             depends = (
                 {}
                 if known is None

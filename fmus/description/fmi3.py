@@ -1,4 +1,7 @@
-"""The ``modelDescription.xml`` and ``terminalsAndIcons.xml`` of FMI 3.0: an array is one variable, a power bond is a terminal."""
+"""The ``modelDescription.xml`` and ``terminalsAndIcons.xml`` of FMI 3.0.
+
+An array is one variable, a power bond is a terminal.
+"""
 
 from importlib.metadata import version
 
@@ -45,9 +48,19 @@ _ICON_CORNERS = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
 
 
 def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
-    """The complete ``modelDescription.xml`` of a native FMU of FMI 3.0.
+    """Return the complete ``modelDescription.xml`` of a native FMU of FMI 3.0.
 
-    The value reference of a variable is that of its (first element's) scalar in FMI 2.0; sizes and time stand last.
+    The value reference of a variable is that of its (first element's) scalar in FMI 2.0; sizes and
+    time stand last.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        Sizes that the FMU is built with.
+    token : str
+        Identifies the content of the FMU.
     """
     root = etree.Element(
         "fmiModelDescription",
@@ -180,7 +193,11 @@ def _start(variable: Variable, sizes: Sizes) -> dict[str, str]:
 def _model_structure(
     root: etree._Element, component: Component, references: dict[str, int]
 ) -> None:
-    """No output depends on an input between two steps; what it depends on at the start is declared with it."""
+    """Append outputs and initial unknowns.
+
+    No output depends on an input between two steps; what it depends on at the start is declared
+    with it.
+    """
     structure = etree.SubElement(root, "ModelStructure")
     outputs = [v for v in component.layout.ordered if v.causality is Causality.OUTPUT]
     for variable in outputs:
@@ -206,7 +223,18 @@ def _model_structure(
 
 
 def terminals_and_icon(component: Component) -> Files:
-    """The terminals of the component's power bonds, and its icon, if it has any of them."""
+    """Return terminals of the power bonds and the icon, as far as the component has them.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+
+    Returns
+    -------
+    Files
+        Content by path; empty without bonds and icon.
+    """
     icon = picture(component, "terminalsAndIcons/icon.png")
     if not icon and not component.bonds:
         return {}
@@ -223,7 +251,11 @@ def terminals_and_icon(component: Component) -> Files:
 
 
 def _terminal(bond: Bond, component: Component) -> etree._Element:
-    """Both ends of a bond have the same values: the force is that on the body on either side, so it is a signal, and no flow."""
+    """Return the terminal of a power bond.
+
+    Both ends of a bond have the same values: the force is that on the body on either side, so it is
+    a signal, and no flow.
+    """
     terminal = etree.Element(
         "Terminal",
         name=bond.name,

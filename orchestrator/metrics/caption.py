@@ -68,7 +68,10 @@ def scheme(run: Run) -> str:
 
 
 def _step(run: Run, component: str, system: Mapping[str, Any]) -> float:
-    """Return the longest internal step (ms) that a component makes, its communication step at most; 0 if it names none."""
+    """Return the longest internal step (ms) of a component; 0 if it names none.
+
+    It is never longer than the communication step.
+    """
     told = system.get("components", {}).get(component, {})
     communication = told.get("step") or system["exchange_step"]
     own = float(parameter(run, component, Role.INTERNAL_STEP) or 0.0)

@@ -1,4 +1,4 @@
-"""The short table at the end of a run: each metric beside the values of the paper and of the experiment."""
+"""The table at the end of a run: metrics with the values of the paper and of the experiment."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -73,19 +73,26 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.BEAM_SHARE_FROM_STRAIN: ("peak beam energy (7) / E0", (Scale("%", 2),)),
     names.RESIDUAL_SHARE: ("energy residual / E0", (Scale("%", 3, "+"),)),
 }
-"""Label and units of each row, by the name of the metric, in the order in which a designer asks for them."""
+"""Label and units of each row, by the name of the metric, in the order in which a designer asks for
+them."""
 _HUGE = 1e7
 """Numbers from here on, of runs that went astray, are written with an exponent."""
 _TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compared"
 _TOO_SHALLOW = (
     "the rock is not driven 4 cm deep: there is no secant spring constant; raise --stop-time"
 )
-_STILL = "the force on the rock has not ended: impulse and duration would be larger with a later stop time"
+_STILL = (
+    "the force on the rock has not ended: impulse and duration would be larger with a later stop "
+    "time"
+)
 
 
 @dataclass(frozen=True)
 class Row:
-    """A metric as it is shown: text per column, deviations (computed / reference - 1) as numbers."""
+    """A metric as it is shown.
+
+    Text per column, deviations (computed / reference - 1) as numbers.
+    """
 
     label: str
     unit: str
@@ -152,7 +159,8 @@ def rows(run: Run, known: Mapping[str, Known]) -> list[Row]:
     Returns
     -------
     list of Row
-        In the order in which a designer asks for them; of a system without any of them, its summary.
+        In the order in which a designer asks for them; of a system without any of them, its
+        summary.
     """
     computed = figures(run, {} if still_sinking(run) else known)
     shown = [
@@ -230,8 +238,8 @@ def notes(run: Run, known: Mapping[str, Known]) -> list[str]:
     Returns
     -------
     list of str
-        Why something is not compared, where references that are only about right (≈) come from, and what
-        the end of the run has cut off.
+        Why something is not compared, where references that are only about right (≈) come from, and
+        what the end of the run has cut off.
     """
     remarks = list(_references(run).remarks)
     if still_sinking(run):

@@ -1,7 +1,8 @@
-"""Readers of components whose states or parameters need code of their own to be drawn and measured.
+"""Readers of components whose states or parameters need code of their own.
 
-A component declares what its serialized state holds, ``granular.discs`` for instance. Who knows such contents is registered here
-under this name: the modules are imported when they are first needed, and a component of one's own registers its own ones.
+A component declares what its serialized state holds, ``granular.discs`` for instance. Who knows how
+to draw and measure such contents is registered here under this name: the modules are imported when
+they are first needed, and a component of one's own registers its own ones.
 """
 
 from dataclasses import dataclass
@@ -25,7 +26,8 @@ class Reader:
     Attributes
     ----------
     measures : str
-        Module with ``contact_frequency(parameters)``, ``base_height(parameters, axis)`` and ``description(parameters)``.
+        Module with ``contact_frequency(parameters)``, ``base_height(parameters, axis)`` and
+        ``description(parameters)``.
     states : str
         Module with ``decoded(state)``, which gives the geometry in a serialized state.
     """

@@ -19,7 +19,8 @@ from .values import extreme, integral, of_each
 Values = NDArray[np.float64]
 
 SETTLING = 0.5
-"""Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one contact."""
+"""Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one
+contact."""
 CONTACT_SHARE = 0.01
 """Part of its peak above which the force on the rock counts towards its duration."""
 
@@ -234,12 +235,17 @@ def base_height(run: Run, cushion: str) -> float | None:
 
 
 def still_in_contact(run: Run) -> bool:
-    """Return whether a force on a striking body has not ended with the run, as it does after an impact.
+    """Return whether a force on a striking body has not ended with the run.
 
     Parameters
     ----------
     run : Run
         The run.
+
+    Returns
+    -------
+    bool
+        Never of a driven body, whose force does not end as it does after an impact.
     """
     forces = [name for cushion in cushions(run) if (name := column(run, cushion, Role.ON_BODY))]
     return not driven(run) and any(

@@ -1,4 +1,4 @@
-"""Warnings of a run, and doubts about its metrics: whether they can be trusted, whether the rock came through to the base."""
+"""Warnings of a run, and doubts about its metrics: whether they can be trusted."""
 
 from collections.abc import Iterator
 
@@ -52,8 +52,8 @@ def _open_balance(run: Run, found: list[Metric]) -> Iterator[str]:
     share = next((float(metric.value) for metric in found if metric.name == name), None)
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
         yield (
-            f"the balance of energy does not close: {100.0 * share:+.3g} % of the {whole}; do not trust the figures, reduce "
-            "the steps"
+            f"the balance of energy does not close: {100.0 * share:+.3g} % of the {whole}; "
+            "do not trust the figures, reduce the steps"
         )
 
 
@@ -69,8 +69,8 @@ def _other_weight(run: Run, structure: str) -> Iterator[str]:
     if len(pressing) != 1 or not assumed or abs(pressing[0] / assumed - 1.0) <= _WEIGHT_LIMIT:
         return
     yield (
-        f"the {structure} does not start at rest: it was bent by {assumed / kN:.4g} kN and the cushion presses with "
-        f"{pressing[0] / kN:.4g} kN; set {named[0]}={pressing[0]:.6g}"
+        f"the {structure} does not start at rest: it was bent by {assumed / kN:.4g} kN and the "
+        f"cushion presses with {pressing[0] / kN:.4g} kN; set {named[0]}={pressing[0]:.6g}"
     )
 
 
@@ -83,8 +83,8 @@ def _restless(run: Run, cushion: str) -> Iterator[str]:
     if not ratio <= _UNBALANCED_LIMIT:
         variable = name.removeprefix(f"{cushion}.")
         yield (
-            f"the {cushion} was not at rest at the start ({variable} {ratio:.2g}, at most {_UNBALANCED_LIMIT:g}): "
-            "raise settling.time"
+            f"the {cushion} was not at rest at the start ({variable} {ratio:.2g}, "
+            f"at most {_UNBALANCED_LIMIT:g}): raise settling.time"
         )
 
 
@@ -99,6 +99,6 @@ def _bottomed_out(run: Run, cushion: str, found: list[Metric]) -> Iterator[str]:
     if clearance > 0.0:
         where = f"comes within {clearance / mm:.1f} mm of"
     yield (
-        f"the rock bottoms out: it {where} the base, and a sand disc is {2.0 * float(radius) / mm:g} mm thick; the cushion is "
-        "too thin for this impact"
+        f"the rock bottoms out: it {where} the base, and a sand disc is "
+        f"{2.0 * float(radius) / mm:g} mm thick; the cushion is too thin for this impact"
     )

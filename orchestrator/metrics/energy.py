@@ -80,7 +80,7 @@ def system_residual(run: Run) -> Values | None:
 
 
 def carried_work(run: Run) -> Values | None:
-    """Return the work of loads at rest that no component counts, on the way of the points they act on.
+    """Return the work of loads at rest that no component counts.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def carried_work(run: Run) -> Values | None:
     Returns
     -------
     array of float, shape (rows,), or None
-        In J; None where no component carries such a load.
+        In J, on the way of the points that the loads act on; None where no component carries one.
     """
     works = [
         load_at_rest(run, member.component) * run.series[member.column]
@@ -173,7 +173,10 @@ def _of_structure(run: Run, structure: str) -> Iterator[Metric]:
 
 
 def _structure_energies(run: Run, structure: str) -> Iterator[tuple[str, float]]:
-    """Yield the largest energy (J) that the impact has put in: the springs' beyond the start, and by the strain."""
+    """Yield the largest energies (J) that the impact has put in, by the springs and by the strain.
+
+    That of the springs counts beyond the start, under dead load.
+    """
     elastic = column(run, structure, Role.ELASTIC)
     if elastic is not None:
         yield names.BEAM_ENERGY, extreme(run, elastic)[0] - float(run.series[elastic][0])

@@ -80,7 +80,8 @@ def load_cell(time: Values, force: Values, cut_off: float) -> Values:
     rate = (time.size - 1) / float(time[-1] - time[0])
     if cut_off * LOAD_CELL_ROWS > rate * (1.0 + 1e-9):
         raise ValueError(
-            f"rows {1.0 / rate:.3g} s apart carry a cut-off of {rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}"
+            f"rows {1.0 / rate:.3g} s apart carry a cut-off of "
+            f"{rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}"
         )
     sections = butter(_LOAD_CELL_ORDER, cut_off, fs=rate, output="sos")
     shown: Values = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]

@@ -1,7 +1,7 @@
-"""Headline metrics of a run: of an impact on a rock shed, of a static test of its cushion, of a blow on a pile.
+"""Headline metrics of a run: of an impact, of a static test, of a blow on a pile.
 
-They follow from the results alone, whatever system it was: variables are found by their roles, and a metric whose variable is
-missing is left out.
+They follow from the results alone, whatever system it was: variables are found by their roles, and
+a metric whose variable is missing is left out.
 """
 
 from collections.abc import Iterator

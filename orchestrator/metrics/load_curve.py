@@ -1,4 +1,4 @@
-"""Static loading: the load on a driven rock over its penetration, and what is read from that curve."""
+"""Static loading: load on a driven rock over its penetration, and what the curve tells."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -30,7 +30,18 @@ class LoadCurve:
         )
 
     def at(self, depth: Values | float) -> Values:
-        """Load (N) at penetrations (m): work over the :data:`WINDOW` around them / the way; at the ends over what there is."""
+        """Return the load at penetrations, as the mean over the :data:`WINDOW` around them.
+
+        Parameters
+        ----------
+        depth : float or array of float
+            In m.
+
+        Returns
+        -------
+        array of float
+            In N: work over the window / the way; at the ends over what there is.
+        """
         parts = 0.5 * (self.load[1:] + self.load[:-1]) * np.diff(self.depth)
         work = np.concatenate(([0.0], np.cumsum(parts)))
         low = np.clip(np.asarray(depth) - 0.5 * WINDOW, self.depth[0], self.depth[-1])
@@ -38,9 +49,18 @@ class LoadCurve:
         return (np.interp(high, self.depth, work) - np.interp(low, self.depth, work)) / (high - low)
 
     def departure(self, depth: float) -> float:
-        """How far the load is from the secant line up to ``depth`` (m): root mean square over the penetration / largest load.
+        """Return how far the load is from the secant line.
 
-        Infinite where the sand carries nothing.
+        Parameters
+        ----------
+        depth : float
+            End of the line (m).
+
+        Returns
+        -------
+        float
+            Root mean square over the penetration / largest load; infinite where the sand carries
+            nothing.
         """
         places = np.linspace(0.0, depth, round(depth / WINDOW) + 1)[1:]
         loads, end = self.at(places), float(self.at(depth))

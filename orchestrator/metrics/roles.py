@@ -1,6 +1,7 @@
-"""Variables of a run by their role, as the components declare it; see :mod:`rockshed.components.common.roles`.
+"""Variables of a run by their role, as the components declare it.
 
-A component of another tool has no roles, and is passed over.
+The roles: :mod:`rockshed.components.common.roles`. A component of another tool has none, and is
+passed over.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Single values of an output: its extreme and its integral over the run; metrics of several components."""
+"""Extreme and integral of an output over the run, and metrics of several components."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace

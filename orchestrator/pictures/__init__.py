@@ -32,7 +32,7 @@ class _Picture:
     states_of: str | None = None
 
     def missing(self, run: Run) -> list[str]:
-        """What the results do not have."""
+        """Return the columns and states that the results do not have."""
         absent = [column for column in self.columns if column not in run.series]
         if self.states_of and next(run.states(self.states_of), None) is None:
             absent.append(f"recorded states of {self.states_of}")
@@ -42,13 +42,30 @@ class _Picture:
 def draw_all(
     run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell = lambda text: None
 ) -> list[Path]:
-    """Draw every picture that the results of a run allow into ``folder``; return the files.
+    """Draw every picture that the results of a run allow.
 
-    note: is told which pictures the results have no data for; warn: which could not be drawn, and why. Whatever happens to a
-    picture, the others are drawn.
+    Whatever happens to a picture, the others are drawn.
 
-    Raises:
-        InputRefused: the folder cannot be written.
+    Parameters
+    ----------
+    run : Run
+        The run.
+    folder : Path
+        Folder of the PNG files.
+    note : callable
+        Called with a line for each picture that the results have no data for.
+    warn : callable
+        Called with a line for each picture that could not be drawn, and why.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    InputRefused
+        The folder cannot be written.
     """
     drawn = []
     for picture in _pictures(run):
@@ -65,7 +82,8 @@ def draw_all(
             picture.draw(file)
         except ForeignStateError as error:
             note(
-                f"no picture {picture.name}: the states were recorded by another version of the FMU ({error})"
+                f"no picture {picture.name}: the states were recorded by another version "
+                f"of the FMU ({error})"
             )
             continue
         except Exception as error:  # a run's outcome is told even if a picture of it fails

@@ -1,4 +1,4 @@
-"""Balance of energy: where the energy of an impact is at each time, and the error of the balance."""
+"""Balance of energy: where the energy of an impact is, and the error of the balance."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -38,7 +38,8 @@ _FAMILIES = (
         ("#f2cf96", "#e3a857", "#d98e73", "#c0561a", "#8c2f12", "#5c3a2e", "#8a6d4b", "#3b2b52"),
     ),
 )
-"""Families from the bottom of the picture to its top; a role of two families belongs to the first."""
+"""Families from the bottom of the picture to its top; a role of two families belongs to the
+first."""
 _FROM_LEAST = (Role.GRAVITY_ENERGY, Role.LEFT_BEHIND)
 """Energies whose zero is arbitrary: they count from their least value, so that they stack."""
 _SHOWN = 1e-4
@@ -114,7 +115,10 @@ def _stack(run: Run, axes: Axes) -> None:
 
 
 def _error(run: Run, axes: Axes) -> None:
-    """Draw the error of the balance as a share of the impact energy, or of what a machine has put in."""
+    """Draw the error of the balance.
+
+    It is a share of the impact energy, or of what a machine has put in.
+    """
     residual, machine = system_residual(run), machine_work(run)
     whole, name = impact_energy(run), "impact\nenergy"
     if machine is not None:

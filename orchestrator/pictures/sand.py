@@ -29,13 +29,14 @@ from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
 _READ_AS = (
-    "lines: forces in the contacts, by width and colour; deep: the rock's lowest point below the surface that the sand had "
-    "at the start; transmitted: vertical force of the sand on its base"
+    "lines: forces in the contacts, by width and colour; deep: the rock's lowest point below "
+    "the surface that the sand had at the start; transmitted: vertical force of the sand on its base"
 )
 _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
 DEFLECTION_SCALES = (30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0)
-"""Deflections of the beam's axis are drawn so many times too large: the largest of these that keeps them within a disc."""
+"""Deflections of the beam's axis are drawn so many times too large: the largest of these that keeps
+them within a disc."""
 _INTERESTING = 0.25
 """The frames end when the transmitted force has fallen below this part of its peak for good."""
 _CHAINS = LinearSegmentedColormap.from_list("chains", ["#e8c98f", "#e08a2e", "#c23b22", "#5a0f3c"])
@@ -87,7 +88,7 @@ def _evenly(run: Run, cushion: str) -> list[float]:
 
 
 def _moments(run: Run, cushion: str) -> list[float]:
-    """Return the times (s) of half the peak of the transmitted force, of the peak, and of the greatest depth."""
+    """Return the times (s) of half the peak of the force, of the peak, and of the greatest depth."""
     transmitted = str(column(run, cushion, Role.TRANSMITTED))
     force = run.series[transmitted]
     half = float(run.series["time"][np.flatnonzero(force >= 0.5 * force.max())[0]])
@@ -154,7 +155,7 @@ def _shape(shown: Sequence[Frame]) -> float:
 def draw(
     run: Run, cushion: str, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]
 ) -> None:
-    """Draw one frame in each panel; the scale of the forces, and their colour bar, are common to all.
+    """Draw one frame in each panel, with one scale of the forces and its colour bar.
 
     Parameters
     ----------
@@ -191,7 +192,10 @@ def draw(
 
 @dataclass(frozen=True)
 class _View:
-    """What all panels have in common: run, cushion, structure under it, window (m), enlargement of deflections."""
+    """What all panels have in common.
+
+    Run, cushion, structure under it, window (m), enlargement of deflections.
+    """
 
     run: Run
     cushion: str
@@ -226,7 +230,7 @@ def _name_axis(axes: Axes, scale: float) -> None:
 
 
 def _scale_bar(axes: Axes, box: float) -> None:
-    """A length (cm) to measure by, in the upper right corner, where the rock leaves room."""
+    """Draw a length (cm) to measure by, in the upper right corner, where the rock leaves room."""
     length = max((bar for bar in _BARS if bar <= 0.25 * box), default=0.25 * box)
     (_, right), (_, top) = axes.get_xlim(), axes.get_ylim()
     end = right - 0.12 * (right - axes.get_xlim()[0])
@@ -291,7 +295,7 @@ def _panel(view: _View, frame: Frame, axes: Axes, largest: float) -> None:
 
 
 def _walls(axes: Axes, box: Any, top: float) -> None:
-    """The inner faces of the side walls; those of a finite height as thick as they are."""
+    """Draw the inner faces of the side walls; those of a finite height as thick as they are."""
     for face, outwards in ((box.left, -1.0), (box.left + box.width, 1.0)):
         if math.isinf(box.wall_top):
             axes.plot(
@@ -330,7 +334,10 @@ def _discs(axes: Axes, discs: Any, face: str, edge: str, order: int) -> None:
 
 
 def _chains(axes: Axes, state: Any, largest: float) -> None:
-    """A line from centre to centre for each contact, width and colour by force / ``largest`` (kN); the strongest lie on top."""
+    """Draw a line from centre to centre for each contact, the strongest on top.
+
+    Width and colour follow from the force / ``largest`` (kN).
+    """
     contacts = state.contacts
     share = contacts.normal_force / kN / largest
     order = [i for i in np.argsort(share) if share[i] > _SHOWN]

@@ -1,4 +1,4 @@
-"""The look of all pictures: sizes, colours, a caption that says what was run, and how a file is written."""
+"""The look of all pictures: sizes, colours, a caption of the run, and how a file is written."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
@@ -53,13 +53,33 @@ _LOOK = {
 
 
 def figure(run: Run, file: Path, width: float, height: float) -> AbstractContextManager[Figure]:
-    """A figure (inches) with the run's caption below, written to ``file`` at the end, as a whole or not at all."""
+    """Make a figure with the run's caption below, written to a file whole or not at all.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    file : Path
+        File of the picture.
+    width, height : float
+        In inches.
+    """
     return captioned(caption(run), file, width, height)
 
 
 @contextmanager
 def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> Iterator[Figure]:
-    """A figure (inches) with these lines below, written to ``file`` at the end, as a whole or not at all."""
+    """Make a figure with lines below, written to a file at the end, whole or not at all.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Below the figure.
+    file : Path
+        File of the picture.
+    width, height : float
+        In inches.
+    """
     with styled(lines, width, height) as made:
         yield made
         with whole_file(file) as temporary:
@@ -68,7 +88,7 @@ def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> 
 
 @contextmanager
 def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Figure]:
-    """A figure (inches) in this look, with these lines below."""
+    """Make a figure (inches) in this look, with these lines below."""
     with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
         wrapped = [line for text in lines for line in wrap(text, int(_LETTERS * width))]
         made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
@@ -79,7 +99,7 @@ def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Figure
 
 
 def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> None:
-    """A horizontal line at what others found, named at its right end."""
+    """Draw a horizontal line at a reference, named at its right end."""
     axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes)
     axes.annotate(
         text,
@@ -95,19 +115,19 @@ def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> N
 
 
 def over_time(axes: Axes, time: NDArray[np.float64]) -> None:
-    """From the first to the last time; of a run that did not get anywhere, around its one time."""
+    """Let the axis of time reach from the first to the last row, if there are several."""
     if time[-1] > time[0]:
         axes.set_xlim(time[0], time[-1])
 
 
 def legend(axes: Axes, **options: Any) -> None:
-    """A legend, where there is something to name."""
+    """Add a legend, where there is something to name."""
     if axes.get_legend_handles_labels()[0]:
         axes.legend(**options)
 
 
 def second_scale(axes: Axes, factor: float, label: str) -> None:
-    """The same values in another unit at the right: ``factor`` * value."""
+    """Add a scale of the same values in another unit at the right: ``factor`` * value."""
 
     def there(y: NDArray[np.float64]) -> NDArray[np.float64]:
         return y * factor

@@ -1,6 +1,7 @@
-"""Annotations that a model description carries for this program: roles, older names, figures and pictures.
+"""Annotations that a model description carries for this program.
 
-An FMU of another tool has none, and nothing is missing then.
+They tell roles, older names, figures and pictures. An FMU of another tool has none, and nothing is
+missing then.
 """
 
 from collections.abc import Mapping

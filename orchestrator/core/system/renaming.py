@@ -1,4 +1,4 @@
-"""Older names of variables: values given under them are taken for the present ones, with a warning."""
+"""Older names of variables: their values are taken for the present ones, with a warning."""
 
 from collections.abc import Mapping
 
@@ -40,19 +40,21 @@ def renaming_warning(component: str, old: str, new: str) -> str:
 def with_present_names(
     values: Mapping[str, Value], renamed: Mapping[str, Mapping[str, str]]
 ) -> tuple[dict[str, Value], list[str]]:
-    """Return values under the present names of their variables, and a warning for each name that has changed.
+    """Return values under the present names of their variables.
 
     Parameters
     ----------
     values : mapping of str to value
         By ``component.variable``; other names stay as they are.
     renamed : mapping of str to mapping of str to str
-        By the name of the component in the system: present names of its variables by their older ones.
+        By the name of the component in the system: present names of its variables by their older
+        ones.
 
     Returns
     -------
     values : dict
-        The same values in the same order. What is given under a present name goes before what is given under an older one.
+        The same values in the same order. What is given under a present name goes before what is
+        given under an older one.
     warnings : list of str
         A sentence for each older name.
     """
