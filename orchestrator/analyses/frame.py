@@ -1,14 +1,17 @@
 """The frame of all analyses: a result with tables, figures and files, and the folder it is kept in."""
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from functools import cached_property
 from html import escape
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from ..core.errors import refusing_unwritable
 from ..core.results.metric import Metric, Metrics
 from ..core.results.run_folder import RunFolder
 from ..tables import Table
@@ -68,6 +71,42 @@ def whole_folder(folder: str | Path) -> Iterator[Path]:
     with RunFolder(Path(folder)) as place:
         yield place.running
         place.swap()
+
+
+@contextmanager
+def shared_folder(folder: str | Path) -> Iterator[Path]:
+    """Open a folder whose other files stay; the new ones appear when the block ends.
+
+    Parameters
+    ----------
+    folder : path
+        Of the results; it is made where it is missing, and removed again if the block fails.
+
+    Yields
+    ------
+    Path
+        Folder in which the files are written meanwhile.
+
+    Raises
+    ------
+    InputRefused
+        The folder cannot be written.
+    """
+    target = Path(folder)
+    parents = (target, *target.parents)
+    missing = [parent for parent in parents if not parent.exists()]
+    with refusing_unwritable(target):
+        target.mkdir(parents=True, exist_ok=True)
+        place = TemporaryDirectory(prefix=".rockshed-", dir=target)
+    try:
+        with place as name:
+            yield Path(name)
+            for file in Path(name).iterdir():
+                os.replace(file, target / file.name)
+    finally:
+        for parent in missing:
+            with suppress(OSError):  # it is not empty
+                parent.rmdir()
 
 
 class Result(ABC):

@@ -638,32 +638,29 @@ def calibrate(
     from .screen import RUN_FAILED
 
     with _screen(quiet, as_json) as screen:
-        from ..analyses.calibration.report import as_data, asked_for, find, notes, table, write
         from ..core.errors import InputRefused, RunFailed
         from .assignments import values_of
+        from .calibrate import show_calibration
 
         problems = list[Problem]()
         values = values_of("--set", set_ or [], problems)
         if problems:
             raise InputRefused(problems)
-        asked = asked_for(target, stiffness, rotation, values)
-        folder = output_dir or RESULTS / "calibration"
         try:
-            with screen.counting("static tests") as done:
-                found = find(asked, seeds, workers, screen.note, done)
+            show_calibration(
+                screen,
+                RESULTS,
+                target,
+                stiffness=stiffness,
+                rotation=rotation,
+                values=values,
+                seeds=seeds,
+                output_dir=output_dir,
+                workers=workers,
+            )
         except RunFailed as failure:
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
-        files = write(found, folder)
-        if as_json:
-            screen.dump(
-                {"status": "complete", **as_data(found), "files": [str(file) for file in files]}
-            )
-            return
-        screen.show(table(found), "")
-        for text in notes(found):
-            screen.say(text)
-        screen.say(f"results in {folder}: " + ", ".join(file.name for file in files))
 
 
 @app.command()
