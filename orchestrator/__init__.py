@@ -13,6 +13,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .analyses.calibration.run import calibrate
+    from .analyses.pile.run import pile
+    from .analyses.rockfall.run import rockfall
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunFailed, UnknownName
     from .runs.building import build_fmu
@@ -35,9 +38,12 @@ _HOMES = {
     "Table": "tables",
     "UnknownName": "core.errors",
     "build_fmu": "runs.building",
+    "calibrate": "analyses.calibration.run",
     "case": "runs.system",
     "component": "runs.subsystem",
+    "pile": "analyses.pile.run",
     "read_run": "runs.run",
+    "rockfall": "analyses.rockfall.run",
     "simulate": "runs.simulation",
 }
 """Modules of the public names."""
@@ -54,9 +60,12 @@ __all__ = [
     "UnknownName",
     "__version__",
     "build_fmu",
+    "calibrate",
     "case",
     "component",
+    "pile",
     "read_run",
+    "rockfall",
     "simulate",
 ]
 

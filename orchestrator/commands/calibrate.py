@@ -1,16 +1,20 @@
 """The command ``rockshed calibrate``."""
 
 import re
-from collections.abc import Mapping
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from ..analyses.calibration.measurement import FORCES, LENGTHS, Measurement, of_stiffness, table_4
+from ..analyses.calibration.result import CalibrationResult
 from ..analyses.calibration.run import calibrate
-from ..core.errors import InputRefused, Problem
-from ..core.system.system import Value
+from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.system.values import finite_number
 from .analysis import options_named, stages
-from .screen import Screen
+from .assignments import values_of
+from .options import RESULTS, Assignments, Json, Quiet, Workers
+from .screen import RUN_FAILED, Screen, opened
 
 PAPER = "sonoda1993"
 """Name of the six tests of table 4, in the place of a file."""
@@ -21,58 +25,82 @@ STIFFNESSES = {
 }
 """Units of spring constants and their sizes (N/m)."""
 
+_Curve = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[CURVE.csv|sonoda1993]",
+        show_default=False,
+        help="Measured load-penetration curve, columns `penetration (cm)` and `load (kgf)` or "
+        "other units; or table 4 of the paper.",
+    ),
+]
+_Stiffness = Annotated[
+    str | None,
+    typer.Option(
+        metavar="'NUMBER UNIT'",
+        help="Measured secant spring constant at 4 cm instead: '39.1 kgf/cm', '38.3 kN/m'.",
+    ),
+]
+_Rotation = Annotated[
+    str,
+    typer.Option(
+        metavar="locked|free|fit",
+        help="Rotation model of the sand; fit: the one that has the curve.",
+    ),
+]
+_Seeds = Annotated[int, typer.Option(min=2, help="Samples of the sand for each E_bar.")]
+_Folder = Annotated[
+    Path | None, typer.Option(help="Folder of the results; default results/calibration.")
+]
 
-def show_calibration(
-    screen: Screen,
-    results: Path,
-    target: str | None,
-    *,
-    stiffness: str | None,
-    rotation: str,
-    values: Mapping[str, Value],
-    seeds: int,
-    output_dir: Path | None,
-    workers: int | None,
+
+def command(
+    target: _Curve = None,
+    stiffness: _Stiffness = None,
+    rotation: _Rotation = "locked",
+    set_: Assignments = None,
+    seeds: _Seeds = 5,
+    output_dir: _Folder = None,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
-    """Calibrate the sand and show its moduli or JSON.
+    """Find E_bar of a sand from a spring constant or a load-penetration curve.
 
-    Parameters
-    ----------
-    screen : Screen
-        Of the command.
-    results : Path
-        Folder of the results that name no other.
-    target, stiffness, rotation, values, seeds, output_dir, workers
-        Options of the command.
-
-    Raises
-    ------
-    InputRefused
-        Everything that is wrong with the options or the measurement.
-    RunFailed
-        A static test could not go on.
+    The static test is computed until it has what was measured.
     """
-    measurement = measurement_from(target, stiffness)
-    with options_named(("rotation", "seeds")), stages(screen) as progress:
-        result = calibrate(
-            measurement,
-            rotation=rotation,
-            values=values,
-            seeds=seeds,
-            workers=workers,
-            folder=output_dir or results / "calibration",
-            pictures=True,
-            progress=progress,
-            note=screen.note,
-        )
+    with opened(quiet, as_json) as screen:
+        problems: list[Problem] = []
+        values = values_of("--set", set_ or [], problems)
+        if problems:
+            raise InputRefused(problems)
+        measurement = measurement_from(target, stiffness)
+        try:
+            with options_named(("rotation", "seeds")), stages(screen) as progress:
+                result = calibrate(
+                    measurement,
+                    rotation=rotation,
+                    values=values,
+                    seeds=seeds,
+                    workers=workers,
+                    folder=output_dir or RESULTS / "calibration",
+                    pictures=True,
+                    progress=progress,
+                    note=screen.note,
+                )
+        except RunFailed as failure:
+            screen.fail(str(failure))
+            raise typer.Exit(RUN_FAILED) from None
+        _show(screen, result)
+
+
+def _show(screen: Screen, result: CalibrationResult) -> None:
     files = [*result.files, *result.pictures]
     if screen.as_json:
         listed = [str(file) for file in files]
         screen.dump({"status": result.status, **result.as_data(), "files": listed})
         return
-    for table in result.tables():
-        screen.table(table)
-    screen.say("")
+    screen.show(*result.tables(), "")
     for text in result.notes:
         screen.say(text)
     screen.say(f"results in {result.folder}: " + ", ".join(file.name for file in files))

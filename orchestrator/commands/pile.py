@@ -1,42 +1,44 @@
 """The command ``rockshed pile``."""
 
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from ..analyses.pile.run import pile
 from ..runs.building import is_cold
 from ..sites.source import site_source
 from .analysis import show, stages
-from .screen import COLD_START, Screen
+from .options import RESULTS, Json, NoFigures, Quiet
+from .screen import COLD_START, opened
+
+_Site = Annotated[
+    Path,
+    typer.Argument(metavar="PILE.toml", help="Hammer, cushion, rod, soil, blows, bearing graph."),
+]
+_Blows = Annotated[
+    int | None, typer.Option(min=1, help="Number of blows; default: the file's, or 1.")
+]
+_Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
 
 
-def show_pile(
-    screen: Screen,
-    results: Path,
-    site: Path,
-    *,
-    blows: int | None,
-    output_dir: Path | None,
-    pictures: bool,
+def command(
+    site: _Site,
+    blows: _Blows = None,
+    output_dir: _Folder = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
-    """Compute the blows on a pile and show their tables or JSON.
+    """Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph.
 
-    Parameters
-    ----------
-    screen : Screen
-        Of the command.
-    results : Path
-        Folder of the results that name no other.
-    site, blows, output_dir, pictures
-        Options of the command.
-
-    Raises
-    ------
-    InputRefused
-        Everything that is wrong with the site.
+    Residual stresses between blows are computed where the file asks for them.
     """
-    folder = output_dir or results / site_source(site).name
-    if is_cold(["Hammer", "PileRod"]):
-        screen.note(COLD_START)
-    with stages(screen) as progress:
-        result = pile(site, blows=blows, folder=folder, pictures=pictures, progress=progress)
-    show(screen, result)
+    with opened(quiet, as_json) as screen:
+        folder = output_dir or RESULTS / site_source(site).name
+        if is_cold(["Hammer", "PileRod"]):
+            screen.note(COLD_START)
+        pictures = not no_figures
+        with stages(screen) as progress:
+            result = pile(site, blows=blows, folder=folder, pictures=pictures, progress=progress)
+        show(screen, result)

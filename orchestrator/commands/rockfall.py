@@ -1,78 +1,105 @@
 """The command ``rockshed rockfall``."""
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from ..analyses.rockfall.animation_format import can_write_mp4
+from ..analyses.rockfall.campaign import CampaignFailed
 from ..analyses.rockfall.run import rockfall
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold
 from ..sites.source import site_source
 from .analysis import options_named, show, stages
-from .screen import COLD_START, Screen
+from .options import RESULTS, Json, NoFigures, Quiet
+from .screen import COLD_START, RUN_FAILED, opened
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
+_OPTIONS = ("replay", "animation", "workers", "scheduler")
+"""Arguments of the analysis that are options of the command."""
+
+_Site = Annotated[
+    Path,
+    typer.Argument(metavar="PROFILE.toml", help="Rock, profile, ground, search lines, barriers."),
+]
+_Trials = Annotated[
+    int | None, typer.Option(min=1, help="Number of trials; default: the file's, or 10,000.")
+]
+_Preset = Annotated[str | None, typer.Option(metavar="paper", help="paper: 200 trials.")]
+_Seed = Annotated[int | None, typer.Option(min=0, help="Another sample.")]
+_Replay = Annotated[
+    list[int] | None, typer.Option(metavar="TRIAL", help="Animate this trial. May be repeated.")
+]
+_Animation = Annotated[
+    str | None, typer.Option(metavar="mp4|gif", help="Default: mp4 if it can be written.")
+]
+_Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
+_Threads = Annotated[
+    int | None,
+    typer.Option(
+        min=1, help="Threads, or processes of --scheduler local; default: one for each core."
+    ),
+]
+_Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="local|tcp://HOST:PORT",
+        help="Compute on Dask: on processes of this computer, or on the workers of a running "
+        "scheduler.",
+    ),
+]
 
 
-def show_rockfall(
-    screen: Screen,
-    results: Path,
-    site: Path,
-    *,
-    trials: int | None,
-    preset: str | None,
-    seed: int | None,
-    replays: Sequence[int],
-    animation: str | None,
-    output_dir: Path | None,
-    workers: int | None,
-    scheduler: str | None,
-    pictures: bool,
+def command(
+    site: _Site,
+    trials: _Trials = None,
+    preset: _Preset = None,
+    seed: _Seed = None,
+    replay: _Replay = None,
+    animation: _Animation = None,
+    output_dir: _Folder = None,
+    workers: _Threads = None,
+    scheduler: _Scheduler = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
-    """Compute a campaign and show its tables or JSON.
+    """Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.
 
-    Parameters
-    ----------
-    screen : Screen
-        Of the command.
-    results : Path
-        Folder of the results that name no other.
-    site, trials, preset, seed, replays, animation, output_dir, workers, scheduler, pictures
-        Options of the command.
-
-    Raises
-    ------
-    InputRefused
-        Everything that is wrong with the options or the site.
-    CampaignFailed
-        The workers of a scheduler could not go on.
+    Percentiles have confidence intervals.
     """
-    count = _count(trials, preset)
-    folder = output_dir or results / site_source(site).name
-    if is_cold(["SlopeRockfall"]):
-        screen.note(COLD_START)
-    if replays and animation is None and not can_write_mp4():
-        screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
-    options = ("replay", "animation", "workers", "scheduler")
-    with options_named(options), stages(screen) as progress:
-        result = rockfall(
-            site,
-            trials=count,
-            seed=seed,
-            workers=workers,
-            scheduler=scheduler,
-            replay=replays,
-            animation=animation,
-            folder=folder,
-            pictures=pictures,
-            progress=progress,
-        )
-    show(screen, result)
+    with opened(quiet, as_json) as screen:
+        count = _count(trials, preset)
+        folder = output_dir or RESULTS / site_source(site).name
+        if is_cold(["SlopeRockfall"]):
+            screen.note(COLD_START)
+        if replay and animation is None and not can_write_mp4():
+            screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
+        try:
+            with options_named(_OPTIONS), stages(screen) as progress:
+                result = rockfall(
+                    site,
+                    trials=count,
+                    seed=seed,
+                    workers=workers,
+                    scheduler=scheduler,
+                    replay=replay or [],
+                    animation=animation,
+                    folder=folder,
+                    pictures=not no_figures,
+                    progress=progress,
+                )
+        except CampaignFailed as failure:
+            screen.fail(str(failure))
+            raise typer.Exit(RUN_FAILED) from None
+        show(screen, result)
 
 
 def _count(trials: int | None, preset: str | None) -> int | None:
+    """Return the number of trials, of a preset too; None for that of the file."""
     if preset is None:
         return trials
     if preset not in PRESETS:

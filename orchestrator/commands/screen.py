@@ -8,16 +8,16 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+import typer
 from rich import table as rich_table
 from rich.console import Console
 from rich.markup import escape
 from rich.padding import Padding
 
+from ..core.errors import InputRefused, Problem
 from ..tables import Table
 
 if TYPE_CHECKING:
-    from .. import tables
-    from ..core.errors import Problem
     from ..runs.inspection import Overview
 
 OK, RUN_FAILED, REFUSED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -87,6 +87,41 @@ class Bar:
         self.show(reached, stop)
 
 
+@contextmanager
+def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
+    """Open the screen of a command; refusals and failures become messages and exit codes.
+
+    Parameters
+    ----------
+    quiet : bool
+        No notes and no progress.
+    as_json : bool
+        Results on stdout are one JSON document.
+
+    Yields
+    ------
+    Screen
+        Of the command.
+
+    Raises
+    ------
+    typer.Exit
+        With the exit code, where the command was refused, interrupted or could not write.
+    """
+    screen = Screen(quiet, as_json)
+    try:
+        yield screen
+    except InputRefused as refusal:
+        screen.refuse(refusal.problems)
+        raise typer.Exit(REFUSED) from None
+    except KeyboardInterrupt:
+        screen.fail("interrupted")
+        raise typer.Exit(INTERRUPTED) from None
+    except OSError as error:
+        screen.fail(str(error))
+        raise typer.Exit(RUN_FAILED) from error
+
+
 class Screen:
     """The two streams of a command.
 
@@ -115,7 +150,7 @@ class Screen:
         """Say why it did not go on."""
         self.err.print(f"[bold red]failed:[/] {escape(text)}", soft_wrap=True)
 
-    def refuse(self, problems: "Sequence[Problem]") -> None:
+    def refuse(self, problems: Sequence[Problem]) -> None:
         """Say what has to be changed before it can be tried again."""
         if self.as_json:
             self.dump({"status": "refused", "problems": [asdict(problem) for problem in problems]})
@@ -220,24 +255,26 @@ class Screen:
 
     # ------------------------------------------------------------------ stdout
 
-    def show(self, *parts: Any) -> None:
-        """Print results for a person."""
+    def show(self, *parts: str | Table) -> None:
+        """Print texts and tables for a person."""
         for part in parts:
-            self.out.print(drawn(part) if isinstance(part, Table) else part)
+            if isinstance(part, Table):
+                self.table(part)
+            else:
+                self.out.print(escape(part))
 
     def overview(self, overview: "Overview") -> None:
         """Print texts and tables with an empty line between two."""
         for number, part in enumerate(overview.parts):
-            if number:
-                self.out.print()
-            self.out.print(drawn(part) if isinstance(part, Table) else escape(part))
+            self.show(*([""] if number else []), part)
 
-    def table(self, table: "tables.Table") -> None:
+    def table(self, table: Table) -> None:
         """Print a table under its title; the title alone where the table has no rows."""
         if table.title:
             self.out.print(f"[bold]{escape(table.title)}[/]", soft_wrap=True)
         if len(table):
             shown = plain_table(*table.columns, right=table.right)
+            shown.show_header = any(table.columns)
             for row in table.rows:
                 shown.add_row(*map(escape, row))
             self.out.print(shown)
@@ -253,16 +290,6 @@ class Screen:
 
 def _reached(reached: float, stop: float) -> str:
     return f"{1e3 * reached:.1f} of {1e3 * stop:g} ms"
-
-
-def drawn(table: Table) -> rich_table.Table:
-    """Return a table in the style of all commands; columns of numbers are not broken into lines."""
-    made = plain_table(*table.columns, right=table.right)
-    made.title = escape(table.title) or None
-    made.show_header = any(table.columns)
-    for row in table.rows:
-        made.add_row(*map(escape, row))
-    return made
 
 
 def plain_table(*columns: str, right: Sequence[str] = ()) -> rich_table.Table:

@@ -16,6 +16,7 @@ from ..cases.registry import Case, Sizes, case, differences, model_changes, refe
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
+from ..core.system.renaming import with_present_names
 from ..core.system.system import System, load_system, system_from, with_values
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import Note, case_fmus, case_sizes, own_sizes, silent
@@ -81,6 +82,7 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
     if request.target.endswith(".fmu"):
         raise InputRefused([_not_an_fmu(request.target)])
     known = list(problems)
+    request, warnings = _with_present_names(request)
     if request.is_file:
         job = _from_file(request, known)
     else:
@@ -94,7 +96,22 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
     facts: dict[str, Any] = {**job.facts, "request": request.as_data()}
     if request.load_cell:
         facts["load_cell"] = request.load_cell
+    if warnings:
+        facts["warnings"] = warnings
     return replace(job, system=system, facts=facts)
+
+
+def _with_present_names(request: Request) -> tuple[Request, list[str]]:
+    """Return the request for a case with the present names of variables, and warnings of older ones.
+
+    The FMUs of a system file are asked when the run is planned.
+    """
+    if request.is_file:
+        return request, []
+    models = case(request.target).models
+    renamed = {name: component(model).layout.renamed for name, model in models.items()}
+    values, warnings = with_present_names(request.values, renamed)
+    return replace(request, values=values), warnings
 
 
 def _not_an_fmu(target: str) -> Problem:

@@ -7,12 +7,13 @@ import signal
 import subprocess
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from rockshed.commands.app import app
+from rockshed.commands.app import COMMANDS, app
 from rockshed.commands.screen import spoken
 from rockshed.core.results.reading import read_run
 from rockshed.core.system.system import load_system
@@ -80,6 +81,19 @@ def test_help_tells_every_command_in_one_line_and_the_exit_codes(rockshed):
     assert "2 refused (nothing was computed or left behind)" in in_one_line(
         rockshed("--help").stdout
     )
+
+
+def test_the_list_of_commands_says_what_each_of_them_says_itself():
+    for name, line in COMMANDS.items():
+        command = import_module(f"rockshed.commands.{name}").command
+        assert command.__doc__.splitlines()[0] == line
+
+
+def test_the_package_is_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "rockshed", "--version"], capture_output=True, text=True
+    )
+    assert done.stdout.startswith("rockshed 0.")
 
 
 def test_help_tells_every_option_and_flags_take_no_value(rockshed):

@@ -38,7 +38,7 @@ def renaming_warning(component: str, old: str, new: str) -> str:
 
 
 def with_present_names(
-    values: Mapping[str, Value], descriptions: Mapping[str, Description]
+    values: Mapping[str, Value], renamed: Mapping[str, Mapping[str, str]]
 ) -> tuple[dict[str, Value], list[str]]:
     """Return values under the present names of their variables, and a warning for each name that has changed.
 
@@ -46,8 +46,8 @@ def with_present_names(
     ----------
     values : mapping of str to value
         By ``component.variable``; other names stay as they are.
-    descriptions : mapping of str to Description
-        Descriptions of the components by their names in the system.
+    renamed : mapping of str to mapping of str to str
+        By the name of the component in the system: present names of its variables by their older ones.
 
     Returns
     -------
@@ -60,9 +60,8 @@ def with_present_names(
     warnings = []
     for name, value in values.items():
         component, _, variable = name.partition(".")
-        new = variable
-        if component in descriptions:
-            new = present_name(descriptions[component], variable)
+        base, bracket, element = variable.partition("[")
+        new = renamed.get(component, {}).get(base, base) + bracket + element
         if new == variable:
             present[name] = value
             continue

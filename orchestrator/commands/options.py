@@ -1,0 +1,58 @@
+"""Options that several commands have."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+RESULTS = Path("results")
+"""Folder of the results that name no other."""
+
+Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON.")]
+Quiet = Annotated[
+    bool,
+    typer.Option(
+        "--quiet", "-q", help="No progress and no notes: results, warnings and errors only."
+    ),
+]
+Assignments = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="COMPONENT.PARAMETER=VALUE",
+        help="Another value of a parameter or of a shared value. May be repeated.",
+    ),
+]
+CaseSizes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--size",
+        metavar="COMPONENT.SIZE=NUMBER",
+        help="Build a component in another size. May be repeated.",
+    ),
+]
+CouplingScheme = Annotated[
+    str | None,
+    typer.Option(
+        "--coupling",
+        metavar="paper|impulse|jacobi",
+        help="Scheme of exchange of a case, by default its first; waves or plain for spt.",
+    ),
+]
+ModelName = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        metavar="calibrated|literal|one-law",
+        help="Model of the sand of a case; default calibrated.",
+    ),
+]
+Target = Annotated[
+    str,
+    typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file."),
+]
+NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")]
+Workers = Annotated[
+    int | None,
+    typer.Option(min=1, help="Processes at a time; default: one for each core."),
+]

@@ -1,0 +1,36 @@
+"""The command ``rockshed plot``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..core.errors import InputRefused, Problem
+from ..core.results.run_folder import running_folder
+from ..runs.run import read_run
+from .drawing import draw
+from .options import Quiet
+from .screen import opened
+
+_Folder = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run, finished or not.")]
+_Pictures = Annotated[
+    Path | None, typer.Option(help="Folder of the pictures; default RUN/figures.")
+]
+
+
+def command(run: _Folder, output_dir: _Pictures = None, quiet: Quiet = False) -> None:
+    """Draw a run again, also one that failed or was killed."""
+    with opened(quiet) as screen:
+        found = read_run(run)
+        if found.folder.absolute() == run.absolute() and running_folder(run.absolute()).exists():
+            screen.warn(f"there is a newer run that has not ended, in {running_folder(run)}")
+        if not found.time.size:
+            reason = "the run was ended before its first row was written"
+            raise InputRefused([Problem(str(found.folder), reason, "run it again")])
+        if found.status != "complete":
+            screen.warn(
+                f"this run is not complete ({found.status}): pictures show what was computed until "
+                f"t = {1e3 * found.time[-1]:g} ms"
+            )
+        for file in draw(found, output_dir or found.folder / "figures", screen):
+            screen.say(str(file))

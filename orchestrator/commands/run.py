@@ -1,0 +1,195 @@
+"""The command ``rockshed run``."""
+
+from pathlib import Path
+from shlex import quote
+from typing import Annotated, Any
+
+import typer
+
+from ..core.errors import Problem, RunFailed
+from ..core.supervisor import announce
+from ..runs.building import is_cold
+from ..runs.request import AUTO, Request
+from ..runs.run import Run
+from ..runs.simulation import simulate
+from ..runs.system import System
+from .assignments import sizes_of, values_of
+from .drawing import draw
+from .options import (
+    RESULTS,
+    Assignments,
+    CaseSizes,
+    CouplingScheme,
+    Json,
+    ModelName,
+    NoFigures,
+    Quiet,
+    Target,
+)
+from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
+
+_Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
+_StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")]
+_ExchangeStep = Annotated[
+    float | None, typer.Option(metavar="SECONDS", help="Time between two exchanges.")
+]
+_OutputInterval = Annotated[
+    float | None, typer.Option(metavar="SECONDS", help="Time between two rows.")
+]
+_StateInterval = Annotated[
+    float | None,
+    typer.Option(metavar="SECONDS", help="Time between two recorded states of the sand."),
+]
+_Master = Annotated[
+    str | None,
+    typer.Option(
+        metavar="sequential|jacobi", help="One component after the other, or all at once."
+    ),
+]
+_AllowUnstable = Annotated[
+    bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")
+]
+_LoadCell = Annotated[
+    float | None,
+    typer.Option(
+        metavar="HERTZ",
+        help="Show the peak transmitted force also as a load cell with this cut-off frequency does.",
+    ),
+]
+_Runtime = Annotated[
+    str,
+    typer.Option(
+        metavar="auto|native|python",
+        help="FMUs of a case: native, with Python inside, or native if they are there and up to "
+        "date.",
+    ),
+]
+_InProcess = Annotated[
+    bool, typer.Option("--in-process", help="Components without FMUs, in this process.")
+]
+
+
+def command(
+    target: Target,
+    set_: Assignments = None,
+    size: CaseSizes = None,
+    output_dir: _Folder = None,
+    stop_time: _StopTime = None,
+    exchange_step: _ExchangeStep = None,
+    output_interval: _OutputInterval = None,
+    state_interval: _StateInterval = None,
+    master: _Master = None,
+    model: ModelName = None,
+    coupling: CouplingScheme = None,
+    allow_unstable: _AllowUnstable = False,
+    load_cell: _LoadCell = None,
+    runtime: _Runtime = AUTO,
+    in_process: _InProcess = False,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a case or a system file, compare, draw.
+
+    FMUs of a case that are missing are built.
+    """
+    problems: list[Problem] = []
+    values = values_of("--set", set_ or [], problems)
+    sizes = sizes_of(size or [], problems)
+    options = _chosen(
+        stop_time=stop_time,
+        exchange_step=exchange_step,
+        output_interval=output_interval,
+        state_interval=state_interval,
+        master=master,
+    )
+    request = Request(
+        target, values, sizes, coupling, options, in_process, load_cell, model, runtime
+    )
+    with opened(quiet, as_json) as screen:
+        done = _simulate(request, problems, output_dir, allow_unstable, screen)
+        _show_run(done, screen, not no_figures)
+
+
+def _chosen(**options: Any) -> dict[str, Any]:
+    """Return the options that are given."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def _simulate(
+    request: Request,
+    problems: list[Problem],
+    output_dir: Path | None,
+    allow_unstable: bool,
+    screen: Screen,
+) -> Run:
+    """Carry out a run; one that fails or is interrupted gives what was computed until then."""
+    with screen.progress("preparing") as progress:
+        system = System.prepared(request, screen.note, problems)
+        facts = system.job.facts
+        if "runtime" in facts:
+            screen.note(f"{facts['runtime']} FMUs ({facts['runtime_reason']})")
+        folder = output_dir or RESULTS / system.name
+        if is_cold(system.job.components):
+            progress.describe(COLD_START)
+        announce(folder)
+        try:
+            return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
+        except RunFailed as failure:
+            done: Run = failure.run
+            return done
+
+
+def _show_run(done: Run, screen: Screen, with_figures: bool) -> None:
+    """Draw and show a run; one that is not complete gives its exit code.
+
+    Why a run failed is said before drawing, which takes its time and may be interrupted.
+    """
+    if done.status == "failed":
+        screen.fail(str(done.error))
+    if done.status == "interrupted":
+        reached = f"interrupted at t = {1e3 * done.time[-1]:g} ms"
+        screen.warn(f"{reached}; the results until then are kept")
+    pictures: list[Path] = []
+    drawn = True
+    try:
+        if with_figures:
+            pictures = draw(done, done.folder / "figures", screen)
+    except KeyboardInterrupt:
+        again = f"rockshed plot {quote(str(done.folder))}"
+        screen.warn(f"drawing was interrupted; `{again}` draws the pictures")
+        drawn = False
+    _show_results(done, pictures, screen)
+    if done.status == "failed":
+        raise typer.Exit(RUN_FAILED)
+    if done.status == "interrupted" or not drawn:
+        raise typer.Exit(INTERRUPTED)
+
+
+def _show_results(done: Run, pictures: list[Path], screen: Screen) -> None:
+    """Show the table of a run or its JSON; of a run that failed, only where its results are."""
+    for text in done.warnings:
+        screen.warn(text)
+    if screen.as_json:
+        screen.dump(_as_data(done, pictures))
+        return
+    if done.status != "failed":
+        for line in done.caption:
+            screen.say(line)
+        screen.show("", done.table(), "")
+        for line in done.notes:
+            screen.say(line)
+    drawn = f", {len(pictures)} pictures in {pictures[0].parent}" if pictures else ""
+    screen.say(f"results in {done.folder}{drawn}")
+
+
+def _as_data(done: Run, pictures: list[Path]) -> dict[str, Any]:
+    return {
+        "status": done.status,
+        "folder": str(done.folder),
+        "error": done.error,
+        "warnings": done.warnings,
+        "caption": done.caption,
+        "figures": [metric.as_entry() for metric in done.metrics.values()],
+        "pictures": [str(file) for file in pictures],
+    }
