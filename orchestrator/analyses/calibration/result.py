@@ -48,7 +48,7 @@ class CalibrationResult(Result):
 
     @property
     def name(self) -> str:
-        """Names of the measurements."""
+        """Names of the measurements, in their order."""
         return ", ".join(fit.measured.name for fit in self.calibrations[0].fits)
 
     @property

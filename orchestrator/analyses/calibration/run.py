@@ -1,4 +1,4 @@
-"""Carry out a calibration."""
+"""Carry out a calibration of the sand."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
@@ -8,7 +8,7 @@ from pathlib import Path
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...runs.building import Note, silent
-from ..frame import Progress, counter, no_progress
+from ..frame import StageProgress, counter, no_progress
 from .curve_file import read_curve
 from .measurement import Measurement, of_stiffness
 from .result import CalibrationResult
@@ -30,7 +30,7 @@ def calibrate(
     workers: int | None = None,
     folder: str | Path | None = None,
     pictures: bool = False,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
     note: Note = silent,
 ) -> CalibrationResult:
     """Find the fictitious modulus E_bar of a sand from a measured static loading test.
