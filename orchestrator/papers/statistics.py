@@ -1,48 +1,69 @@
-"""Small statistics of measured and computed peaks: power laws, errors, predictions of a value from all others."""
+"""Statistics of measured and computed peaks: power laws, errors, predictions."""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 Predictor = Callable[[Sequence[float], Sequence[float], float], float]
-"""From known x and y to the y at another x."""
+"""Function of known x and y that gives the y at another x."""
 
 
 def power_law(x: Sequence[float], y: Sequence[float]) -> tuple[float, float]:
-    """Factor and exponent of y = factor * x ** exponent, by least squares of the logarithms."""
+    """Return factor and exponent of y = factor * x ** exponent, by least squares of logarithms."""
     exponent, logarithm = np.polyfit(np.log(x), np.log(y), 1)
     return float(np.exp(logarithm)), float(exponent)
 
 
 def line_through_origin(x: Sequence[float], y: Sequence[float]) -> tuple[float, float]:
-    """Slope of y = slope * x by least squares, and R2, the part of the variance of y that it explains."""
-    known, values = np.asarray(x, float), np.asarray(y, float)
+    """Fit y = slope * x by least squares.
+
+    Parameters
+    ----------
+    x, y : sequence of float
+        Points.
+
+    Returns
+    -------
+    slope : float
+        Slope of the line through the origin.
+    r2 : float
+        Part of the variance of y that it explains.
+    """
+    known = np.asarray(x, float)
+    values = np.asarray(y, float)
     slope = float(known @ values / (known @ known))
-    return slope, float(
-        1.0 - np.sum((values - slope * known) ** 2) / np.sum((values - values.mean()) ** 2)
-    )
+    rest = np.sum((values - slope * known) ** 2)
+    return slope, float(1.0 - rest / np.sum((values - values.mean()) ** 2))
 
 
 def exponent_error(x: Sequence[float], y: Sequence[float]) -> float:
-    """Standard error of the exponent of :func:`power_law`."""
+    """Return the standard error of the exponent of :func:`power_law`."""
     from scipy.stats import linregress
 
     return float(linregress(np.log(x), np.log(y)).stderr)
 
 
 def constant(x: Sequence[float], y: Sequence[float], at: float) -> float:
-    """The mean of all y, whatever x is."""
+    """Return the mean of all y, whatever x is."""
     return float(np.mean(y))
 
 
 def by_power_law(x: Sequence[float], y: Sequence[float], at: float) -> float:
-    """The power law through the points, at another x."""
+    """Return the value of the power law through the points at another x."""
     factor, exponent = power_law(x, y)
     return factor * at**exponent
 
 
 def leave_one_out(x: Sequence[float], y: Sequence[float], predictor: Predictor) -> list[float]:
-    """Each y, predicted from all the others."""
+    """Predict each y from all the others.
+
+    Parameters
+    ----------
+    x, y : sequence of float
+        Points.
+    predictor : callable
+        Function of known x and y that gives the y at another x.
+    """
 
     def others(values: Sequence[float], i: int) -> list[float]:
         return [*values[:i], *values[i + 1 :]]
@@ -51,5 +72,5 @@ def leave_one_out(x: Sequence[float], y: Sequence[float], predictor: Predictor) 
 
 
 def mean_absolute_error(predicted: Sequence[float], measured: Sequence[float]) -> float:
-    """Mean of |predicted / measured - 1|."""
+    """Return the mean of abs(predicted / measured - 1)."""
     return float(np.mean(np.abs(np.divide(predicted, measured) - 1.0)))

@@ -1,7 +1,11 @@
-"""Figures 17 and 18: transmitted force and energy of the beam over time, tests 4 (soft sand) and 10 (hard sand)."""
+"""Figures 17 and 18: transmitted force and energy of the beam over time.
+
+Tests 4 (soft sand) and 10 (hard sand).
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rockshed.components.common.units import cm, kgf, ms
 
@@ -17,47 +21,37 @@ from ...runs.batch import COMPLETE, Task
 from ..study import Measure, Outcomes, Row, Study, row_of_runs, verdict
 from .laboratory import ALL_MODELS, impact
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 TESTS = (4, 10)
 SHARE = (1.0, 3.0)
-"""Percent of the ball's energy that reaches the beam, as the paper sums it up."""
+"""Part (%) of the ball's energy that reaches the beam, as the paper sums it up."""
 _ENERGY = kgf * cm
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Both tests with every model on the undisturbed lattice."""
+    """Return both tests with every model on the undisturbed lattice."""
     return [impact(number, model) for number in TESTS for model in ALL_MODELS]
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """Peaks of force and energy, and the part of the ball's energy."""
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return peaks of force and energy, and the part of the ball's energy."""
     return [
         row
         for number in TESTS
         for model in ALL_MODELS
-        for row in _of_test(number, impact(number, model), found)
+        for row in _of_test(number, impact(number, model), outcomes)
     ] + [_share()]
 
 
-def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
-    test = sonoda1993.tests()[number]
-    paper = sonoda1993.known_of(test)[PEAK_TRANSMITTED].paper
-    measured = sonoda1993.BEAM_ENERGY[number] / _ENERGY
+def _of_test(number: int, task: Task, outcomes: Outcomes) -> list[Row]:
+    """Return force and energies of a test with one model."""
+    by_springs = f"peak beam energy, eqs (5) and (6), test {number}"
+    share_by_springs = f"peak beam energy, eqs (5) and (6) / impact energy, test {number}"
     return [
-        row_of_runs(
-            Measure(f"peak transmitted force, test {number}", "kgf", kgf, PEAK_TRANSMITTED),
-            [task],
-            found,
-            paper.value / kgf if paper else None,
-            test.peak_force / kgf,
-            "paper: its table 5, inter- or extrapolated",
-        ),
-        row_of_runs(
-            Measure(
-                f"peak beam energy, eqs (5) and (6), test {number}", "kgf cm", _ENERGY, BEAM_ENERGY
-            ),
-            [task],
-            found,
-        ),
+        _force(number, task, outcomes),
+        row_of_runs(Measure(by_springs, "kgf cm", _ENERGY, BEAM_ENERGY), [task], outcomes),
         row_of_runs(
             Measure(
                 f"peak beam energy, eq. (7), test {number}",
@@ -66,20 +60,11 @@ def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
                 BEAM_ENERGY_FROM_STRAIN,
             ),
             [task],
-            found,
-            experiment=measured,
+            outcomes,
+            experiment=sonoda1993.BEAM_ENERGY[number] / _ENERGY,
             note="experiment: about, read from fig. 18",
         ),
-        row_of_runs(
-            Measure(
-                f"peak beam energy, eqs (5) and (6) / impact energy, test {number}",
-                "%",
-                0.01,
-                BEAM_SHARE,
-            ),
-            [task],
-            found,
-        ),
+        row_of_runs(Measure(share_by_springs, "%", 0.01, BEAM_SHARE), [task], outcomes),
         row_of_runs(
             Measure(
                 f"peak beam energy, eq. (7) / impact energy, test {number}",
@@ -88,10 +73,23 @@ def _of_test(number: int, task: Task, found: Outcomes) -> list[Row]:
                 BEAM_SHARE_FROM_STRAIN,
             ),
             [task],
-            found,
+            outcomes,
             experiment=100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy(),
         ),
     ]
+
+
+def _force(number: int, task: Task, outcomes: Outcomes) -> Row:
+    test = sonoda1993.tests()[number]
+    paper = sonoda1993.known_of(test)[PEAK_TRANSMITTED].paper
+    return row_of_runs(
+        Measure(f"peak transmitted force, test {number}", "kgf", kgf, PEAK_TRANSMITTED),
+        [task],
+        outcomes,
+        paper.value / kgf if paper else None,
+        test.peak_force / kgf,
+        "paper: its table 5, inter- or extrapolated",
+    )
 
 
 def _impact_energy() -> float:
@@ -99,7 +97,7 @@ def _impact_energy() -> float:
 
 
 def _share() -> Row:
-    """The paper's summary against the energies that it measured."""
+    """Return the paper's summary against the energies that it measured."""
     shares = [100.0 * sonoda1993.BEAM_ENERGY[number] / _impact_energy() for number in TESTS]
     return Row(
         "measured energy of the beam is 1 to 3 % of the ball's",
@@ -107,65 +105,74 @@ def _share() -> Row:
         experiment=shares[-1],
         model="claim",
         verdict=verdict(SHARE[0] - 0.5 < min(shares) and max(shares) < SHARE[1] + 0.5),
-        note=f"{shares[0]:.1f} % in test {TESTS[0]}, {shares[1]:.1f} % in test {TESTS[1]}; rounded to whole percent",
+        note=f"{shares[0]:.1f} % in test {TESTS[0]}, {shares[1]:.1f} % in test {TESTS[1]}; rounded "
+        "to whole percent",
     )
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """Fig. 17: force; fig. 18: energy; test 4 at the left, test 10 at the right."""
-    return [_fig_17(found, folder / "fig17.png"), _fig_18(found, folder / "fig18.png")]
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw fig. 17, force, and fig. 18, energy; test 4 at the left, test 10 at the right."""
+    return [_fig_17(outcomes, folder / "fig17.png"), _fig_18(outcomes, folder / "fig18.png")]
 
 
-_CAPTION = "{} of Sonoda et al. 1993: (a) test 4, (b) test 10. Of the experiment only the peak is known here."
+_CAPTION = (
+    "{} of Sonoda et al. 1993: (a) test 4, (b) test 10. Of the experiment only the peak is known "
+    "here."
+)
 
 
-def _fig_17(found: Outcomes, file: Path) -> Path:
-    from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
+def _fig_17(outcomes: Outcomes, file: Path) -> Path:
+    from ...pictures.style import WIDTH, captioned, legend, reference_line
 
     with captioned([_CAPTION.format("Fig. 17")], file, WIDTH, 3.2) as made:
-        for axes, number, letter in zip(made.subplots(1, 2, sharey=True), TESTS, "ab"):
-            for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
-                outcome = found.of(impact(number, model))
-                if outcome.status == COMPLETE:
-                    axes.plot(
-                        outcome.series["time"] / ms,
-                        outcome.series["sand.transmitted_force"] / kgf,
-                        color=colour,
-                        label=model,
-                        linewidth=1.1,
-                    )
+        panels = made.subplots(1, 2, sharey=True)
+        for axes, number, letter in zip(panels, TESTS, "ab", strict=True):
+            _draw_column(axes, number, outcomes, "sand.transmitted_force", kgf)
             reference_line(axes, sonoda1993.tests()[number].peak_force / kgf, "peak measured")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
-        made.axes[0].set_ylabel("transmitted force (kgf)")
-        legend(made.axes[0], loc="upper left")
+        panels[0].set_ylabel("transmitted force (kgf)")
+        legend(panels[0], loc="upper left")
     return file
 
 
-def _fig_18(found: Outcomes, file: Path) -> Path:
-    from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned, legend, reference_line
+def _fig_18(outcomes: Outcomes, file: Path) -> Path:
+    from ...pictures.style import WIDTH, captioned, legend, reference_line
 
-    curves = (
-        ("beam.energy.elastic", "-", "eqs (5), (6)"),
-        ("beam.energy.strain_estimate", ":", "eq. (7)"),
-    )
     with captioned([_CAPTION.format("Fig. 18")], file, WIDTH, 3.2) as made:
-        for axes, number, letter in zip(made.subplots(1, 2, sharey=True), TESTS, "ab"):
-            for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
-                outcome = found.of(impact(number, model))
-                for column, line, equation in curves if outcome.status == COMPLETE else ():
-                    axes.plot(
-                        outcome.series["time"] / ms,
-                        outcome.series[column] / _ENERGY,
-                        line,
-                        color=colour,
-                        linewidth=1.1,
-                        label=f"{model}, {equation}",
-                    )
+        panels = made.subplots(1, 2, sharey=True)
+        for axes, number, letter in zip(panels, TESTS, "ab", strict=True):
+            _draw_column(
+                axes, number, outcomes, "beam.energy.elastic", _ENERGY, "-", "eqs (5), (6)"
+            )
+            _draw_column(
+                axes, number, outcomes, "beam.energy.strain_estimate", _ENERGY, ":", "eq. (7)"
+            )
             reference_line(axes, sonoda1993.BEAM_ENERGY[number] / _ENERGY, "peak measured, eq. (7)")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
-        made.axes[0].set_ylabel("energy of the beam (kgf cm)")
-        legend(made.axes[0], loc="upper left", bbox_to_anchor=(0.0, 0.93))
+        panels[0].set_ylabel("energy of the beam (kgf cm)")
+        legend(panels[0], loc="upper left", bbox_to_anchor=(0.0, 0.93))
     return file
+
+
+def _draw_column(
+    axes: "Axes",
+    number: int,
+    outcomes: Outcomes,
+    column: str,
+    scale: float,
+    dashes: str = "-",
+    equation: str = "",
+) -> None:
+    """Draw a variable of a test over time, a line for each model."""
+    from ...pictures.style import BEAM, ROCK, TRANSMITTED
+
+    for model, colour in zip(ALL_MODELS, (TRANSMITTED, ROCK, BEAM), strict=True):
+        outcome = outcomes.of(impact(number, model))
+        if outcome.status == COMPLETE:
+            label = ", ".join(filter(None, (model, equation)))
+            time = outcome.series["time"] / ms
+            values = outcome.series[column] / scale
+            axes.plot(time, values, dashes, color=colour, label=label, linewidth=1.1)
 
 
 STUDY = Study(
@@ -176,7 +183,8 @@ STUDY = Study(
     tasks,
     draw,
     (
-        "One run for each row, on the undisturbed lattice; the literal model moves by several percent with a disturbed one.",
+        "One run for each row, on the undisturbed lattice; the literal model moves by several "
+        "percent with a disturbed one.",
         "The experiment's energies follow from the strain at midspan by eq. (7).",
     ),
 )

@@ -1,4 +1,7 @@
-"""Impacts at full scale as tasks: models of the sand, each with one assumption more or another than the one before, and seeds."""
+"""Impacts at full scale as tasks: models of the sand, and seeds.
+
+Each model has one assumption more, or another one, than the one before.
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,11 +26,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Model:
-    """A model of the sand and of what stands on the girders.
+    """Model of the sand and of the masses on the girders.
 
-    values: by ``sand.parameter``. girders: values by ``beam.parameter``, on girders only. pack: discs are a random pack and a seed
-    gives another one; if not, a seed shifts the lattice. quick: whether a quick reproduction has it. law: a model of the sand by
-    name, which says where the rock starts.
+    Attributes
+    ----------
+    name : str
+        For the reader.
+    values : mapping of str to Value
+        By ``sand.parameter``.
+    girders : mapping of str to Value
+        By ``beam.parameter``, on girders only.
+    pack : bool
+        Whether discs are a random pack, of which a seed gives another one; else a seed shifts the
+        lattice.
+    quick : bool
+        Whether a quick reproduction has it.
+    law : str, optional
+        Model of the sand by name, which says where the rock starts.
     """
 
     name: str
@@ -45,7 +60,10 @@ FREE: Mapping[str, Value] = {
     "sand.settling.time": 8.0,
 }
 PACK: Mapping[str, Value] = {**FREE, "sand.packing": "random"}
-"""A random pack of discs +-25 % in size that turn, with the stiffness of eq. (1). Discs of 10 cm need longer to settle."""
+"""Random pack of discs +-25 % in size that turn, with the stiffness of eq. (1).
+
+Discs of 10 cm need longer to settle.
+"""
 ROLLING: Mapping[str, Value] = {**PACK, "sand.rolling_resistance": 0.3}
 POURED: Mapping[str, Value] = {
     **FREE,
@@ -53,7 +71,7 @@ POURED: Mapping[str, Value] = {
     "sand.solid_fraction": 0.74,
     "sand.rolling_resistance": 0.3,
 }
-"""The same brought to the solid fraction of poured sand, so that no pack is looser than another."""
+"""The same brought to the solid fraction of poured sand: no pack is looser than another."""
 BULK: Mapping[str, Value] = {"sand.unit_weight_of": "layer"}
 """0.0018 kgf/cm3 as the unit weight of the layer instead of that of a disc."""
 UNLOADING: Mapping[str, Value] = {"sand.unloading_ratio": 3.0}
@@ -61,7 +79,7 @@ UNLOADING: Mapping[str, Value] = {"sand.unloading_ratio": 3.0}
 COHESION: Mapping[str, Value] = {"sand.cohesion": 0.05 * kgf / cm**2}
 """0.05 kgf/cm2, by capillary bridges (Rumpf)."""
 DECK_AND_BOX: Mapping[str, Value] = {"beam.deck.mass": 200, "beam.box.mass": 2000}
-"""Assumed; the paper says nothing of them."""
+"""Assumed masses (kg/m, kg); the paper says nothing of them."""
 
 MODELS = (
     Model("calibrated", LABORATORY["calibrated"], pack=False, quick=True),
@@ -80,7 +98,7 @@ MODELS = (
     Model("one-law, as poured", {"sand.solid_fraction": LOOSE}, law=ONE_LAW),
     Model("one-law, dry", {"sand.cohesion": 0.0}, law=ONE_LAW),
 )
-"""One line a model."""
+"""All models, in the order of the report."""
 SEEDS = range(1, 9)
 
 _FREE_HEIGHT = 1.25
@@ -88,7 +106,15 @@ _FREE_HEIGHT = 1.25
 
 
 def models(quick: bool, on_girders: bool) -> list[Model]:
-    """The models of a reproduction; on a rigid base without those that differ in the girders only."""
+    """Return the models of a reproduction.
+
+    Parameters
+    ----------
+    quick : bool
+        Fewest models.
+    on_girders : bool
+        Else without those that differ in the girders only.
+    """
     return [
         model
         for model in MODELS
@@ -97,16 +123,31 @@ def models(quick: bool, on_girders: bool) -> list[Model]:
 
 
 ONE_SAND = "crushed"
-"""The sand on the rigid base with which packings are computed; to a law with a modulus of its own all three are one."""
+"""Sand on the rigid base with which packings are computed.
+
+To a law with a modulus of its own all three are one.
+"""
 
 
 def sands(model: Model, all_sands: Sequence[str]) -> Sequence[str]:
-    """The sands on the rigid base that are computed with a model."""
+    """Return the sands on the rigid base that are computed with a model."""
     return [ONE_SAND] if model.pack else all_sands
 
 
 def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task]:
-    """One impact for each seed; in a quick study one, on the undisturbed lattice or a single pack."""
+    """Return one impact for each seed.
+
+    Parameters
+    ----------
+    case : str
+        Name of the case.
+    model : Model
+        Model of the sand.
+    quick : bool
+        One run, on the undisturbed lattice or a single pack.
+    stop_time : float
+        End of the runs (s).
+    """
     on_girders = case.startswith("girders")
 
     def task(seed: int | None) -> Task:
@@ -130,7 +171,7 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
 
 
 def _above_pack() -> dict[str, Value]:
-    """The rock starts so high that it is above every pack, and so fast that it has its speed where the lattice ends."""
+    """Return a start above every pack, from which the rock has its speed at the lattice."""
     fallen = 2.0 * GRAVITY * (_FREE_HEIGHT - LAYER)
     return {
         "rock.position0.y": _FREE_HEIGHT + ROCK_RADIUS,
@@ -139,7 +180,7 @@ def _above_pack() -> dict[str, Value]:
 
 
 def plot_forces(axes: "Axes", outcome: Outcome) -> None:
-    """Transmitted and rock force (tf) over time (ms) of a run: as computed, thin, and settled."""
+    """Draw transmitted and rock force (tf) over time (ms): as computed, thin, and settled."""
     from ...pictures.style import ROCK, TRANSMITTED
 
     for column, colour, name in (
@@ -156,11 +197,12 @@ def plot_forces(axes: "Axes", outcome: Outcome) -> None:
 
 
 SEED_NOTE = (
-    f"Mean and standard deviation over {len(SEEDS)} seeds: random packs, or a lattice shifted by {LATTICE_SHIFT:g} "
-    "diameters. With --quick one run, and fewer models."
+    f"Mean and standard deviation over {len(SEEDS)} seeds: random packs, or a lattice shifted by "
+    f"{LATTICE_SHIFT:g} diameters. With --quick one run, and fewer models."
 )
 STEP_NOTE = (
-    "Sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms, sand every 0.05 ms, girders every 0.01 ms. "
-    "With calibrated sand force and energy are within 0.3 % of those with exchanges every 0.05 ms, and of those with all "
-    "steps doubled; packs are chaotic, their seeds tell how much."
+    "Sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms, sand every 0.05 ms, "
+    "girders every 0.01 ms. With calibrated sand force and energy are within 0.3 % of those with "
+    "exchanges every 0.05 ms, and of those with all steps doubled; packs are chaotic, their seeds "
+    "tell how much."
 )

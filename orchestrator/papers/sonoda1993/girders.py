@@ -1,7 +1,11 @@
-"""Table 6, figures 23 and 24: the rock of 1 tf on sand on two girders of 8, 10 and 12 m; what each assumption moves."""
+"""Table 6, figures 23 and 24: the rock of 1 tf on sand on two girders of 8, 10 and 12 m.
+
+Models of the sand differ by one assumption each.
+"""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from rockshed.components.common.units import tf
 
@@ -20,12 +24,15 @@ from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs
 from . import full_scale
 from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 SPANS = {impact.span: impact for impact in impacts().values() if impact.span}
-"""The impacts by their span (m)."""
+"""Impacts by their span (m)."""
 STOP = 0.15
 """End of the runs (s): energy and forces have had their peaks."""
 IMPACT_ENERGY = 0.5 * ROCK_MASS * ROCK_SPEED**2
-"""Of the rock where it meets the sand (J), wherever it started."""
+"""Kinetic energy (J) of the rock where it meets the sand, wherever it started."""
 
 
 def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
@@ -33,7 +40,7 @@ def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Every span with every model."""
+    """Return the impacts on every span with every model."""
     return [
         task
         for impact in SPANS.values()
@@ -42,25 +49,25 @@ def tasks(quick: bool) -> list[Task]:
     ]
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """For every model, energy and forces at each span, and how well the energies fit."""
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return for every model energy and forces at each span, and how well the energies fit."""
     listed = []
-    for model in models(found.quick, True):
-        energies = [_energy(impact, model, found) for impact in SPANS.values()]
+    for model in models(outcomes.quick, True):
+        energies = [_energy(impact, model, outcomes) for impact in SPANS.values()]
         listed += [
             *energies,
             *(
                 row
                 for impact in SPANS.values()
-                for row in _springs_and_forces(impact, model, found)
+                for row in _springs_and_forces(impact, model, outcomes)
             ),
-            *_over_spans(energies, model, found),
+            *_over_spans(energies, model, outcomes),
         ]
     return listed
 
 
 def _share(figure: str) -> Callable[[Outcome], float]:
-    """A peak energy of the girders as a part of the impact's."""
+    """Return the function of a peak energy of the girders as a part of the impact's."""
     return lambda outcome: outcome.metrics[figure] / IMPACT_ENERGY
 
 
@@ -73,8 +80,8 @@ def _percent(value: float | None) -> float | None:
     return None if value is None else 100.0 * value
 
 
-def _energy(impact: Impact, model: Model, found: Outcomes) -> Row:
-    """The energy as it was measured."""
+def _energy(impact: Impact, model: Model, outcomes: Outcomes) -> Row:
+    """Return the energy as it was measured."""
     return row_of_runs(
         Measure(
             f"girders' energy / rock's by eq. (7), span {impact.span:g} m",
@@ -82,61 +89,56 @@ def _energy(impact: Impact, model: Model, found: Outcomes) -> Row:
             0.01,
             _share(BEAM_ENERGY_FROM_STRAIN),
         ),
-        _runs(impact, model, found.quick),
-        found,
+        _runs(impact, model, outcomes.quick),
+        outcomes,
         experiment=_percent(_known(impact, BEAM_SHARE_FROM_STRAIN, "experiment")),
         note="from the strain at midspan since the start",
     )
 
 
-def _springs_and_forces(impact: Impact, model: Model, found: Outcomes) -> list[Row]:
-    """The energy as the paper's analysis has it, and both forces."""
-    runs, span = _runs(impact, model, found.quick), f"span {impact.span:g} m"
+def _springs_and_forces(impact: Impact, model: Model, outcomes: Outcomes) -> list[Row]:
+    """Return the energy as the paper's analysis has it, and both forces."""
+    runs = _runs(impact, model, outcomes.quick)
+    span = f"span {impact.span:g} m"
+    by_springs = f"girders' energy / rock's by eqs (5), (6), {span}"
+    transmitted = Measure(f"settled transmitted force, {span}", "tf", tf, SETTLED_TRANSMITTED)
+    on_rock = Measure(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK)
     return [
         row_of_runs(
-            Measure(
-                f"girders' energy / rock's by eqs (5), (6), {span}", "%", 0.01, _share(BEAM_ENERGY)
-            ),
+            Measure(by_springs, "%", 0.01, _share(BEAM_ENERGY)),
             runs,
-            found,
+            outcomes,
             _percent(_known(impact, BEAM_SHARE, "paper")),
             note="largest elastic energy less that at rest under the sand",
         ),
         row_of_runs(
             Measure(f"settled ratio transmitted / rock, {span}", "1", 1.0, SETTLED_RATIO),
             runs,
-            found,
+            outcomes,
             _known(impact, SETTLED_RATIO, "paper"),
             note="paper: a difference of 30 to 50 % in figs 23 and 24",
         ),
-        detail(
-            row_of_runs(
-                Measure(f"settled transmitted force, {span}", "tf", tf, SETTLED_TRANSMITTED),
-                runs,
-                found,
-            )
-        ),
-        detail(
-            row_of_runs(
-                Measure(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK), runs, found
-            )
-        ),
+        detail(row_of_runs(transmitted, runs, outcomes)),
+        detail(row_of_runs(on_rock, runs, outcomes)),
     ]
 
 
-def _over_spans(energies: Sequence[Row], model: Model, found: Outcomes) -> list[Row]:
-    """Rise of the energy with the span, and the largest factor between computed and measured. Empty if a span has no result."""
-    every = [task for impact in SPANS.values() for task in _runs(impact, model, found.quick)]
+def _over_spans(energies: Sequence[Row], model: Model, outcomes: Outcomes) -> list[Row]:
+    """Return the rise of the energy with the span, and its largest factor to the measured one.
+
+    Both are empty if a span has no result.
+    """
+    every = [task for impact in SPANS.values() for task in _runs(impact, model, outcomes.quick)]
     computed = [row.computed for row in energies if row.computed is not None]
     measured = [row.experiment for row in energies if row.experiment is not None]
-    complete = len(computed) == len(energies)
-    rise = computed[-1] / computed[0] if complete else None
-    factor = max(max(c / m, m / c) for c, m in zip(computed, measured)) if complete else None
-    where = {
-        "model": model.name,
-        "note": "" if complete else "a span has no result",
-        **origin(every, found),
-    }
+    rise = None
+    factor = None
+    where: dict[str, Any] = {"model": model.name, **origin(every, outcomes)}
+    if len(computed) == len(energies):
+        rise = computed[-1] / computed[0]
+        factor = max(max(c / m, m / c) for c, m in zip(computed, measured, strict=True))
+    else:
+        where["note"] = "a span has no result"
     return [
         Row(
             "girders' energy by eq. (7), longest / shortest span",
@@ -159,31 +161,28 @@ SHOWN = ("calibrated", "one-law")
 """Models in the figure of the forces."""
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """Forces over time as in figs 23 and 24, and table 6 over the span."""
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw forces over time as in figs 23 and 24, and table 6 over the span."""
     return [
-        _forces(found, folder / "figs23-24.png"),
-        _table_6(found, listed, folder / "table6.png"),
+        _forces(outcomes, folder / "figs23-24.png"),
+        _table_6(outcomes, listed, folder / "table6.png"),
     ]
 
 
-def _forces(found: Outcomes, file: Path) -> Path:
+def _forces(outcomes: Outcomes, file: Path) -> Path:
     from ...pictures.style import GREY, WIDTH, captioned, legend
 
-    shown = [model for model in models(found.quick, True) if model.name in SHOWN]
-    with captioned(
-        [
-            "Figs 23 and 24 of Sonoda et al. 1993: 1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders. Thin: "
-            "as computed; thick: settled (low-pass). The first seed of each model."
-        ],
-        file,
-        WIDTH,
-        4.6,
-    ) as made:
+    shown = [model for model in models(outcomes.quick, True) if model.name in SHOWN]
+    words = (
+        "Figs 23 and 24 of Sonoda et al. 1993: 1 tf from 10 m on 90 cm of crushed sand on two "
+        "H-300x400 girders. Thin: as computed; thick: settled (low-pass). The first seed of each "
+        "model."
+    )
+    with captioned([words], file, WIDTH, 4.6) as made:
         grid = made.subplots(len(shown), len(SPANS), sharey=True, squeeze=False)
-        for line, model in zip(grid, shown):
-            for axes, impact in zip(line, SPANS.values()):
-                plot_forces(axes, found.of(_runs(impact, model, found.quick)[0]))
+        for line, model in zip(grid, shown, strict=True):
+            for axes, impact in zip(line, SPANS.values(), strict=True):
+                plot_forces(axes, outcomes.of(_runs(impact, model, outcomes.quick)[0]))
                 axes.set_title(f"span {impact.span:g} m\n{model.name}", color=GREY)
             line[0].set_ylabel("force (tf)")
         for axes in grid[-1]:
@@ -193,48 +192,43 @@ def _forces(found: Outcomes, file: Path) -> Path:
     return file
 
 
-def _table_6(found: Outcomes, listed: Sequence[Row], file: Path) -> Path:
-    """Energy over span: eq. (7) beside the experiment at the left, eqs (5), (6) beside the paper's analysis at the right."""
-    from ...pictures.style import INK, WIDTH, captioned
+def _table_6(outcomes: Outcomes, listed: Sequence[Row], file: Path) -> Path:
+    """Draw the energy over the span.
+
+    Left: by eq. (7) beside the experiment; right: by eqs (5), (6) beside the paper's analysis.
+    """
+    from ...pictures.style import WIDTH, captioned
+
+    words = (
+        "Table 6 of Sonoda et al. 1993: energy of the girders as a part of the rock's. Squares: "
+        "measured (left), the paper's analysis (right). Bars: standard deviation over seeds."
+    )
+    with captioned([words], file, WIDTH, 3.6) as made:
+        left, right = made.subplots(1, 2, sharey=True)
+        _draw_energies(left, "eq. (7)", "experiment", listed, outcomes.quick)
+        _draw_energies(right, "eqs (5), (6)", "paper", listed, outcomes.quick)
+        left.set_ylabel("energy of the girders / energy of the rock (%)")
+        made.legend(*left.get_legend_handles_labels(), loc="outside right upper")
+    return file
+
+
+def _draw_energies(axes: "Axes", by: str, who: str, listed: Sequence[Row], quick: bool) -> None:
+    """Draw the energies by one equation, of every model and of a reference."""
+    from ...pictures.style import INK
 
     spans = list(SPANS)
-    with captioned(
-        [
-            "Table 6 of Sonoda et al. 1993: energy of the girders as a part of the rock's. Squares: measured (left), the "
-            "paper's analysis (right). Bars: standard deviation over seeds."
-        ],
-        file,
-        WIDTH,
-        3.6,
-    ) as made:
-        for axes, by, who in zip(
-            made.subplots(1, 2, sharey=True), ("eq. (7)", "eqs (5), (6)"), ("experiment", "paper")
-        ):
-            shown = [
-                row
-                for row in listed
-                if row.quantity.startswith(f"girders' energy / rock's by {by}")
-            ]
-            for model in models(found.quick, True):
-                lines = [row for row in shown if row.model == model.name]
-                axes.errorbar(
-                    spans,
-                    [float("nan") if row.computed is None else row.computed for row in lines],
-                    [row.spread or 0.0 for row in lines],
-                    marker="o",
-                    markersize=3,
-                    linewidth=1.0,
-                    label=model.name,
-                )
-            known = [getattr(row, who) for row in shown[: len(spans)]]
-            axes.plot(spans, known, "s--", color=INK, markersize=5, label="Sonoda et al.")
-            axes.set(
-                title=f"by {by}", xlabel="span (m)", xticks=spans, yscale="log", ylim=(3.0, 100.0)
-            )
-            axes.yaxis.set_major_formatter("{x:g}")
-        made.axes[0].set_ylabel("energy of the girders / energy of the rock (%)")
-        made.legend(*made.axes[0].get_legend_handles_labels(), loc="outside right upper")
-    return file
+    begin = f"girders' energy / rock's by {by}"
+    shown = [row for row in listed if row.quantity.startswith(begin)]
+    form: dict[str, Any] = {"marker": "o", "markersize": 3, "linewidth": 1.0}
+    for model in models(quick, True):
+        lines = [row for row in shown if row.model == model.name]
+        computed = [float("nan") if row.computed is None else row.computed for row in lines]
+        spread = [row.spread or 0.0 for row in lines]
+        axes.errorbar(spans, computed, spread, label=model.name, **form)
+    known = [getattr(row, who) for row in shown[: len(spans)]]
+    axes.plot(spans, known, "s--", color=INK, markersize=5, label="Sonoda et al.")
+    axes.set(title=f"by {by}", xlabel="span (m)", xticks=spans, yscale="log", ylim=(3.0, 100.0))
+    axes.yaxis.set_major_formatter("{x:g}")
 
 
 STUDY = Study(
@@ -247,13 +241,16 @@ STUDY = Study(
     (
         SEED_NOTE,
         STEP_NOTE,
-        "What compares with the experiment is eq. (7) from the strain at midspan, gauges at zero before the test. The paper's analysis "
-        "sums up the springs by eqs (5), (6), which give more: eq. (7) is that of a static point load at midspan, and the energy at "
-        "rest under the sand has a cross term with the impact's that grows with the span.",
-        "The girders start at rest in equilibrium under sand and own weight. Masses of deck (200 kg/m) and box (2 t) are assumed where "
-        "a model names them; elsewhere there are none, as the paper gives none.",
-        "'poured' is a pack of discs +-25 % with rolling resistance 0.3, brought to the solid fraction 0.74; models that begin so "
-        "differ from it by what they name: bulk weight (0.0018 kgf/cm3 of the layer, not of a disc), deck and box, unloading stiffness "
-        "3 or 20 times the loading one, cohesion 0.05 kgf/cm2; all together: these with unloading 3.",
+        "Comparable with the experiment is eq. (7) from the strain at midspan, gauges at zero "
+        "before the test. The paper's analysis sums up the springs by eqs (5), (6), which give "
+        "more: eq. (7) is that of a static point load at midspan, and the energy at rest under the "
+        "sand has a cross term with the impact's that grows with the span.",
+        "The girders start at rest in equilibrium under sand and own weight. Masses of deck (200 "
+        "kg/m) and box (2 t) are assumed where a model names them; elsewhere there are none, as "
+        "the paper gives none.",
+        "'poured' is a pack of discs +-25 % with rolling resistance 0.3, brought to the solid "
+        "fraction 0.74; models that begin so differ from it by what they name: bulk weight (0.0018 "
+        "kgf/cm3 of the layer, not of a disc), deck and box, unloading stiffness 3 or 20 times the "
+        "loading one, cohesion 0.05 kgf/cm2; all together: these with unloading 3.",
     ),
 )

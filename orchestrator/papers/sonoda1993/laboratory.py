@@ -20,8 +20,10 @@ READINGS: Mapping[str, Mapping[str, Value]] = {
     **MODELS,
     STEEL_DISCS: {"sand.beam.disc_mass": math.pi * (2.5 * cm) ** 2 * 10 * cm * 7850.0},
 }
-"""The same, and the calibrated sand with another reading of eq. (1) on the beam: in the dashpots there, m is the mass of a beam
-disc of steel, as deep as the cushion."""
+"""The same, and the calibrated sand with another reading of eq. (1) on the beam.
+
+In the dashpots there, m is the mass of a beam disc of steel, as thick as the cushion.
+"""
 ONE_LAW = "one-law"
 """The model with one contact law for all tests."""
 ALL_MODELS = (*MODELS, ONE_LAW)
@@ -30,8 +32,9 @@ STOP = 0.03
 """End of the runs (s): force and penetration have had their peaks."""
 
 SEED_NOTE = (
-    f"Mean and standard deviation over {len(SEEDS)} seeds of a lattice shifted by {LATTICE_SHIFT:g} diameters; with "
-    "--quick one seed, with the coupling impulse, which needs a tenth of the exchanges."
+    f"Mean and standard deviation over {len(SEEDS)} seeds of a lattice shifted by "
+    f"{LATTICE_SHIFT:g} diameters; with --quick one seed, with the coupling impulse, which needs a "
+    "tenth of the exchanges."
 )
 
 
@@ -42,7 +45,21 @@ def impact(
     seed: int | None = None,
     coupling: str | None = None,
 ) -> Task:
-    """The impact of a test of table 2 with one of :data:`ALL_MODELS`. A seed shifts the lattice, or gives another packing."""
+    """Return the impact of a test of table 2.
+
+    Parameters
+    ----------
+    test : int
+        Number of the test.
+    model : str
+        One of :data:`ALL_MODELS`, or a reading.
+    changes : mapping of str to Value, optional
+        Further values.
+    seed : int, optional
+        Shifts the lattice, or gives another packing.
+    coupling : str, optional
+        Scheme of exchange, by default that of the paper.
+    """
     values = {**READINGS.get(model, {}), **(changes or {})}
     if seed is not None and model != ONE_LAW:
         values["sand.lattice_shift"] = LATTICE_SHIFT
@@ -61,7 +78,7 @@ def impact(
 def impacts(
     test: int, model: str, quick: bool, changes: Mapping[str, Value] | None = None
 ) -> list[Task]:
-    """One impact for each seed; in a quick study one, with few exchanges."""
+    """Return one impact for each seed; in a quick study one, with few exchanges."""
     if quick:
         return [impact(test, model, changes, SEEDS[0], "impulse")]
     return [

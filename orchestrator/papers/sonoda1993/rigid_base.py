@@ -1,4 +1,7 @@
-"""Figures 20 to 22: a rock of 1 tf on 90 cm of three sands on a rigid base; transmitted force and force on the rock."""
+"""Figures 20 to 22: a rock of 1 tf on 90 cm of three sands on a rigid base.
+
+Transmitted force and force on the rock, beside those of formulas.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,9 +35,9 @@ SANDS = {
     for name, impact in impacts().items()
     if not impact.span
 }
-"""The impacts by the name of the sand."""
+"""Impacts by the name of the sand."""
 RATIO = 2.0
-"""Transmitted force / force on the rock, in the paper: about twice."""
+"""Transmitted force / force on the rock in the paper: about twice."""
 
 
 def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
@@ -42,7 +45,7 @@ def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Every sand with every model."""
+    """Return the impacts on every sand with every model."""
     return [
         task
         for model in models(quick, False)
@@ -51,56 +54,48 @@ def tasks(quick: bool) -> list[Task]:
     ]
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """Ratio, both forces and penetration for every sand and model, then what formulas give whatever the sand."""
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return ratio, both forces and penetration for every sand and model, then the formulas."""
     return [
         row
-        for model in models(found.quick, False)
+        for model in models(outcomes.quick, False)
         for sand in sands(model, [*SANDS])
-        for row in _of_sand(sand, model, found)
+        for row in _of_sand(sand, model, outcomes)
     ] + formulas()
 
 
-def _of_sand(sand: str, model: Model, found: Outcomes) -> list[Row]:
-    runs = _runs(SANDS[sand], model, found.quick)
-    filters = [
-        found.of(task).metrics.get(SETTLED_CUT_OFF)
-        for task in runs
-        if found.of(task).status == COMPLETE
-    ]
-    settled = (
-        f"settled: low-pass of 4th order, forwards and backwards, {filters[0]:.0f} Hz"
-        if filters and filters[0]
-        else ""
-    )
+def _of_sand(sand: str, model: Model, outcomes: Outcomes) -> list[Row]:
+    """Return ratio, both forces and penetration for one sand."""
+    runs = _runs(SANDS[sand], model, outcomes.quick)
+    settled = _filter(runs, outcomes)
+    transmitted = Measure(f"settled transmitted force, {sand} sand", "tf", tf, SETTLED_TRANSMITTED)
+    on_rock = Measure(f"settled force on the rock, {sand} sand", "tf", tf, SETTLED_ROCK)
+    penetration = Measure(f"penetration, {sand} sand", "cm", cm, PENETRATION)
     return [
         row_of_runs(
             Measure(f"settled ratio transmitted / rock, {sand} sand", "1", 1.0, SETTLED_RATIO),
             runs,
-            found,
+            outcomes,
             RATIO,
             note="; ".join(filter(None, ["paper: about twice", settled])),
         ),
-        row_of_runs(
-            Measure(f"settled transmitted force, {sand} sand", "tf", tf, SETTLED_TRANSMITTED),
-            runs,
-            found,
-            note=settled,
-        ),
-        row_of_runs(
-            Measure(f"settled force on the rock, {sand} sand", "tf", tf, SETTLED_ROCK),
-            runs,
-            found,
-            note=settled,
-        ),
-        detail(
-            row_of_runs(Measure(f"penetration, {sand} sand", "cm", cm, PENETRATION), runs, found)
-        ),
+        row_of_runs(transmitted, runs, outcomes, note=settled),
+        row_of_runs(on_rock, runs, outcomes, note=settled),
+        detail(row_of_runs(penetration, runs, outcomes)),
     ]
 
 
+def _filter(runs: Sequence[Task], outcomes: Outcomes) -> str:
+    """Return in words the filter of the settled forces; nothing where no run has one."""
+    complete = [outcomes.of(task) for task in runs if outcomes.of(task).status == COMPLETE]
+    cut_off = complete[0].metrics.get(SETTLED_CUT_OFF) if complete else None
+    if not cut_off:
+        return ""
+    return f"settled: low-pass of 4th order, forwards and backwards, {cut_off:.0f} Hz"
+
+
 def formulas() -> list[Row]:
-    """The handbook's force on the rock and Hertz's, which the handbook has made its own: they need no run."""
+    """Return the force on the rock by the handbook, and by Hertz, on whom the handbook builds."""
     speed = (2.0 * GRAVITY * DROP) ** 0.5
     return [
         Row(
@@ -108,15 +103,16 @@ def formulas() -> list[Row]:
             "tf",
             computed=handbook_force(ROCK_MASS, DROP) / tf,
             model="formula",
-            note="2.108 (m g)^(2/3) lambda^(2/5) H^(3/5) with lambda = 1000 kN/m2, whatever the sand",
+            note="2.108 (m g)^(2/3) lambda^(2/5) H^(3/5) with lambda = 1000 kN/m2, whatever the "
+            "sand",
         ),
         Row(
             "force on the rock by Hertz's theory",
             "tf",
             computed=hertz_force(ROCK_MASS, ROCK_RADIUS, speed) / tf,
             model="formula",
-            note="rigid sphere of 91.2 cm on an elastic half-space with lambda = 1000 kN/m2, nu = 0.25: the "
-            "handbook's formula is this one, for a rock of ordinary density",
+            note="rigid sphere of 91.2 cm on an elastic half-space with lambda = 1000 kN/m2, nu = "
+            "0.25: the handbook's formula is this one, for a rock of ordinary density",
         ),
     ]
 
@@ -125,30 +121,23 @@ SHOWN = ("calibrated", "literal")
 """Models in the figure."""
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """A column for each of figs 20 to 22, a row for each model; the first seed."""
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw a column for each of figs 20 to 22, a row for each model; the first seed."""
     from ...pictures.style import GREY, WIDTH, captioned, legend, reference_line
 
     file = folder / "figs20-22.png"
     handbook = handbook_force(ROCK_MASS, DROP) / tf
-    shown = [model for model in models(found.quick, False) if model.name in SHOWN]
-    with captioned(
-        [
-            "Figs 20 to 22 of Sonoda et al. 1993: 1 tf from 10 m on 90 cm of sand on a rigid base. Thin: as computed; "
-            "thick: settled (low-pass). The first seed of each model."
-        ],
-        file,
-        WIDTH,
-        4.6,
-    ) as made:
+    shown = [model for model in models(outcomes.quick, False) if model.name in SHOWN]
+    words = (
+        "Figs 20 to 22 of Sonoda et al. 1993: 1 tf from 10 m on 90 cm of sand on a rigid base. "
+        "Thin: as computed; thick: settled (low-pass). The first seed of each model."
+    )
+    with captioned([words], file, WIDTH, 4.6) as made:
         grid = made.subplots(len(shown), len(SANDS), sharey=True, squeeze=False)
-        for line, model in zip(grid, shown):
-            for axes, (number, impact) in zip(line, enumerate(SANDS.values(), 20)):
-                plot_forces(axes, found.of(_runs(impact, model, found.quick)[0]))
-                axes.set_title(
-                    f"fig. {number}: {impact.name.removeprefix('rigid-base-')} sand\n{model.name}",
-                    color=GREY,
-                )
+        for line, model in zip(grid, shown, strict=True):
+            for axes, (number, sand) in zip(line, enumerate(SANDS, 20), strict=True):
+                plot_forces(axes, outcomes.of(_runs(SANDS[sand], model, outcomes.quick)[0]))
+                axes.set_title(f"fig. {number}: {sand} sand\n{model.name}", color=GREY)
                 reference_line(axes, handbook, "rock, handbook")
             line[0].set_ylabel("force (tf)")
         for axes in grid[-1]:
@@ -168,8 +157,9 @@ STUDY = Study(
     (
         SEED_NOTE,
         STEP_NOTE,
-        "Settled maxima: after a low-pass at half the natural frequency of a sand disc on one contact, which "
-        "takes away spikes of discs that are struck one by one.",
-        "E_bar 20 (pit), 75 (river; the paper has 70 to 80) and 100 kgf/cm2 (crushed); depth 92 cm, which the paper does not give.",
+        "Settled maxima: after a low-pass at half the natural frequency of a sand disc on one "
+        "contact, which takes away spikes of discs that are struck one by one.",
+        "E_bar 20 (pit), 75 (river; the paper has 70 to 80) and 100 kgf/cm2 (crushed); depth 92 "
+        "cm, which the paper does not give.",
     ),
 )

@@ -1,8 +1,11 @@
-"""Table 2: the measured peak transmitted force of all sixteen tests beside the computed one, and simple predictions of it."""
+"""Table 2: measured and computed peak transmitted force of all sixteen tests.
 
-from collections.abc import Callable, Mapping, Sequence
+Beside them stand predictions that need no computation.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rockshed.components.common.units import cm, kgf
 
@@ -28,14 +31,14 @@ if TYPE_CHECKING:
 
 
 def _paper(test: Test) -> float:
-    """What the paper's own table 5 gives for a test (N)."""
+    """Return the force (N) of a test by the paper's own table 5."""
     reference = sonoda1993.known_of(test)[PEAK_TRANSMITTED].paper
     assert reference is not None
     return reference.value
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Sixteen tests, each with every model."""
+    """Return the impacts of sixteen tests, each with every model."""
     return [
         task
         for number in sonoda1993.tests()
@@ -44,26 +47,28 @@ def tasks(quick: bool) -> list[Task]:
     ]
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """Each test, then errors and trends over the tests, then what needs no mechanics."""
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return each test, then errors and trends over the tests, then the baselines."""
     listed = []
     for through, figure in _SEEN.items():
         each = {
             model: {
-                number: _of_test(test, model, found, through, figure)
+                number: _of_test(test, model, outcomes, through, figure)
                 for number, test in sonoda1993.tests().items()
             }
             for model in ALL_MODELS
         }
         listed += [each[model][number] for number in sonoda1993.tests() for model in ALL_MODELS]
         listed += [
-            row for model in ALL_MODELS for row in _over_tests(model, each[model], found, through)
+            row
+            for model in ALL_MODELS
+            for row in _over_tests(model, each[model], outcomes, through)
         ]
     return listed + baselines()
 
 
 def through_load_cell(outcome: Outcome) -> float:
-    """Peak (N) of the transmitted force as the load cells under the beam show it."""
+    """Return the peak (N) of the transmitted force as the load cells under the beam show it."""
     return float(
         load_cell(
             outcome.series["time"], outcome.series["sand.transmitted_force"], sonoda1993.LOAD_CELL
@@ -75,82 +80,84 @@ _SEEN: Mapping[str, str | Callable[[Outcome], float]] = {
     "": PEAK_TRANSMITTED,
     f" through a load cell of {sonoda1993.LOAD_CELL / 1e3:g} kHz": through_load_cell,
 }
-"""How the force is seen, in words, and the figure."""
+"""Metric of the force by the words for how it is seen."""
 
 
 def _of_test(
-    test: Test, model: str, found: Outcomes, through: str, figure: str | Callable[[Outcome], float]
+    test: Test,
+    model: str,
+    outcomes: Outcomes,
+    through: str,
+    figure: str | Callable[[Outcome], float],
 ) -> Row:
     return row_of_runs(
         Measure(f"peak transmitted force{through}, test {test.number}", "kgf", kgf, figure),
-        impacts(test.number, model, found.quick),
-        found,
+        impacts(test.number, model, outcomes.quick),
+        outcomes,
         _paper(test) / kgf,
         test.peak_force / kgf,
         "paper: its table 5, h = 0.2, inter- or extrapolated to the test's E_bar",
     )
 
 
-def _over_tests(model: str, each: Mapping[int, Row], found: Outcomes, through: str) -> list[Row]:
-    """Mean error over the twelve tests and over all, and the trend of the twelve. A test without a result makes them empty."""
-    where = origin([task for number in each for task in impacts(number, model, found.quick)], found)
-    where["options"] = {
-        name: value for name, value in where["options"].items() if name != "modulus"
-    }
+def _over_tests(model: str, each: Mapping[int, Row], outcomes: Outcomes, through: str) -> list[Row]:
+    """Return mean error and trend over the tests.
+
+    A test without a result makes them empty.
+    """
     computed = {
         number: row.computed * kgf for number, row in each.items() if row.computed is not None
     }
-    sixteen = list(sonoda1993.tests().values())
-
-    def row(
-        quantity: str,
-        unit: str,
-        value: Callable[[], float],
-        paper: float | None,
-        experiment: float | None = None,
-    ) -> Row:
-        complete = len(computed) == len(each)
-        return Row(
-            quantity,
-            unit,
-            paper,
-            experiment,
-            value() if complete else None,
-            model=model,
-            note="" if complete else "a test has no result",
-            **where,
-        )
-
+    where = _origin(model, each, outcomes)
+    complete = len(computed) == len(each)
+    if not complete:
+        where["note"] = "a test has no result"
+    every = list(sonoda1993.tests().values())
     return [
-        row(
+        Row(
             f"mean absolute error{through}, {BOX_TESTS}",
             "%",
-            lambda: error(computed, twelve()),
             _paper_error(),
+            computed=error(computed, twelve()) if complete else None,
+            **where,
         ),
-        row(
+        Row(
             f"mean absolute error{through}, all sixteen tests",
             "%",
-            lambda: error(computed, sixteen),
-            None,
+            computed=error(computed, every) if complete else None,
+            **where,
         ),
-        row(
+        Row(
             f"trend exponent of P against k{through}, {BOX_TESTS}",
             "1",
-            lambda: exponent(computed),
-            exponent({t.number: _paper(t) for t in twelve()}),
-            exponent({t.number: t.peak_force for t in twelve()}),
+            exponent({test.number: _paper(test) for test in twelve()}),
+            exponent({test.number: test.peak_force for test in twelve()}),
+            exponent(computed) if complete else None,
+            **where,
         ),
     ]
 
 
+def _origin(model: str, numbers: Iterable[int], outcomes: Outcomes) -> dict[str, Any]:
+    """Return the origin of a value over several tests: without the modulus, which differs."""
+    runs = [task for number in numbers for task in impacts(number, model, outcomes.quick)]
+    where = {"model": model, **origin(runs, outcomes)}
+    where["options"] = {
+        name: value for name, value in where["options"].items() if name != "modulus"
+    }
+    return where
+
+
 def _paper_error() -> float:
-    """Of the paper's own trend (percent)."""
+    """Return the error (%) of the paper's own trend."""
     return error({test.number: _paper(test) for test in twelve()}, twelve())
 
 
 def baselines() -> list[Row]:
-    """Mean absolute error of predictions that need no computation; each test predicted from the eleven others."""
+    """Return the mean absolute error of predictions that need no computation.
+
+    Each test is predicted from the eleven others.
+    """
     stiffness = [test.static_stiffness for test in twelve()]
     measured = [test.peak_force for test in twelve()]
 
@@ -182,20 +189,16 @@ def baselines() -> list[Row]:
     ]
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """P against k in the layout of fig. 9, all axes logarithmic, measured and computed."""
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw P against k in the layout of fig. 9, all axes logarithmic, measured and computed."""
     from ...pictures.style import BEAM, ROCK, TRANSMITTED, WIDTH, captioned
 
     file = folder / "table2.png"
-    with captioned(
-        [
-            "Table 2 of Sonoda et al. 1993; E_bar = k / 1.29 where table 4 gives none. Filled: box 1, open: box 2. Bars: "
-            "standard deviation over seeds."
-        ],
-        file,
-        WIDTH,
-        4.2,
-    ) as made:
+    words = (
+        "Table 2 of Sonoda et al. 1993; E_bar = k / 1.29 where table 4 gives none. Filled: box 1, "
+        "open: box 2. Bars: standard deviation over seeds."
+    )
+    with captioned([words], file, WIDTH, 4.2) as made:
         axes = made.subplots()
         _measured(axes)
         for model, colour in (("calibrated", TRANSMITTED), ("literal", ROCK), (ONE_LAW, BEAM)):
@@ -204,19 +207,14 @@ def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
                 number: of_model[f"peak transmitted force, test {number}"]
                 for number in sonoda1993.tests()
             }
-            _points(
-                axes,
-                model,
-                colour,
-                "o",
-                {number: row for number, row in rows.items() if row.computed is not None},
-            )
+            known = {number: row for number, row in rows.items() if row.computed is not None}
+            _points(axes, model, colour, "o", known)
         _decorate(axes)
     return [file]
 
 
 def _measured(axes: "Axes") -> None:
-    """The measurements and the power law through those of box 1."""
+    """Draw the measurements and the power law through those of box 1."""
     from ...pictures.style import GREY, INK
 
     _points(
@@ -226,7 +224,8 @@ def _measured(axes: "Axes") -> None:
         "s",
         {t.number: Row("", "", computed=t.peak_force / kgf) for t in sonoda1993.tests().values()},
     )
-    k, p = [_k(test) for test in twelve()], [test.peak_force / kgf for test in twelve()]
+    k = [_k(test) for test in twelve()]
+    p = [test.peak_force / kgf for test in twelve()]
     factor, exponent = power_law(k, p)
     axes.plot(
         sorted(k),
@@ -239,12 +238,12 @@ def _measured(axes: "Axes") -> None:
 
 
 def _k(test: Test) -> float:
-    """In kgf/cm."""
+    """Return the static k (kgf/cm) of a test."""
     return test.static_stiffness / kgf * cm
 
 
 def _points(axes: "Axes", name: str, colour: str, mark: str, rows: Mapping[int, Row]) -> None:
-    """Forces of tests over k, with their spread."""
+    """Draw the forces of tests over k, with their spread."""
     for box, fill in ((1, colour), (2, "white")):
         tests = [
             test
@@ -265,8 +264,6 @@ def _points(axes: "Axes", name: str, colour: str, mark: str, rows: Mapping[int, 
 
 
 def _decorate(axes: "Axes") -> None:
-    from matplotlib.ticker import ScalarFormatter
-
     axes.set(
         xscale="log",
         yscale="log",
@@ -276,7 +273,7 @@ def _decorate(axes: "Axes") -> None:
         yticks=[300, 400, 500, 600, 700],
     )
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(ScalarFormatter())
+        axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(lambda value, place: "")
     axes.legend(loc="upper left")
 
@@ -291,7 +288,8 @@ STUDY = Study(
     (
         SEED_NOTE,
         "Errors and trends over tests are those of the mean over the seeds.",
-        "Rows through a load cell: the same runs behind a causal low-pass of second order (Butterworth); the paper gives a natural "
-        "frequency of 3200 Hz and a response up to about 1 kHz. The mass of the sand box is not modelled.",
+        "Rows through a load cell: the same runs behind a causal low-pass of second order "
+        "(Butterworth); the paper gives a natural frequency of 3200 Hz and a response up to about "
+        "1 kHz. The mass of the sand box is not modelled.",
     ),
 )

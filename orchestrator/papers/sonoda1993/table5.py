@@ -1,8 +1,11 @@
-"""Table 5: penetration and peak transmitted force for three moduli and three damping constants, as computed in the paper."""
+"""Table 5: penetration and peak transmitted force, as computed in the paper.
+
+Three moduli with three damping constants each.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockshed.components.common.units import cm, kgf
 
@@ -12,6 +15,9 @@ from ...runs.batch import Task
 from ..study import Measure, Outcomes, Row, Study, origin, row_of_runs, verdict
 from .laboratory import READINGS, SEED_NOTE, impacts
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 _UNITS = {PENETRATION: ("cm", cm), PEAK_TRANSMITTED: ("kgf", kgf)}
 
 
@@ -20,7 +26,7 @@ def _paper(row: TableFiveRow, figure: str) -> float:
 
 
 def _modulus(row: TableFiveRow) -> float:
-    """In kgf/cm2."""
+    """Return E_bar (kgf/cm2) of a row of the table."""
     return row.modulus / kgf * cm**2
 
 
@@ -34,25 +40,25 @@ def _impacts(row: TableFiveRow, model: str, quick: bool) -> list[Task]:
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Nine rows, each with every model."""
+    """Return the impacts of nine rows, each with every model."""
     return [task for row in table_5() for model in READINGS for task in _impacts(row, model, quick)]
 
 
-def rows(found: Outcomes) -> list[Row]:
-    """Two figures for each row of the table and model; for each model how far they are off, and the trend of the force in h."""
-    listed = _each(found)
+def rows(outcomes: Outcomes) -> list[Row]:
+    """Return both metrics for each row of the table and model, then deviations and trends."""
+    listed = _each(outcomes)
     return [
         *listed,
         *(
             row
             for model in READINGS
-            for row in (*_largest(model, listed, found), *_trends(model, listed, found))
+            for row in (*_largest(model, listed, outcomes), *_trends(model, listed, outcomes))
         ),
     ]
 
 
-def _largest(model: str, listed: Sequence[Row], found: Outcomes) -> list[Row]:
-    """Largest deviation from the paper's figures."""
+def _largest(model: str, listed: Sequence[Row], outcomes: Outcomes) -> list[Row]:
+    """Return the largest deviations from the paper's values."""
     made = []
     for figure in _UNITS:
         off = [
@@ -68,50 +74,48 @@ def _largest(model: str, listed: Sequence[Row], found: Outcomes) -> list[Row]:
                 model=model,
                 computed=100.0 * max(known) if len(known) == len(off) else None,
                 note="" if len(known) == len(off) else "a row has no result",
-                **_where(model, found),
+                **_where(model, outcomes),
             )
         )
     return made
 
 
-def _trends(model: str, listed: Sequence[Row], found: Outcomes) -> list[Row]:
-    """Change of the force from the least to the largest damping constant, for each modulus."""
-    made = []
-    for modulus in dict.fromkeys(map(_modulus, table_5())):
-        of_modulus = [
-            row
-            for row in listed
-            if row.model == model
-            and row.quantity.startswith(f"{PEAK_TRANSMITTED}, E_bar {modulus:.0f}")
-        ]
-        first, last = of_modulus[0], of_modulus[-1]
-        known = first.computed is not None and last.computed is not None
-        assert first.paper
-        assert last.paper
-        change = (
-            100.0 * (last.computed / first.computed - 1.0)
-            if known and first.computed and last.computed
-            else None
-        )
-        paper = 100.0 * (last.paper / first.paper - 1.0)
-        made.append(
-            Row(
-                f"change of the force from h 0.1 to 0.3, E_bar {modulus:.0f}",
-                "%",
-                paper,
-                None,
-                change,
-                model=model,
-                verdict="" if change is None else verdict(change * paper > 0.0),
-                note="holds: the sign is the paper's" if known else "a row has no result",
-                **_where(model, found),
-            )
-        )
-    return made
+def _trends(model: str, listed: Sequence[Row], outcomes: Outcomes) -> list[Row]:
+    """Return the change of the force over the damping constants, for each modulus."""
+    moduli = dict.fromkeys(map(_modulus, table_5()))
+    return [_trend(model, modulus, listed, outcomes) for modulus in moduli]
 
 
-def _where(model: str, found: Outcomes) -> dict[str, Any]:
-    where = origin([task for row in table_5() for task in _impacts(row, model, found.quick)], found)
+def _trend(model: str, modulus: float, listed: Sequence[Row], outcomes: Outcomes) -> Row:
+    """Return the change of the force from the least to the largest damping constant."""
+    begin = f"{PEAK_TRANSMITTED}, E_bar {modulus:.0f}"
+    chosen = [row for row in listed if row.model == model and row.quantity.startswith(begin)]
+    first = chosen[0]
+    last = chosen[-1]
+    assert first.paper
+    assert last.paper
+    paper = 100.0 * (last.paper / first.paper - 1.0)
+    change = None
+    if first.computed and last.computed:
+        change = 100.0 * (last.computed / first.computed - 1.0)
+    return Row(
+        f"change of the force from h 0.1 to 0.3, E_bar {modulus:.0f}",
+        "%",
+        paper,
+        None,
+        change,
+        model=model,
+        verdict="" if change is None else verdict(change * paper > 0.0),
+        note="a row has no result" if change is None else "holds: the sign is the paper's",
+        **_where(model, outcomes),
+    )
+
+
+def _where(model: str, outcomes: Outcomes) -> dict[str, Any]:
+    """Return the origin of a value over all rows: without the numbers that differ in them."""
+    where = origin(
+        [task for row in table_5() for task in _impacts(row, model, outcomes.quick)], outcomes
+    )
     return {
         **where,
         "options": {
@@ -122,12 +126,12 @@ def _where(model: str, found: Outcomes) -> dict[str, Any]:
     }
 
 
-def _each(found: Outcomes) -> list[Row]:
+def _each(outcomes: Outcomes) -> list[Row]:
     return [
         row_of_runs(
             Measure(f"{figure}, E_bar {_modulus(row):.0f}, h {row.damping:g}", unit, scale, figure),
-            _impacts(row, model, found.quick),
-            found,
+            _impacts(row, model, outcomes.quick),
+            outcomes,
             paper=_paper(row, figure) / scale,
         )
         for row in table_5()
@@ -136,55 +140,48 @@ def _each(found: Outcomes) -> list[Row]:
     ]
 
 
-def draw(found: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
-    """Both figures over the damping constant, a line for each modulus."""
-    from ...pictures.style import GREY, ROCK, TRANSMITTED, WIDTH, captioned
+def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
+    """Draw both metrics over the damping constant, a line for each modulus."""
+    from ...pictures.style import WIDTH, captioned
 
     file = folder / "table5.png"
-    dashes = {20: "-", 40: "--", 60: ":"}
     with captioned(["Table 5 of Sonoda et al. 1993. E_bar in kgf/cm²."], file, WIDTH, 3.4) as made:
-        for axes, (figure, (unit, scale)) in zip(made.subplots(1, 2), _UNITS.items(), strict=True):
-            for modulus, line in dashes.items():
-                chosen = [row for row in table_5() if round(_modulus(row)) == modulus]
-                damping = [row.damping for row in chosen]
-                axes.plot(
-                    damping,
-                    [_paper(row, figure) / scale for row in chosen],
-                    line,
-                    color=GREY,
-                    marker="s",
-                    markersize=3,
-                    label=f"paper, {modulus}",
-                )
-                for model, colour in (("calibrated", TRANSMITTED), ("literal", ROCK)):
-                    values = [
-                        next(
-                            r.computed
-                            for r in listed
-                            if r.model == model
-                            and r.quantity.startswith(figure)
-                            and r.quantity.endswith(f"E_bar {modulus}, h {row.damping:g}")
-                        )
-                        for row in chosen
-                    ]
-                    axes.plot(
-                        damping,
-                        [float("nan") if v is None else v for v in values],
-                        line,
-                        color=colour,
-                        marker="o",
-                        markersize=3,
-                        linewidth=1.0,
-                        label=f"{model}, {modulus}",
-                    )
-            axes.set(
-                xlabel="damping constant h", ylabel=f"{figure} ({unit})", xticks=[0.1, 0.2, 0.3]
-            )
-            axes.set_ylim(0.0, 1.08 * axes.get_ylim()[1])
-        made.legend(
-            *axes.get_legend_handles_labels(), loc="outside right upper", title="model, E_bar"
-        )
+        for axes, figure in zip(made.subplots(1, 2), _UNITS, strict=True):
+            _draw_metric(axes, figure, listed)
+        handles = made.axes[-1].get_legend_handles_labels()
+        made.legend(*handles, loc="outside right upper", title="model, E_bar")
     return [file]
+
+
+def _draw_metric(axes: "Axes", figure: str, listed: Sequence[Row]) -> None:
+    """Draw a metric over the damping constant: the paper's, calibrated and literal."""
+    from ...pictures.style import GREY, ROCK, TRANSMITTED
+
+    unit, scale = _UNITS[figure]
+    for modulus, dashes in ((20, "-"), (40, "--"), (60, ":")):
+        chosen = [row for row in table_5() if round(_modulus(row)) == modulus]
+        damping = [row.damping for row in chosen]
+        form: dict[str, Any] = {"linestyle": dashes, "markersize": 3}
+        paper = [_paper(row, figure) / scale for row in chosen]
+        axes.plot(damping, paper, color=GREY, marker="s", label=f"paper, {modulus}", **form)
+        for model, colour in (("calibrated", TRANSMITTED), ("literal", ROCK)):
+            values = [_computed(row, figure, model, listed) for row in chosen]
+            label = f"{model}, {modulus}"
+            form |= {"marker": "o", "linewidth": 1.0}
+            axes.plot(damping, values, color=colour, label=label, **form)
+    axes.set(xlabel="damping constant h", ylabel=f"{figure} ({unit})", xticks=[0.1, 0.2, 0.3])
+    axes.set_ylim(0.0, 1.08 * axes.get_ylim()[1])
+
+
+def _computed(printed: TableFiveRow, figure: str, model: str, listed: Sequence[Row]) -> float:
+    """Return the computed value beside a row of the table; NaN where there is none."""
+    end = f"E_bar {_modulus(printed):.0f}, h {printed.damping:g}"
+    value = next(
+        row.computed
+        for row in listed
+        if row.model == model and row.quantity.startswith(figure) and row.quantity.endswith(end)
+    )
+    return float("nan") if value is None else value
 
 
 STUDY = Study(
@@ -196,9 +193,10 @@ STUDY = Study(
     draw,
     (
         SEED_NOTE,
-        "calibrated: rotation locked, stiffness factor 0.37, fitted to this table and the static test. literal: three "
-        "freedoms a disc, factor 1. steel discs: calibrated sand, with the mass of a steel disc of the beam "
-        "in the dashpots there; discs then chatter on the beam, with spikes in the force that a coarser exchange averages away.",
+        "calibrated: rotation locked, stiffness factor 0.37, fitted to this table and the static "
+        "test. literal: three freedoms a disc, factor 1. steel discs: calibrated sand, with the "
+        "mass of a steel disc of the beam in the dashpots there; discs then chatter on the beam, "
+        "with spikes in the force that a coarser exchange averages away.",
         "Ball, box and beam of test 4.",
     ),
 )

@@ -1,4 +1,4 @@
-"""The twelve tests in the box that the paper compares (fig. 9): error and trend of forces computed for them."""
+"""The twelve tests in the box that the paper compares (fig. 9): error and trend of forces."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,19 +11,33 @@ _BOX = 1
 
 
 def twelve() -> list[Test]:
-    """The tests, by number."""
+    """Return the tests in the order of their numbers."""
     return [test for test in sonoda1993.tests().values() if test.box == _BOX]
 
 
 def error(computed: Mapping[int, float], tests: Sequence[Test]) -> float:
-    """Mean absolute error (percent) of peak forces (N, by the number of the test) against the measured ones."""
+    """Return the mean absolute error (%) of peak forces against the measured ones.
+
+    Parameters
+    ----------
+    computed : mapping of int to float
+        Forces (N) by the number of the test.
+    tests : sequence of Test
+        Tests over which the mean is taken.
+    """
     return 100.0 * mean_absolute_error(
         [computed[test.number] for test in tests], [test.peak_force for test in tests]
     )
 
 
 def exponent(forces: Mapping[int, float]) -> float:
-    """Exponent of the force (N, by the number of the test) against the measured static stiffness, over the twelve tests."""
+    """Return the exponent of the force against the measured static stiffness, over twelve tests.
+
+    Parameters
+    ----------
+    forces : mapping of int to float
+        Forces (N) by the number of the test.
+    """
     return power_law(
         [test.static_stiffness for test in twelve()], [forces[test.number] for test in twelve()]
     )[1]
