@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .analyses.calibration.run import calibrate
     from .analyses.pile.run import pile
     from .analyses.rockfall.run import rockfall
     from .components.common.component import ComponentError
@@ -37,6 +38,7 @@ _HOMES = {
     "Table": "tables",
     "UnknownName": "core.errors",
     "build_fmu": "runs.building",
+    "calibrate": "analyses.calibration.run",
     "case": "runs.system",
     "component": "runs.subsystem",
     "pile": "analyses.pile.run",
@@ -58,6 +60,7 @@ __all__ = [
     "UnknownName",
     "__version__",
     "build_fmu",
+    "calibrate",
     "case",
     "component",
     "pile",

@@ -1,14 +1,20 @@
-"""The frame of all analyses: a result with tables, figures and files, and the folder it is kept in."""
+"""The frame of all analyses: a result with tables, figures and files, and its folder."""
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from functools import cached_property
 from html import escape
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import refusing_unwritable
 from ..core.results.metric import Metric, Metrics
 from ..core.results.run_folder import RunFolder
 from ..tables import Table
@@ -16,24 +22,26 @@ from ..tables import Table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+FloatArray = NDArray[np.float64]
+"""Numbers of any shape."""
 Count = Callable[[int, int], None]
 """Called with the number of pieces of work that are done, and of all."""
-Progress = Callable[[str, int, int], None]
+StageProgress = Callable[[str, int, int], None]
 """Called with the name of a stage, and the numbers of its pieces that are done and of all."""
 Drawing = Callable[[], "Figure"]
 """Draws a figure when it is called."""
 
 
 def no_progress(stage: str, done: int, total: int) -> None:
-    """Show no progress."""
+    """Show no progress of an analysis."""
 
 
-def counter(progress: Progress, stage: str) -> Count:
+def counter(progress: StageProgress, stage: str) -> Count:
     """Return a function that counts the pieces of one stage.
 
     Parameters
     ----------
-    progress : Progress
+    progress : StageProgress
         Called for each piece.
     stage : str
         Name of the stage.
@@ -68,6 +76,42 @@ def whole_folder(folder: str | Path) -> Iterator[Path]:
     with RunFolder(Path(folder)) as place:
         yield place.running
         place.swap()
+
+
+@contextmanager
+def shared_folder(folder: str | Path) -> Iterator[Path]:
+    """Open a folder whose other files stay; the new ones appear when the block ends.
+
+    Parameters
+    ----------
+    folder : path
+        Of the results; it is made where it is missing, and removed again if the block fails.
+
+    Yields
+    ------
+    Path
+        Folder in which the files are written meanwhile.
+
+    Raises
+    ------
+    InputRefused
+        The folder cannot be written.
+    """
+    target = Path(folder)
+    parents = (target, *target.parents)
+    missing = [parent for parent in parents if not parent.exists()]
+    with refusing_unwritable(target):
+        target.mkdir(parents=True, exist_ok=True)
+        place = TemporaryDirectory(prefix=".rockshed-", dir=target)
+    try:
+        with place as name:
+            yield Path(name)
+            for file in Path(name).iterdir():
+                os.replace(file, target / file.name)
+    finally:
+        for parent in missing:
+            with suppress(OSError):  # it is not empty
+                parent.rmdir()
 
 
 class Result(ABC):
@@ -147,7 +191,7 @@ class Result(ABC):
 
         Its function ``drawings`` takes a result and returns a :data:`Drawing` for each figure by
         the name of its file without the ending; ``animate``, where it has one, takes a result, a
-        folder and a :data:`Progress`, and returns the files that it has written.
+        folder and a :data:`StageProgress`, and returns the files that it has written.
         """
         package = cls.__module__.rpartition(".")[0]
         return import_module(f"{package}.pictures")
@@ -184,7 +228,7 @@ class Result(ABC):
         return {name: draw() for name, draw in drawings.items()}
 
     def save(
-        self, folder: str | Path, *, pictures: bool = True, progress: Progress | None = None
+        self, folder: str | Path, *, pictures: bool = True, progress: StageProgress | None = None
     ) -> Path:
         """Write the results into a folder, which appears as a whole or not at all.
 
@@ -194,7 +238,7 @@ class Result(ABC):
             New or empty, or with results that are replaced.
         pictures : bool
             Whether the figures are drawn and written too.
-        progress : Progress, optional
+        progress : StageProgress, optional
             Called for each figure.
 
         Returns
@@ -217,7 +261,7 @@ class Result(ABC):
         """Open the folder of the results, see :func:`whole_folder`."""
         return whole_folder(folder)
 
-    def write(self, place: Path, pictures: bool, progress: Progress) -> None:
+    def write(self, place: Path, pictures: bool, progress: StageProgress) -> None:
         """Write files and pictures into an opened folder.
 
         Parameters
@@ -226,7 +270,7 @@ class Result(ABC):
             As :meth:`opened` has it.
         pictures : bool
             Whether the figures are drawn and written too.
-        progress : Progress
+        progress : StageProgress
             Called for each figure.
         """
         folder = place / self.picture_folder
@@ -236,14 +280,14 @@ class Result(ABC):
             drawn += self.pictures_module().animate(self, folder, progress)
         self._pictures = [str(file.relative_to(place)) for file in drawn]
 
-    def write_pictures(self, folder: Path, progress: Progress) -> list[Path]:
+    def write_pictures(self, folder: Path, progress: StageProgress) -> list[Path]:
         """Draw all figures as PNG files.
 
         Parameters
         ----------
         folder : Path
             Of the pictures; it is made where it is missing.
-        progress : Progress
+        progress : StageProgress
             Called for each figure.
 
         Returns
@@ -267,7 +311,7 @@ class Result(ABC):
 
     @property
     def pictures(self) -> list[Path]:
-        """Pictures in :attr:`folder`."""
+        """Pictures in :attr:`folder`, animations included."""
         return self._in_folder(self._pictures)
 
     def _in_folder(self, names: Sequence[str]) -> list[Path]:

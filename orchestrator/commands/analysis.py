@@ -1,17 +1,17 @@
-"""What the commands of the analyses share: progress, names of options, how a result is shown."""
+"""Parts of the commands of all analyses: progress, names of options, display of a result."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from typing import Any
 
-from ..analyses.frame import Progress, Result
+from ..analyses.frame import Result, StageProgress
 from ..core.errors import InputRefused
 from .screen import Screen
 
 
 @contextmanager
-def stages(screen: Screen) -> Iterator[Progress]:
+def stages(screen: Screen) -> Iterator[StageProgress]:
     """Show each stage of an analysis as a bar of its own.
 
     Parameters
@@ -21,7 +21,7 @@ def stages(screen: Screen) -> Iterator[Progress]:
 
     Yields
     ------
-    Progress
+    StageProgress
         Called with stage, pieces done and pieces in all.
     """
     with ExitStack() as bar:

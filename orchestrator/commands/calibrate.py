@@ -1,15 +1,29 @@
 """The command ``rockshed calibrate``."""
 
+import re
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..analyses.calibration.report import as_data, asked_for, find, notes, table, write
+from ..analyses.calibration.measurement import FORCES, LENGTHS, Measurement, of_stiffness, table_4
+from ..analyses.calibration.result import CalibrationResult
+from ..analyses.calibration.run import calibrate
 from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.system.values import finite_number
+from .analysis import options_named, stages
 from .assignments import values_of
 from .options import RESULTS, Assignments, Json, Quiet, Workers
-from .screen import RUN_FAILED, opened
+from .screen import RUN_FAILED, Screen, opened
+
+PAPER = "sonoda1993"
+"""Name of the six tests of table 4, in the place of a file."""
+STIFFNESSES = {
+    f"{force}/{length}": factor / size
+    for force, factor in FORCES.items()
+    for length, size in LENGTHS.items()
+}
+"""Units of spring constants and their sizes (N/m)."""
 
 _Curve = Annotated[
     str | None,
@@ -55,24 +69,104 @@ def command(
 
     The static test is computed until it has what was measured.
     """
-    problems: list[Problem] = []
-    folder = output_dir or RESULTS / "calibration"
     with opened(quiet, as_json) as screen:
+        problems: list[Problem] = []
         values = values_of("--set", set_ or [], problems)
         if problems:
             raise InputRefused(problems)
-        asked = asked_for(target, stiffness, rotation, values)
+        measurement = measurement_from(target, stiffness)
         try:
-            with screen.counting("static tests") as done:
-                found = find(asked, seeds, workers, screen.note, done)
+            with options_named(("rotation", "seeds")), stages(screen) as progress:
+                result = calibrate(
+                    measurement,
+                    rotation=rotation,
+                    values=values,
+                    seeds=seeds,
+                    workers=workers,
+                    folder=output_dir or RESULTS / "calibration",
+                    pictures=True,
+                    progress=progress,
+                    note=screen.note,
+                )
         except RunFailed as failure:
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
-        files = write(found, folder)
-        if as_json:
-            screen.dump({"status": "complete", **as_data(found), "files": [str(f) for f in files]})
-            return
-        screen.show(table(found), "")
-        for text in notes(found):
-            screen.say(text)
-        screen.say(f"results in {folder}: " + ", ".join(file.name for file in files))
+        _show(screen, result)
+
+
+def _show(screen: Screen, result: CalibrationResult) -> None:
+    files = [*result.files, *result.pictures]
+    if screen.as_json:
+        listed = [str(file) for file in files]
+        screen.dump({"status": result.status, **result.as_data(), "files": listed})
+        return
+    screen.show(*result.tables(), "")
+    for text in result.notes:
+        screen.say(text)
+    screen.say(f"results in {result.folder}: " + ", ".join(file.name for file in files))
+
+
+def measurement_from(
+    target: str | None, stiffness: str | None
+) -> Measurement | list[Measurement] | Path:
+    """Return the measurement that the options of the command name.
+
+    Parameters
+    ----------
+    target : str or None
+        CSV file, or :data:`PAPER`.
+    stiffness : str or None
+        Spring constant with its unit.
+
+    Returns
+    -------
+    Measurement, list of Measurement or Path
+        As :func:`~rockshed.analyses.calibration.run.calibrate` takes it.
+
+    Raises
+    ------
+    InputRefused
+        None or both of them, or a spring constant that is none.
+    """
+    if (target is None) == (stiffness is None):
+        text = "takes either a file or --stiffness" + (", not both" if target else "")
+        example = "rockshed calibrate CURVE.csv, --stiffness '39.1 kgf/cm'"
+        remedy = f"{example}, or {PAPER} for table 4"
+        raise InputRefused([Problem("calibrate", text, remedy)])
+    if stiffness is not None:
+        return of_stiffness(stiffness_from(stiffness), f"k = {stiffness}")
+    return table_4() if target == PAPER else Path(str(target))
+
+
+def stiffness_from(text: str) -> float:
+    """Read a spring constant.
+
+    Parameters
+    ----------
+    text : str
+        Number and unit: ``39.1 kgf/cm``.
+
+    Returns
+    -------
+    float
+        Spring constant (N/m).
+
+    Raises
+    ------
+    InputRefused
+        No number, no or another unit, not above zero.
+    """
+    parts = re.fullmatch(r"\s*(\S*?\d\.?)\s*([A-Za-z]+/[A-Za-z]+)?\s*", text)
+    value = finite_number(parts.group(1)) if parts else None
+    remedy = f"write a number and one of {', '.join(STIFFNESSES)}: --stiffness '39.1 kgf/cm'"
+    if parts is None or value is None:
+        fault = f"{text!r} is no spring constant"
+    elif parts.group(2) not in STIFFNESSES:
+        unit = f"the unit {parts.group(2)}" if parts.group(2) else "no unit"
+        fault = f"{text!r} has {unit}"
+    elif value <= 0.0:
+        fault = f"{text!r} is not above zero"
+        remedy = "give the measured spring constant"
+    else:
+        return value * STIFFNESSES[parts.group(2)]
+    raise InputRefused([Problem("--stiffness", fault, remedy)])

@@ -1,4 +1,4 @@
-"""Positions of the values in a TOML file, which the reader of the standard library does not tell."""
+"""Positions of the values in a TOML file, which the standard library does not tell."""
 
 import tomllib
 from collections.abc import Iterator, Mapping

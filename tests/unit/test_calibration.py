@@ -4,16 +4,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from rockshed.analyses.calibration import run as calibration
+from rockshed.analyses.calibration import search as calibration
+from rockshed.analyses.calibration.fit import Push, Unreachable, fit
 from rockshed.analyses.calibration.measurement import Measurement, of_stiffness
-from rockshed.analyses.calibration.run import (
-    Calibration,
-    Push,
-    Unreachable,
-    by_misfit,
-    calibrate,
-    fit,
-)
+from rockshed.analyses.calibration.run import calibrate
+from rockshed.analyses.calibration.search import Calibration, by_misfit
 from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused, RunFailed
@@ -142,7 +137,7 @@ def sand(monkeypatch):
 @pytest.mark.parametrize("stiffness", [2e3, 38e3, 150e3])
 def test_the_search_comes_to_the_modulus_from_far_away(sand, stiffness):
     sand(factor=0.2, exponent=1.2)
-    found = calibrate([of_stiffness(stiffness, "k")], seeds=2).fits[0]
+    found = calibrate(stiffness, seeds=2).best
     assert found.modulus / E_BAR == pytest.approx(
         30.0 * (stiffness / 38e3 / 0.2) ** (1 / 1.2), rel=1e-3
     )
@@ -150,7 +145,8 @@ def test_the_search_comes_to_the_modulus_from_far_away(sand, stiffness):
 
 def test_several_measurements_share_their_tests(sand):
     sand()
-    made = calibrate([of_stiffness(k, str(k)) for k in (90e3, 30e3, 45e3)], seeds=2)
+    result = calibrate([of_stiffness(k, str(k)) for k in (90e3, 30e3, 45e3)], seeds=2)
+    (made,) = result.calibrations
     assert [f.modulus / E_BAR for f in made.fits] == pytest.approx(
         [90 / 38 * 30, 30 / 38 * 30, 45 / 38 * 30], rel=1e-3
     )
@@ -182,8 +178,8 @@ def test_what_the_calibration_chooses_cannot_be_set():
             values={"sand.modulus": 3e6, "sand.damping": 0.1, "sand.seed": 4},
         )
     assert [problem.where for problem in refusal.value.problems] == [
-        "--set sand.modulus",
-        "--set sand.seed",
+        "sand.modulus",
+        "sand.seed",
     ]
 
 
@@ -209,7 +205,7 @@ def command(tmp_path, monkeypatch):
         (["--stiffness", "39.1 kgf/cm", "--set", "sand.modulus=1"], "is chosen by the calibration"),
         (
             ["curve.csv", "--rotation", "fit", "--set", "sand.rotation=free"],
-            "is what --rotation fit chooses",
+            "is what the rotation fit chooses",
         ),
     ],
 )
@@ -248,3 +244,50 @@ def test_table_4_stands_beside_what_was_printed(command, sand, tmp_path):
         "calibration.csv",
         "calibration.png",
     }
+
+
+# ------------------------------------------------------------------ from Python
+
+
+def test_a_result_has_metrics_tables_and_a_figure(sand, tmp_path):
+    sand()
+    result = calibrate([of_stiffness(k, f"{k:g}") for k in (38e3, 57e3)], seeds=2)
+    assert result.metrics["38000_e_bar"].value / E_BAR == pytest.approx(30.0, rel=1e-3)
+    assert result.metrics["57000_e_bar"].unit == "Pa"
+    (table,) = result.tables()
+    assert [row["E_bar (kgf/cm²)"] for row in table] == ["30.0", "45.0"]
+    assert set(result.figures()) == {"calibration"}
+    assert result.to_arrow().column("e_bar").to_pylist() == pytest.approx(
+        [30.0 * E_BAR, 45.0 * E_BAR], rel=1e-3
+    )
+    assert repr(result).startswith("<CalibrationResult 38000, 57000: E_bar 30.0 ± 0.0 kgf/cm²")
+
+
+def test_files_join_those_that_are_in_the_folder(sand, tmp_path):
+    sand()
+    (tmp_path / "letter").write_text("dear")
+    result = calibrate(38e3, seeds=2, folder=tmp_path)
+    assert {file.name for file in tmp_path.iterdir()} == {
+        "letter",
+        "calibration.json",
+        "calibration.csv",
+    }
+    assert result.metrics["e_bar"].value / E_BAR == pytest.approx(30.0, rel=1e-3)
+    result.save(tmp_path)
+    assert (tmp_path / "calibration.png").is_file()
+
+
+def test_a_calibration_that_fails_leaves_nothing(sand, tmp_path):
+    sand(status=FAILED, failed_at=0.5)
+    with pytest.raises(RunFailed):
+        calibrate(38e3, folder=tmp_path / "a" / "b")
+    assert not list(tmp_path.iterdir())
+
+
+def test_everything_wrong_with_the_arguments_is_told_at_once(tmp_path):
+    with pytest.raises(InputRefused) as refusal:
+        calibrate(tmp_path / "none.csv", rotation="loose", seeds=1)
+    where = [problem.where for problem in refusal.value.problems]
+    assert where == ["rotation", "seeds", str(tmp_path / "none.csv")]
+    with pytest.raises(InputRefused, match="not above zero"):
+        calibrate(-1.0)

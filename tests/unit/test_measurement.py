@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from rockshed.analyses.calibration.measurement import of_stiffness, read_curve, stiffness_from
+from rockshed.analyses.calibration.curve_file import read_curve
+from rockshed.analyses.calibration.measurement import of_stiffness
+from rockshed.commands.calibrate import stiffness_from
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
 

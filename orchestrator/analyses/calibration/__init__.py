@@ -1,1 +1,1 @@
-"""E_bar of a sand from static tests."""
+"""Calibration: the fictitious modulus E_bar of a sand from a measured static loading test."""

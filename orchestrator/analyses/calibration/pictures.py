@@ -1,10 +1,12 @@
-"""What a calibration has found: measured and computed curves, or the spring constants of the tests over E_bar."""
+"""The picture of a calibration: curves, or spring constants of the tests over E_bar."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from rockshed.components.common.units import cm, kgf, kN
 
@@ -14,118 +16,134 @@ from ...pictures.style import (
     ROCK,
     TRANSMITTED,
     WIDTH,
-    captioned,
     reference_line,
     second_scale,
 )
-from .run import Calibration, Fit
+from ..drawing import drawn
+from ..frame import Drawing
+from .fit import Fit
+from .search import Calibration
+from .tables import E_BAR
 
-_E_BAR = kgf / cm**2
+if TYPE_CHECKING:
+    from .result import CalibrationResult
+
+_STIFFNESS = kgf / cm
+"""Unit (N/m) in which spring constants are shown."""
 
 
-def draw(
-    calibrations: Sequence[Calibration],
-    printed: Mapping[str, float],
-    caption: Sequence[str],
-    file: Path,
-) -> None:
-    """A curve with what was fitted to it, or k over E_bar with the E_bar that were found and printed."""
-    with captioned(caption, file, WIDTH, 3.8) as made:
-        axes = made.subplots()
-        if calibrations[0].fits[0].measured.is_curve:
-            _curves(
-                axes, [(calibration.rotation, calibration.fits[0]) for calibration in calibrations]
-            )
+def drawings(result: "CalibrationResult") -> dict[str, Drawing]:
+    """Return a function for the figure of a calibration.
+
+    Parameters
+    ----------
+    result : CalibrationResult
+        With one model or several.
+
+    Returns
+    -------
+    dict of str to callable
+        By the name of the file without its ending.
+    """
+    return {"calibration": partial(overview, result)}
+
+
+def overview(result: "CalibrationResult") -> Figure:
+    """Draw a calibration.
+
+    Parameters
+    ----------
+    result : CalibrationResult
+        With one model or several.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A measured curve with those that were fitted to it, or the spring constants of the computed
+        tests over E_bar, with the E_bar of the measured ones.
+    """
+    with drawn(result.notes, WIDTH, 3.8) as figure:
+        axes = figure.subplots()
+        if result.best.measured.is_curve:
+            _curves(axes, result.calibrations)
         else:
-            _constants(axes, calibrations[0], printed)
+            _constants(axes, result.calibrations[0])
         axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)
         axes.legend(loc="upper left")
+    return figure
 
 
-def _curves(axes: Axes, fits: Sequence[tuple[str, Fit]]) -> None:
-    measured = fits[0][1].measured
-    axes.plot(
-        measured.depth / cm,
-        measured.load / kN,
-        "s",
-        color=INK,
-        markersize=3.5,
-        label=f"measured: {measured.name}",
-    )
-    for (rotation, fit), colour in zip(fits, (TRANSMITTED, ROCK)):
-        name = (
-            f"rotation {rotation}, E_bar {fit.modulus / _E_BAR:.1f} ± {fit.uncertainty / _E_BAR:.1f} kgf/cm², "
-            f"error {100 * fit.misfit:.1f} %"
-        )
-        axes.plot(measured.depth / cm, fit.load / kN, color=colour, label=name)
-        axes.fill_between(
-            measured.depth / cm,
-            (fit.load - fit.load_spread) / kN,
-            (fit.load + fit.load_spread) / kN,
-            color=colour,
-            alpha=0.2,
-            linewidth=0,
-        )
+def _curves(axes: Axes, calibrations: Sequence[Calibration]) -> None:
+    measured = calibrations[0].fits[0].measured
+    depth = measured.depth / cm
+    label = f"measured: {measured.name}"
+    axes.plot(depth, measured.load / kN, "s", color=INK, markersize=3.5, label=label)
+    for made, colour in zip(calibrations, (TRANSMITTED, ROCK)):
+        fit = made.fits[0]
+        modulus = f"E_bar {fit.modulus / E_BAR:.1f} ± {fit.uncertainty / E_BAR:.1f} kgf/cm²"
+        label = f"rotation {made.rotation}, {modulus}, error {100 * fit.misfit:.1f} %"
+        axes.plot(depth, fit.load / kN, color=colour, label=label)
+        low = (fit.load - fit.load_spread) / kN
+        high = (fit.load + fit.load_spread) / kN
+        axes.fill_between(depth, low, high, color=colour, alpha=0.2, linewidth=0)
     axes.set(xlabel="penetration (cm)", ylabel="load (kN)")
     second_scale(axes, kN / kgf, "(kgf)")
 
 
-def _constants(axes: Axes, calibration: Calibration, printed: Mapping[str, float]) -> None:
-    depth, unit = float(calibration.fits[0].measured.depth[-1]), kgf / cm
-    found = [
-        (push.modulus / _E_BAR, float(push.curve.at(depth)) / depth / unit)
-        for push in calibration.pushes
-    ]
+def _constants(axes: Axes, calibration: Calibration) -> None:
+    depth = float(calibration.fits[0].measured.depth[-1])
+    moduli = np.array([push.modulus for push in calibration.pushes]) / E_BAR
+    loads = np.array([float(push.curve.at(depth)) for push in calibration.pushes])
+    label = "computed static tests, one sample each"
     axes.plot(
-        *zip(*found),
+        moduli,
+        loads / depth / _STIFFNESS,
         "o",
         color=TRANSMITTED,
         markersize=2.5,
         alpha=0.5,
-        label="computed static tests, one sample each",
+        label=label,
     )
-    fit = calibration.fits[0]
-    moduli = np.linspace(min(x for x, _ in found), max(x for x, _ in found), 60)
-    line = float(fit.load[-1]) / depth / unit * (moduli / (fit.modulus / _E_BAR)) ** fit.exponent
-    axes.plot(
-        moduli,
-        line,
-        color=TRANSMITTED,
-        linewidth=1.0,
-        label=f"fit: k goes with E_bar to the {fit.exponent:.2f}",
-    )
-    wanted = [
-        (
-            fit.modulus / _E_BAR,
-            float(fit.measured.load[-1]) / depth / unit,
-            fit.uncertainty / _E_BAR,
-        )
-        for fit in calibration.fits
-    ]
+    _power_law(axes, calibration.fits[0], np.linspace(moduli.min(), moduli.max(), 60))
+    _measured(axes, calibration.fits)
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
+    axes.set(xlabel="fictitious modulus E_bar (kgf/cm²)")
+    axes.set(ylabel="secant spring constant k (kgf/cm)")
+
+
+def _power_law(axes: Axes, fit: Fit, moduli: np.ndarray) -> None:
+    """Draw the fitted spring constant over E_bar (kgf/cm2)."""
+    stiffness = float(fit.load[-1] / fit.measured.depth[-1]) / _STIFFNESS
+    line = stiffness * (moduli / (fit.modulus / E_BAR)) ** fit.exponent
+    label = f"fit: k goes with E_bar to the {fit.exponent:.2f}"
+    axes.plot(moduli, line, color=TRANSMITTED, linewidth=1.0, label=label)
+
+
+def _measured(axes: Axes, fits: Sequence[Fit]) -> None:
+    """Draw the measured spring constants at the E_bar that they ask for, and at printed ones."""
+    stiffness = [fit.measured.stiffness / _STIFFNESS for fit in fits]
     axes.errorbar(
-        [x for x, _, _ in wanted],
-        [y for _, y, _ in wanted],
-        xerr=[e for _, _, e in wanted],
+        [fit.modulus / E_BAR for fit in fits],
+        stiffness,
+        xerr=[fit.uncertainty / E_BAR for fit in fits],
         fmt="s",
         color=ROCK,
         markersize=4.5,
         linewidth=1.0,
         label="measured k, at the E_bar found",
     )
-    if printed:
+    printed = [fit.measured.printed for fit in fits]
+    if any(modulus is None for modulus in printed):
+        text = f"measured, {stiffness[0]:.1f} kgf/cm"
+        reference_line(axes, stiffness[0], text, dashes=":")
+    else:
         axes.plot(
-            [printed[fit.measured.name] / _E_BAR for fit in calibration.fits],
-            [y for _, y, _ in wanted],
+            [modulus / E_BAR for modulus in printed if modulus is not None],
+            stiffness,
             "s",
             color=INK,
             markersize=4.5,
             markerfacecolor="none",
             label="measured k, at the E_bar printed in table 4",
         )
-    else:
-        reference_line(axes, wanted[0][1], f"measured, {wanted[0][1]:.1f} kgf/cm", dashes=":")
-    axes.axhline(0.0, color=GREY, linewidth=0.7)
-    axes.set(
-        xlabel="fictitious modulus E_bar (kgf/cm²)", ylabel="secant spring constant k (kgf/cm)"
-    )

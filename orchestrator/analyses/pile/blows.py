@@ -10,14 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockshed.components.common.component import Instance
 
 from ...sites.pile.preparation import PreparedPile
-from ..frame import Count
-
-Floats = NDArray[np.float64]
+from ..frame import Count, FloatArray
 
 FOOT = 0.3
 """Penetration (m) that blows are counted for."""
@@ -68,14 +65,14 @@ class Blow:
     set: float
     toe_displacement: float
     head_force: float
-    compression: Floats
-    tension: Floats
-    residual: Floats
+    compression: FloatArray
+    tension: FloatArray
+    residual: FloatArray
     transferred: float
     impact_energy: float
     unbalanced: float
     moving: float
-    traces: Mapping[str, Floats] = field(default_factory=dict)
+    traces: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
     def count(self) -> float | None:
@@ -182,7 +179,7 @@ _COUNTED = ("toe.set", "toe.position", _HEAD_ENERGY, "energy.residual", "energy.
 
 def _exchange(
     hammer: Instance, rod: Instance, begun: int, steps: int, step: float
-) -> dict[str, Floats]:
+) -> dict[str, FloatArray]:
     """Step hammer and rod in turn, and return the outputs of the rod over time.
 
     The hammer takes the wave that arrives at the head, the rod the force of the hammer.
@@ -201,7 +198,7 @@ def _exchange(
         rod.w[force] = hammer.w[from_hammer]
         rod.step(time, step)
         rows[number] = rod.w[kept]
-    traces: dict[str, Floats] = dict(zip(names, rows.T, strict=True))
+    traces: dict[str, FloatArray] = dict(zip(names, rows.T, strict=True))
     traces["time"] = step * np.arange(begun + 1.0, begun + steps + 1.0)
     return traces
 

@@ -42,7 +42,7 @@ class PileResult(Result):
 
     @property
     def name(self) -> str:
-        """Name of the site."""
+        """Name of the site, or of its file."""
         return self.pile.name
 
     def metric_list(self) -> list[Metric]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...sites.pile.preparation import prepare
 from ...sites.source import SiteLike
-from ..frame import Progress, counter, no_progress
+from ..frame import StageProgress, counter, no_progress
 from .blows import bearing_graph, drive
 from .result import PileResult
 
@@ -17,7 +17,7 @@ def pile(
     blows: int | None = None,
     folder: str | Path | None = None,
     pictures: bool = False,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> PileResult:
     """Compute blows on a driven pile or rod by the exact scheme of characteristics.
 

@@ -21,7 +21,7 @@ _GIF_SIZE, _GIF_COLOURS = 0.6, 256
 All frames have the colours of the first.
 """
 
-Picture = NDArray[np.uint8]
+MovieFrame = NDArray[np.uint8]
 """A frame, shape (height, width, 3)."""
 Draw = Callable[[int], Any]
 """Brings the figure to a frame, by its number."""
@@ -59,7 +59,7 @@ def write_animation(
 
 def _pictures(
     figure: Figure, frames: int, draw: Draw, moving: Sequence[Artist], count: Count
-) -> Iterator[Picture]:
+) -> Iterator[MovieFrame]:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     figure.set_layout_engine("none")
@@ -76,7 +76,7 @@ def _pictures(
         count(i + 1, frames)
 
 
-def _write_mp4(file: Path, pictures: Iterator[Picture]) -> None:
+def _write_mp4(file: Path, pictures: Iterator[MovieFrame]) -> None:
     import imageio
 
     writer: Any = imageio.get_writer(
@@ -93,7 +93,7 @@ def _write_mp4(file: Path, pictures: Iterator[Picture]) -> None:
             movie.append_data(picture[: picture.shape[0] // 2 * 2, : picture.shape[1] // 2 * 2])
 
 
-def _write_gif(file: Path, pictures: Iterator[Picture]) -> None:
+def _write_gif(file: Path, pictures: Iterator[MovieFrame]) -> None:
     from PIL import Image
 
     small: list[Image.Image] = []

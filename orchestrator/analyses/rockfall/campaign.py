@@ -21,9 +21,7 @@ from ...sites.rockfall.checks import reach
 from ...sites.rockfall.preparation import PreparedSlope
 from ...sites.rockfall.profile import Node, surface
 from ...sites.rockfall.site import Barrier, Line
-from ..frame import Count
-
-Floats = NDArray[np.float64]
+from ..frame import Count, FloatArray
 
 BLOCK = 500
 """Trials in a block: some milliseconds, after which Ctrl-C is heard."""
@@ -61,14 +59,14 @@ class Campaign:
 
     seed: int
     trials: int
-    w: Floats
-    x: Floats
+    w: FloatArray
+    x: FloatArray
     k: NDArray[np.int64]
     left: float
     right: float
-    lines: Floats
-    barriers: Floats
-    stations: Floats
+    lines: FloatArray
+    barriers: FloatArray
+    stations: FloatArray
     names: Sequence[str]
 
     @property
@@ -164,9 +162,9 @@ class TrialRecords:
         End of each trial.
     """
 
-    passages: Floats
+    passages: FloatArray
     peaks: NDArray[np.float32]
-    outcomes: Floats
+    outcomes: FloatArray
 
 
 def empty_records(campaign: Campaign, count: int) -> TrialRecords:

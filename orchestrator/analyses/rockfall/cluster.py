@@ -38,7 +38,7 @@ FEWEST, MOST = 1000, 20_000
 MOST_BYTES = 64 << 20
 """Largest size (bytes) of the records of a task."""
 TASKS = 8
-"""Tasks for each worker, so that all end at about the same time; fewer where they were too small."""
+"""Tasks for each worker, so that all end at about the same time; fewer if they were too small."""
 RETRIES = 2
 """Times that a block is computed again after an error; the death of a worker does not count."""
 CONNECT_TIMEOUT = 5.0

@@ -55,7 +55,7 @@ class PassageQuantity:
 
     @property
     def words(self) -> str:
-        """Name for a reader."""
+        """Name as a reader sees it."""
         return self.name.replace("_", " ")
 
 

@@ -30,7 +30,7 @@ from ...pictures.style import (
 from ...sites.rockfall.profile import surface
 from ...sites.rockfall.site import Barrier
 from ..drawing import drawn
-from ..frame import Count, Drawing, Progress, counter
+from ..frame import Count, Drawing, StageProgress, counter
 from .animation import FRAMES_PER_SECOND, write_animation
 from .passages import QUANTITIES, LinePassages, PassageQuantity
 from .replay import MODES, Replay, replay
@@ -340,7 +340,7 @@ def _end_histogram(result: "RockfallResult", x: NDArray[np.float64], axes: Axes)
 # --- replay ---
 
 
-def animate(result: "RockfallResult", folder: Path, progress: Progress) -> list[Path]:
+def animate(result: "RockfallResult", folder: Path, progress: StageProgress) -> list[Path]:
     """Write the animations of a campaign.
 
     Parameters
@@ -349,7 +349,7 @@ def animate(result: "RockfallResult", folder: Path, progress: Progress) -> list[
         With the trials that are to be animated, and the format.
     folder : Path
         Of the pictures; it is made where it is missing.
-    progress : Progress
+    progress : StageProgress
         Called for each frame.
 
     Returns

@@ -61,7 +61,7 @@ class RockfallResult(Result):
 
     @property
     def name(self) -> str:
-        """Name of the site."""
+        """Name of the site, or of its file."""
         return self.slope.name
 
     @cached_property

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
-from ..frame import Progress, counter, no_progress
+from ..frame import StageProgress, counter, no_progress
 from .animation_format import animation_format
 from .campaign import Executor, campaign_of, threads
 from .cluster import dask_workers
@@ -27,7 +27,7 @@ def rockfall(
     animation: str | None = None,
     folder: str | Path | None = None,
     pictures: bool = False,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> RockfallResult:
     """Compute the trials of rockfall on a slope.
 

@@ -20,7 +20,7 @@ QUAKE = 2.5e-3
 SHAFT_DAMPING, TOE_DAMPING = 0.16, 0.5
 """Damping of the soil (s/m) where none is set: Smith 1960, 0.05 and 0.15 s/ft."""
 
-Part = Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
+Fraction = Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
 """A number above 0 and up to 1."""
 
 
@@ -32,7 +32,7 @@ class DropHammer(Data):
 
     mass: Positive
     drop: Positive
-    efficiency: Part = 1.0
+    efficiency: Fraction = 1.0
 
 
 class HammerCushion(Data):
@@ -42,7 +42,7 @@ class HammerCushion(Data):
     """
 
     stiffness: Positive
-    restitution: Part = 1.0
+    restitution: Fraction = 1.0
 
 
 class Section(Data):
