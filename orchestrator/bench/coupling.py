@@ -49,15 +49,13 @@ def one_program() -> Contestant:
     return work
 
 
-def co_simulation(
-    coupling: Coupling, plain: bool = False, runtime: Runtime = Runtime.PYTHON
-) -> Contestant:
+def co_simulation(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> Contestant:
     """The exchanges of a co-simulation, rows of results in memory included, without its preparation and without writing files."""
     system = lab(coupling, runtime)
 
     def work() -> float:
         with tempfile.TemporaryDirectory() as folder:
-            run = simulate(system, Path(folder) / "run", plain=plain)
+            run = simulate(system, Path(folder) / "run")
         return float(run.provenance["cpu_time"]["exchanges"])
 
     return work
@@ -69,12 +67,11 @@ AS_NATIVE = {"NUMBA_CPU_NAME": CPU.name, "NUMBA_CPU_FEATURES": ""}
 
 
 def contestants(baseline: Peer) -> Mapping[str, Contestant]:
-    """The one program, and the co-simulation with both exchange steps, drivers and runtimes; native only with a compiler."""
+    """The one program, and the co-simulation with both exchange steps and runtimes; native only with a compiler."""
     common = {
         "one program": one_program(),
         "paper": co_simulation("paper"),
         "impulse": co_simulation("impulse"),
-        "paper, plain calls": co_simulation("paper", plain=True),
     }
     try:
         return {
@@ -82,9 +79,6 @@ def contestants(baseline: Peer) -> Mapping[str, Contestant]:
             "one program, baseline": baseline.contestant(""),
             "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
             "impulse, native": co_simulation("impulse", runtime=Runtime.NATIVE),
-            "paper, native, plain calls": co_simulation(
-                "paper", plain=True, runtime=Runtime.NATIVE
-            ),
         }
     except BuildError:
         return common

@@ -14,10 +14,11 @@ from rockshed import components
 from rockshed.components.common.component import Component
 from rockshed.fmus.build import Runtime, build_component
 
-from ..core.loop.exchange import State, make_driver
+from ..core.loop.buses import Buses
+from ..core.loop.exchange import ExchangeLoop
 from ..core.loop.initialisation import free, initialise, instantiate
 from ..core.run import sources_of
-from ..core.system.plan import make_plan
+from ..core.system.planning import make_plan
 from ..core.system.system import system_from
 from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
@@ -95,21 +96,22 @@ class Pair:
         plan = make_plan(system, sources)
         slaves = instantiate(plan, sources)
         self._stack.callback(free, slaves.values())
-        state = State(plan)
-        initialise(plan, slaves, state)
-        state.open_accounts()
-        driver, begun = make_driver(state, slaves), 0
+        buses = Buses(plan)
+        initialise(slaves, buses)
+        buses.open_accounts()
+        loop = ExchangeLoop(buses, slaves)
+        begun = 0
 
         def work() -> float:
             nonlocal begun
             took = 0.0
             for _ in range(self.steps // _AT_ONCE):
                 begin = time.perf_counter()
-                fault = driver.advance(begun, _AT_ONCE)
+                fault = loop.advance(begun, _AT_ONCE)
                 took += time.perf_counter() - begin
                 assert fault is None, fault
                 begun += _AT_ONCE
-            assert state.outputs[0] == _SETTLED
+            assert buses.outputs[0] == _SETTLED
             return took
 
         return work

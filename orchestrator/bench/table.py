@@ -81,10 +81,8 @@ def coupling_rows(rounds: int) -> Iterator[Row]:
     for name, title, goal in (
         ("paper", "co-simulation, exchange 1e-5 s", 4.0),
         ("impulse", "co-simulation, exchange 1e-4 s, impulse-conserving", 1.3),
-        ("paper, plain calls", "co-simulation, exchange 1e-5 s, plain calls", None),
         ("paper, native", "native co-simulation, exchange 1e-5 s", 1.05),
         ("impulse, native", "native co-simulation, exchange 1e-4 s, impulse-conserving", None),
-        ("paper, native, plain calls", "native co-simulation, exchange 1e-5 s, plain calls", None),
     ):
         if name in contestants:
             native = name.endswith("native")
