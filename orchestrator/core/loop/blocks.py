@@ -35,7 +35,7 @@ class Block:
 
     @cached_property
     def places(self) -> slice:
-        """Places of the values."""
+        """Places of the values in the row."""
         return slice(self.begin, self.begin + self.references.size)
 
 

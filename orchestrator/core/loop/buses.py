@@ -71,7 +71,7 @@ class Buses:
 
     @cached_property
     def operations(self) -> list[Operation]:
-        """All operations of a period, and behind them those that read what is recorded."""
+        """Operations of a period, and behind them those that read what is recorded."""
         return [
             *(operation for exchange in self.plan.schedule.operations for operation in exchange),
             *(Operation(Action.RECORD, name) for name in self.snapshots.blocks),

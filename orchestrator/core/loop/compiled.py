@@ -19,7 +19,8 @@ from ..system.clock import TICKS_PER_SECOND
 from ..system.schedule import Action
 from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
 
-_SET, _STEP = int(Action.SET), int(Action.STEP)
+_SET = int(Action.SET)
+_STEP = int(Action.STEP)
 _WARNING = WARNING
 _TICKS_PER_SECOND = float(TICKS_PER_SECOND)
 
@@ -41,7 +42,9 @@ def _pointer(builder: Any, value: Any) -> Any:
 
 
 @_intrinsic
-def _call_move(_context, function, instance, references, count, values):  # type: ignore[no-untyped-def]
+def _call_move(  # type: ignore[no-untyped-def]
+    _context, function, instance, references, count, values
+):
     """Call a C function at an address.
 
     ``int function(void* instance, const unsigned* references, size_t count, void* values)``
@@ -67,7 +70,8 @@ def _call_step(_context, function, instance, time, step):  # type: ignore[no-unt
     """
 
     def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        real, integer = ir.DoubleType(), ir.IntType(32)
+        real = ir.DoubleType()
+        integer = ir.IntType(32)
         kind = ir.FunctionType(integer, [ir.IntType(8).as_pointer(), real, real, integer])
         f, c, t, h = arguments
         return builder.call(
@@ -92,7 +96,8 @@ def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
         channel["taken"] += inputs[channel["given"]] * (position - channel["last_position"])
         channel["last_position"] = position
         if channel["seen"] >= 0:
-            seen, force = inputs[channel["seen"]], outputs[channel["force"]]
+            seen = inputs[channel["seen"]]
+            force = outputs[channel["force"]]
             channel["given_back"] -= (
                 0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
             )

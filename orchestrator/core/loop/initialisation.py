@@ -59,7 +59,7 @@ def instantiate(
 
 
 def free(slaves: Iterable[Slave]) -> None:
-    """Give back all slaves."""
+    """Free slaves, in whatever state they are."""
     for slave in slaves:
         slave.free()
 

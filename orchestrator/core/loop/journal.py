@@ -16,7 +16,8 @@ from ..system.clock import to_seconds
 from ..system.schedule import Action, Operation, Schedule
 from .tables import Integers
 
-FILE, LEGEND = "journal.bin", "journal.json"
+FILE = "journal.bin"
+LEGEND = "journal.json"
 EXCHANGE, OPERATION = range(2)
 """Places in a journal."""
 _NOTHING = -1
@@ -42,7 +43,8 @@ class Journal:
     """
 
     def __init__(self, folder: Path, components: Sequence[str]) -> None:
-        self._folder, self._components = folder, list(components)
+        self._folder = folder
+        self._components = list(components)
         self.entries: Integers = np.zeros(2, np.int64)
         if _IS_FILE:
             self.entries = np.memmap(folder / FILE, np.int64, "w+", shape=(2,))

@@ -68,7 +68,7 @@ class Accounts:
 
     @property
     def described(self) -> list[Column]:
-        """Columns that :meth:`values` fills."""
+        """Columns that :meth:`values` fills, in order."""
         return [
             Column(f"coupling.{bond.name}.{name}", "J", description)
             for bond in self.plan.bonds

@@ -137,7 +137,7 @@ class Master:
         return self.exchanges == timing.exchanges
 
     def _record(self) -> None:
-        """Write a row now."""
+        """Take a row of the present values."""
         fault = self._loop.record(self.exchanges)
         if fault is not None:
             raise self._failure(fault) from fault.cause

@@ -1,4 +1,4 @@
-"""What is kept of a run: rows of the time series, and frames of serialized states."""
+"""Records of a run: rows of the time series, and frames of serialized states."""
 
 import time
 from collections.abc import Mapping

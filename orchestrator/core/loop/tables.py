@@ -24,8 +24,9 @@ def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
 
 
 OPERATION = _record("action instance do_step begin length first_move end_move")
-"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks, from
-the beginning of the period. first_move, end_move: rows in the table of moves, for other actions."""
+"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks,
+from the beginning of the period. first_move, end_move: rows in the table of moves, for other
+actions."""
 
 MOVE = _record("function instance references number begin whole")
 """A call that moves ``number`` values from place ``begin`` of a bus on. function, instance,

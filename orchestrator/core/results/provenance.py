@@ -68,7 +68,8 @@ def declarations(description: Description) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``contents`` of its states, ``pictures``, and ``variables``: roles, labels and figures of those
+        ``contents`` of its states, ``pictures``, and ``variables``: roles, labels and figures of
+        those
         that have any; of an array once, without the number of an element.
     """
     variables = {

@@ -177,7 +177,7 @@ class RunFolder:
         )
 
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
-        """Replace ``run.json``."""
+        """Replace ``run.json`` by other facts."""
         self.provenance = dict(provenance)
         write_json(self.running / RUN, self.provenance)
 
@@ -314,7 +314,7 @@ def _is_run_or_empty(folder: Path) -> bool:
 
 
 def read_columns(path: Path) -> list[Column]:
-    """Read a ``columns.csv``."""
+    """Read the columns of a run from ``columns.csv``."""
     with path.open(encoding="utf-8", newline="") as file:
         return [Column(**entry) for entry in csv.DictReader(file)]
 

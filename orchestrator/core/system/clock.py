@@ -1,4 +1,7 @@
-"""Time as whole ticks: steps add up exactly, and a time in seconds is computed from its tick and never accumulated."""
+"""Time as whole ticks: steps add up exactly.
+
+A time in seconds is computed from its tick and never accumulated.
+"""
 
 from decimal import Decimal
 from math import ulp

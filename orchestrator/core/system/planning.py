@@ -347,8 +347,8 @@ class _Planner:
                 return
             if agree is None:
                 self.warnings.append(
-                    f"{where}: units {source.port.unit_name} and {target.port.unit_name} are not defined in the "
-                    "model descriptions and are taken to be the same"
+                    f"{where}: units {source.port.unit_name} and {target.port.unit_name} are not "
+                    "defined in the model descriptions and are taken to be the same"
                 )
                 return
 
@@ -379,7 +379,10 @@ class _Planner:
         return starts
 
     def _parameters(self, name: str, spec: ComponentSpec) -> dict[str, Value]:
-        """Return the values of a component; one under an older name takes the place of that under the present one."""
+        """Return the values of a component.
+
+        One under an older name takes the place of that under the present one.
+        """
         if name not in self.descriptions:
             return spec.parameters
         present = {key: present_name(self.descriptions[name], key) for key in spec.parameters}
@@ -463,7 +466,8 @@ class _Planner:
             if is_joule(f.port.unit, p.port.unit) is False:
                 self._refuse(
                     where,
-                    f"{f.name} in {f.port.unit_name} times {p.name} in {p.port.unit_name} is no energy in J",
+                    f"{f.name} in {f.port.unit_name} times {p.name} in {p.port.unit_name} is no "
+                    "energy in J",
                     "name forces with positions and torques with angles, in SI units",
                 )
                 return

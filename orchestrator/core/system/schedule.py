@@ -2,8 +2,8 @@
 
 Values move at exchanges. A component whose step divides the exchange step is stepped several times
 in each; one whose step is m times the exchange step takes its inputs in the first and is stepped in
-the last of m exchanges: it holds its inputs over its own step, and shows its outputs when the others
-have reached the same time.
+the last of m exchanges: it holds its inputs over its own step, and shows its outputs when the
+others have reached the same time.
 """
 
 from collections.abc import Mapping, Sequence

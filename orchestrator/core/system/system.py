@@ -16,7 +16,7 @@ from ..errors import InputRefused, Problem
 from .names import matches, nearest
 
 Value = bool | int | float | str
-"""Value of a parameter or input. An item of an enumeration may be given by its name or its number."""
+"""Value of a parameter or input; of an enumeration, the name or the number of an item."""
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
@@ -96,7 +96,9 @@ class SharedValue(_Data):
 
 
 class PowerBond(_Data):
-    """An interface through which energy flows: the giver computes forces, the taker moves under them.
+    """An interface through which energy flows.
+
+    The giver computes forces, the taker moves under them.
 
     Attributes
     ----------

@@ -141,8 +141,8 @@ def _step_problems(key: str, step: int, exchange: int) -> list[Problem]:
     return [
         Problem(
             key,
-            f"{to_seconds(step):g} s neither divides the exchange step {to_seconds(exchange):g} s nor is a whole "
-            "multiple of it",
+            f"{to_seconds(step):g} s neither divides the exchange step {to_seconds(exchange):g} s "
+            "nor is a whole multiple of it",
             f"nearest are {near}",
         )
     ]
@@ -164,7 +164,8 @@ def _multiple_problems(
     return [
         Problem(
             key,
-            f"{to_seconds(origin + length):g} s is no whole number of steps of {to_seconds(step):g} s{after}",
+            f"{to_seconds(origin + length):g} s is no whole number of steps of "
+            f"{to_seconds(step):g} s{after}",
             f"nearest {'is' if len(near) == 1 else 'are'} "
             + " or ".join(f"{to_seconds(origin + n):.12g} s" for n in near),
         )
