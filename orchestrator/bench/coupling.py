@@ -23,7 +23,18 @@ END = 0.02
 
 
 def lab(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> System:
-    """Test 4 for 20 ms; rows of results every 0.1 ms as usual, but no states for pictures, which the one program has not either."""
+    """Return test 4 of the laboratory for 20 ms.
+
+    Rows of results every 0.1 ms as usual, but no states for pictures, which the one program has
+    not either.
+
+    Parameters
+    ----------
+    coupling : str
+        Scheme of exchange.
+    runtime : Runtime
+        Of the FMUs.
+    """
     names = {"rock": "FallingRock", "sand": "SandCushion", "beam": "RBSMBeam"}
     fmus = {key: str(build_if_needed(name, runtime=runtime)) for key, name in names.items()}
     system = lab_system(fmus, tests()[4], coupling)
@@ -37,7 +48,7 @@ def lab(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> System:
 
 
 def one_program() -> Contestant:
-    """The monolithic program, without its preparation."""
+    """Return the monolithic program as a contestant, without its preparation."""
     system = lab("paper")
 
     def work() -> float:
@@ -49,15 +60,23 @@ def one_program() -> Contestant:
     return work
 
 
-def co_simulation(
-    coupling: Coupling, plain: bool = False, runtime: Runtime = Runtime.PYTHON
-) -> Contestant:
-    """The exchanges of a co-simulation, rows of results in memory included, without its preparation and without writing files."""
+def co_simulation(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> Contestant:
+    """Return the exchanges of a co-simulation as a contestant.
+
+    Rows of results in memory count; its preparation and writing files do not.
+
+    Parameters
+    ----------
+    coupling : str
+        Scheme of exchange.
+    runtime : Runtime
+        Of the FMUs.
+    """
     system = lab(coupling, runtime)
 
     def work() -> float:
         with tempfile.TemporaryDirectory() as folder:
-            run = simulate(system, Path(folder) / "run", plain=plain)
+            run = simulate(system, Path(folder) / "run")
         return float(run.provenance["cpu_time"]["exchanges"])
 
     return work
@@ -65,16 +84,26 @@ def co_simulation(
 
 BASELINE = ("-m", f"{__package__}.monolithic_peer")
 AS_NATIVE = {"NUMBA_CPU_NAME": CPU.name, "NUMBA_CPU_FEATURES": ""}
-"""The one program as a :class:`~.peer.Peer`, compiled for the processor that native FMUs are compiled for."""
+"""The one program as a :class:`~.peer.Peer`, compiled for the processor of native FMUs."""
 
 
 def contestants(baseline: Peer) -> Mapping[str, Contestant]:
-    """The one program, and the co-simulation with both exchange steps, drivers and runtimes; native only with a compiler."""
+    """Return the one program, and the co-simulation with both exchange steps and runtimes.
+
+    Parameters
+    ----------
+    baseline : Peer
+        The one program for the processor of native FMUs.
+
+    Returns
+    -------
+    mapping of str to Contestant
+        Native FMUs are among them only where there is a compiler.
+    """
     common = {
         "one program": one_program(),
         "paper": co_simulation("paper"),
         "impulse": co_simulation("impulse"),
-        "paper, plain calls": co_simulation("paper", plain=True),
     }
     try:
         return {
@@ -82,9 +111,6 @@ def contestants(baseline: Peer) -> Mapping[str, Contestant]:
             "one program, baseline": baseline.contestant(""),
             "paper, native": co_simulation("paper", runtime=Runtime.NATIVE),
             "impulse, native": co_simulation("impulse", runtime=Runtime.NATIVE),
-            "paper, native, plain calls": co_simulation(
-                "paper", plain=True, runtime=Runtime.NATIVE
-            ),
         }
     except BuildError:
         return common

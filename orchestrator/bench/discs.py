@@ -1,4 +1,7 @@
-"""Price of the distinct elements: time per disc and step, beside LAMMPS on the same packing and the same kind of law."""
+"""Price of the distinct elements: time per disc and step.
+
+LAMMPS computes the same packing with the same kind of law.
+"""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -17,13 +20,15 @@ STEPS = {370: 2_700, 10_000: 100, 100_000: 20}
 """Steps of one measurement, by the number of discs."""
 
 WARM_UP = 10
-"""Steps before it, as in lammps_peer.py."""
+"""Steps before a measurement, as in lammps_peer.py."""
 
 STEP = 1e-5
 """Time step (s), that of the paper."""
 
 THERMAL = 0.01
-"""Standard deviation of the discs' velocity components at the start (m/s), so that contacts open, close and slide."""
+"""Standard deviation of the discs' velocity components at the start (m/s).
+
+Contacts then open, close and slide."""
 
 WIDTHS = {370: 0.37, 10_000: 1.0, 100_000: 4.0}
 """Box widths (m) of a square packing of discs of 1 cm, by the number of discs."""
@@ -33,7 +38,15 @@ THREADED = 100_000
 
 
 def stirred_cushion(discs: int) -> Instance:
-    """A settled square packing on the floor between side walls, given random velocities; energy bookkeeping is always on."""
+    """Return a settled square packing on the floor between side walls with random velocities.
+
+    Energy bookkeeping is always on.
+
+    Parameters
+    ----------
+    discs : int
+        One of the numbers in :data:`WIDTHS`.
+    """
     sand = COMPONENT.instance(discs=discs)
     for name, value in {
         "base": "floor",
@@ -52,7 +65,17 @@ def stirred_cushion(discs: int) -> Instance:
 def own_kernel(
     discs: int, threads: int = 1, clock: Callable[[], float] = process_time
 ) -> Contestant:
-    """The sand cushion's kernel, called directly; the time that it takes by a clock, of the processor unless another is given."""
+    """Return the sand cushion's kernel, called directly, as a contestant.
+
+    Parameters
+    ----------
+    discs : int
+        One of the numbers in :data:`WIDTHS`.
+    threads : int
+        Of the kernel.
+    clock : callable
+        Time (s); that of the processor by default.
+    """
     start = stirred_cushion(discs).to_bytes()
     sand = COMPONENT.instance(discs=discs)
 
@@ -72,12 +95,12 @@ LAMMPS = (str(Path(__file__).with_name("lammps_peer.py")),)
 
 
 def per_disc_and_step(seconds: float, discs: int) -> float:
-    """Nanoseconds per disc and step."""
+    """Return a time (s) in nanoseconds per disc and step."""
     return seconds / (STEPS[discs] * discs) * 1e9
 
 
 def contestants(peer: Peer | None) -> Mapping[str, Contestant]:
-    """Ours at every size, and LAMMPS' where it is there."""
+    """Return our kernel at every size, and LAMMPS where it is installed."""
     found: dict[str, Contestant] = {}
     for discs in WIDTHS:
         found[f"ours {discs}"] = own_kernel(discs)

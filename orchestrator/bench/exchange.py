@@ -1,4 +1,7 @@
-"""Price of a macro step: two relays with 50 inputs and 150 outputs each, in our loop and in other tools."""
+"""Price of a macro step in our loop and in other tools.
+
+Two relays have 50 inputs and 150 outputs each.
+"""
 
 import importlib
 import subprocess
@@ -7,38 +10,41 @@ import tempfile
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 from rockshed import components
 from rockshed.components.common.component import Component
 from rockshed.fmus.build import Runtime, build_component
 
-from ..core.loop.exchange import State, make_driver
+from ..core.loop.buses import Buses
+from ..core.loop.exchange import ExchangeLoop
 from ..core.loop.initialisation import free, initialise, instantiate
 from ..core.run import sources_of
-from ..core.system.plan import make_plan
-from ..core.system.system import system_from
+from ..core.system.planning import make_plan
+from ..core.system.system import System, system_from
+from ..versions import version_of
 from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
 
-OURS, BARE = "our loop", "ctypes"
+OURS = "our loop"
+BARE = "ctypes"
+"""Names of contestants: this program's loop, and a bare loop of calls."""
 PEERS: Mapping[str, str] = {
     BARE: "fmpy",
     "fmpy": "fmpy",
     "libcosim": "libcosimpy",
     "ecos": "ecospy",
 }
-"""Other tools by the names of :mod:`rockshed.bench.exchange_peer`, and the package that brings each."""
+"""Other tools by the names of :mod:`rockshed.bench.exchange_peer`, and the package of each."""
 _STEPS = {Runtime.NATIVE: 10_000, Runtime.PYTHON: 1000}
 """Macro steps of one measurement."""
 _AT_ONCE = 1000
 _SETTLED = 2.0
-"""What both relays show in the end if they are connected: half of it and one is the same again."""
+"""Outputs of both relays in the end if they are connected: half of it and one is the same again."""
 
 
 def relay() -> Component:
-    """The component of the folder ``pair``, imported as if it lay among the others."""
+    """Import the component of the folder ``pair`` as if it lay among the others."""
     here = str(Path(__file__).parent)
     components.__path__.append(here)
     try:
@@ -50,12 +56,28 @@ def relay() -> Component:
 
 
 class Pair:
-    """The two relays of a runtime in every tool, for so many measurements. A context manager.
+    """The two relays of a runtime in every tool. A context manager.
 
-    contestants: those that there are. missing: why a tool is not among them. steps: of one measurement.
+    Parameters
+    ----------
+    runtime : Runtime
+        Of the FMUs.
+    measurements : int
+        How often our loop may be measured.
 
-    Raises:
-        BuildError: the FMU cannot be built.
+    Attributes
+    ----------
+    contestants : dict of str to Contestant
+        Those that there are.
+    missing : dict of str to str
+        Tools that are not among them, and why.
+    steps : int
+        Macro steps of one measurement.
+
+    Raises
+    ------
+    BuildError
+        The FMU cannot be built.
     """
 
     def __init__(self, runtime: Runtime, measurements: int) -> None:
@@ -78,54 +100,54 @@ class Pair:
         self._stack.close()
 
     def _own_loop(self, measurements: int) -> Contestant:
-        """All outputs are recorded in every macro step; writing them to files does not count."""
-        system = system_from(
-            {
-                "name": "pair",
-                "components": {name: {"fmu": str(self._file)} for name in "ab"},
-                "master": "jacobi",
-                "connections": [
-                    f"{one}.y[1..{INPUTS}] -> {other}.u[1..{INPUTS}]" for one, other in ("ab", "ba")
-                ],
-                "exchange_step": STEP,
-                "stop_time": measurements * self.steps * STEP,
-            }
-        )
+        """Return our loop as a contestant.
+
+        All outputs are recorded in every macro step; writing them to files does not count.
+        """
+        system = self._system(measurements)
         sources = sources_of(system)
         plan = make_plan(system, sources)
         slaves = instantiate(plan, sources)
         self._stack.callback(free, slaves.values())
-        state = State(plan)
-        initialise(plan, slaves, state)
-        state.open_accounts()
-        driver, begun = make_driver(state, slaves), 0
+        buses = Buses(plan)
+        initialise(slaves, buses)
+        buses.open_accounts()
+        loop = ExchangeLoop(buses, slaves)
+        begun = 0
 
         def work() -> float:
             nonlocal begun
             took = 0.0
             for _ in range(self.steps // _AT_ONCE):
                 begin = time.perf_counter()
-                fault = driver.advance(begun, _AT_ONCE)
+                fault = loop.advance(begun, _AT_ONCE)
                 took += time.perf_counter() - begin
                 assert fault is None, fault
                 begun += _AT_ONCE
-            assert state.outputs[0] == _SETTLED
+            assert buses.outputs[0] == _SETTLED
             return took
 
         return work
 
+    def _system(self, measurements: int) -> System:
+        wires = [f"{one}.y[1..{INPUTS}] -> {other}.u[1..{INPUTS}]" for one, other in ("ab", "ba")]
+        return system_from(
+            {
+                "name": "pair",
+                "components": {name: {"fmu": str(self._file)} for name in "ab"},
+                "master": "jacobi",
+                "connections": wires,
+                "exchange_step": STEP,
+                "stop_time": measurements * self.steps * STEP,
+            }
+        )
+
     def _peer(self, tool: str, package: str) -> Contestant:
-        try:
-            distribution(package)
-        except PackageNotFoundError:
-            raise _MissingError("not installed") from None
+        if version_of(package) is None:
+            raise _MissingError("not installed")
+        script = str(Path(__file__).with_name("exchange_peer.py"))
         process = subprocess.Popen(
-            [
-                sys.executable,
-                str(Path(__file__).with_name("exchange_peer.py")),
-                tool,
-                str(self._file),
-            ],
+            [sys.executable, script, tool, str(self._file)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -134,20 +156,26 @@ class Pair:
         self._stack.callback(_end, process)
 
         def work() -> float:
-            assert process.stdin is not None
-            assert process.stdout is not None
-            try:
-                process.stdin.write(f"{self.steps}\n")
-                process.stdin.flush()
-                seconds, output = map(float, process.stdout.readline().split())
-            except (OSError, ValueError):
-                raise _MissingError(_last_words(process)) from None
+            seconds, output = _ask(process, self.steps)
             if abs(output - _SETTLED) > 1e-12:
                 raise _MissingError(f"does not connect them: {output} instead of {_SETTLED}")
             return seconds
 
         work()
         return work
+
+
+def _ask(process: "subprocess.Popen[str]", steps: int) -> tuple[float, float]:
+    """Let a tool carry out so many macro steps; return its time (s) and an output."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    try:
+        process.stdin.write(f"{steps}\n")
+        process.stdin.flush()
+        seconds, output = map(float, process.stdout.readline().split())
+    except (OSError, ValueError):
+        raise _MissingError(_last_words(process)) from None
+    return seconds, output
 
 
 class _MissingError(Exception):
@@ -161,5 +189,5 @@ def _end(process: "subprocess.Popen[str]") -> None:
 
 def _last_words(process: "subprocess.Popen[str]") -> str:
     process.kill()
-    said = process.communicate()[1].strip().splitlines()
-    return f"failed: {said[-1] if said else f'exit code {process.returncode}'}"
+    said = process.communicate()[1].strip().splitlines() or [f"exit code {process.returncode}"]
+    return f"failed: {said[-1]}"

@@ -1,8 +1,9 @@
-"""Other ways to let two relays exchange their values, each in a process of its own. Run as a script with tool and FMU file.
+"""Other ways to let two relays exchange their values, each in a process of its own.
 
-Answers a line with a number of macro steps with the seconds that they took and an output at their end. In each macro step both FMUs
-advance, all 150 outputs of each are read, and 50 of them are set in the other. The file is both FMUs. What goes wrong ends the
-process with the reason on stderr.
+Run as a script with tool and FMU file. Answers a line with a number of macro steps with the seconds
+that they took and an output at their end. In each macro step both FMUs advance, all 150 outputs of
+each are read, and 50 of them are set in the other. The file is both FMUs. An error ends the process
+with the reason on stderr.
 """
 
 import ctypes
@@ -14,7 +15,10 @@ from importlib.metadata import files
 from itertools import count
 from typing import Any
 
-INPUTS, OUTPUTS, STEP = 50, 150, 1e-3
+INPUTS = 50
+OUTPUTS = 150
+STEP = 1e-3
+"""Macro step (s)."""
 
 Run = Callable[[int], float]
 """Carries out so many macro steps, and returns an output."""
@@ -40,15 +44,18 @@ def _slaves(file: str) -> Iterator[Any]:
 
 
 def with_fmpy(file: str, _stack: ExitStack) -> Run:
-    """fmpy, as its documentation tells how."""
-    (a, b), times = _slaves(file), count()
-    given, shown = list(range(INPUTS)), list(range(INPUTS, INPUTS + OUTPUTS))
+    """Exchange with fmpy as in its documentation."""
+    a, b = _slaves(file)
+    times = count()
+    given = list(range(INPUTS))
+    shown = list(range(INPUTS, INPUTS + OUTPUTS))
 
     def run(steps: int) -> float:
         for n in (next(times) for _ in range(steps)):
             for slave in (a, b):
                 slave.doStep(currentCommunicationPoint=n * STEP, communicationStepSize=STEP)
-            from_a, from_b = a.getReal(shown), b.getReal(shown)
+            from_a = a.getReal(shown)
+            from_b = b.getReal(shown)
             a.setReal(given, from_b[:INPUTS])
             b.setReal(given, from_a[:INPUTS])
         return float(from_b[0])
@@ -57,26 +64,31 @@ def with_fmpy(file: str, _stack: ExitStack) -> Run:
 
 
 def with_ctypes(file: str, _stack: ExitStack) -> Run:
-    """A loop that does nothing but call the C functions with arrays that are there already."""
-    (a, b), times = _slaves(file), count()
-    refer = ctypes.c_uint * INPUTS, ctypes.c_uint * OUTPUTS
-    given, shown = refer[0](*range(INPUTS)), refer[1](*range(INPUTS, INPUTS + OUTPUTS))
+    """Exchange in a bare loop that calls the C functions with arrays made before."""
+    a, b = _slaves(file)
+    times = count()
+    given = (ctypes.c_uint * INPUTS)(*range(INPUTS))
+    shown = (ctypes.c_uint * OUTPUTS)(*range(INPUTS, INPUTS + OUTPUTS))
     in_a, in_b = (ctypes.c_void_p(slave.component) for slave in (a, b))
-    from_a, from_b = (
-        (ctypes.c_double * OUTPUTS)(),
-        (ctypes.c_double * OUTPUTS)(),
-    )  # an input's values begin the other's outputs
-    few, many, real = ctypes.c_size_t(INPUTS), ctypes.c_size_t(OUTPUTS), ctypes.c_double
-    # what Python code inside needs is that the interpreter is not let go
+    # an input's values begin the other's outputs
+    from_a = (ctypes.c_double * OUTPUTS)()
+    from_b = (ctypes.c_double * OUTPUTS)()
+    few = ctypes.c_size_t(INPUTS)
+    many = ctypes.c_size_t(OUTPUTS)
+    # Python code inside needs that the interpreter is not let go
     library_a, library_b = (ctypes.PyDLL(None, handle=slave.dll._handle) for slave in (a, b))
-    step_a, get_a, set_a = library_a.fmi2DoStep, library_a.fmi2GetReal, library_a.fmi2SetReal
-    step_b, get_b, set_b = library_b.fmi2DoStep, library_b.fmi2GetReal, library_b.fmi2SetReal
-    length = real(STEP)
+    step_a = library_a.fmi2DoStep
+    step_b = library_b.fmi2DoStep
+    get_a = library_a.fmi2GetReal
+    get_b = library_b.fmi2GetReal
+    set_a = library_a.fmi2SetReal
+    set_b = library_b.fmi2SetReal
+    length = ctypes.c_double(STEP)
 
     def run(steps: int) -> float:
         worst = 0
         for n in (next(times) for _ in range(steps)):
-            time_now = real(n * STEP)
+            time_now = ctypes.c_double(n * STEP)
             worst |= step_a(in_a, time_now, length, 1)
             worst |= step_b(in_b, time_now, length, 1)
             worst |= get_a(in_a, shown, many, from_a)
@@ -97,7 +109,7 @@ def _connections() -> Iterator[tuple[str, str, int]]:
 
 
 def with_libcosim(file: str, _stack: ExitStack) -> Run:
-    """libcosim with its fixed-step algorithm."""
+    """Exchange with libcosim by its fixed-step algorithm."""
     from libcosimpy.CosimEnums import CosimVariableType
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
@@ -122,7 +134,7 @@ def with_libcosim(file: str, _stack: ExitStack) -> Run:
 
 
 def with_ecos(file: str, stack: ExitStack) -> Run:
-    """ecos with its fixed-step algorithm."""
+    """Exchange with ecos by its fixed-step algorithm."""
     for part in files("tbb") or []:
         if part.name == "libtbb.so.12":
             ctypes.CDLL(str(part.locate()))
@@ -153,7 +165,7 @@ TOOLS: Mapping[str, Callable[[str, ExitStack], Run]] = {
 
 
 def main() -> None:
-    """Answer until the input ends."""
+    """Answer lines until the input ends."""
     tool, file = sys.argv[1:]
     with ExitStack() as stack:
         run = TOOLS[tool](file, stack)

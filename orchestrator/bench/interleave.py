@@ -1,4 +1,7 @@
-"""Timing on a machine that others use too: all contestants in turn, round after round, compared within each round."""
+"""Timing on a machine that others use too.
+
+All contestants work in turn, round after round, and are compared within each round.
+"""
 
 import statistics
 from collections.abc import Callable, Mapping, Sequence
@@ -10,21 +13,36 @@ Contestant = Callable[[], float]
 
 @dataclass(frozen=True)
 class Times:
-    """Seconds of each contestant in each round; rounds have the same place in all lists."""
+    """Seconds of each contestant in each round.
+
+    Rounds have the same place in all lists.
+    """
 
     seconds: Mapping[str, Sequence[float]]
 
     def median(self, name: str) -> float:
-        """Median of a contestant's times (s)."""
+        """Return the median of a contestant's times (s)."""
         return statistics.median(self.seconds[name])
 
     def ratio(self, name: str, reference: str) -> float:
-        """Median over the rounds of one contestant's time as a multiple of another's in the same round."""
+        """Return the median over the rounds of one time as a multiple of another in its round."""
         return statistics.median(a / b for a, b in zip(self.seconds[name], self.seconds[reference]))
 
 
 def interleave(contestants: Mapping[str, Contestant], rounds: int) -> Times:
-    """Let each contestant work once in every round, after one round that does not count."""
+    """Let each contestant work once in every round, after one round that does not count.
+
+    Parameters
+    ----------
+    contestants : mapping of str to Contestant
+        Who takes turns.
+    rounds : int
+        How many count.
+
+    Returns
+    -------
+    Times
+    """
     seconds: dict[str, list[float]] = {name: [] for name in contestants}
     for number in range(rounds + 1):
         for name, work in contestants.items():

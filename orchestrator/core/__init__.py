@@ -1,1 +1,4 @@
-"""The co-simulation core: drives any FMI 2.0 co-simulation FMU. It knows an FMU by its model description and the FMI calls only."""
+"""The co-simulation core: drives any FMU for co-simulation of FMI 2.0.
+
+It knows an FMU by its model description and the FMI calls only.
+"""

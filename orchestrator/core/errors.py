@@ -9,9 +9,16 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong: where, what, and what to do about it.
+    """One thing that is wrong.
 
-    where: ``component.port``, or the path of a key in the system file.
+    Attributes
+    ----------
+    where : str
+        ``component.port``, or the path of a key in a file.
+    what : str
+        Reason.
+    remedy : str
+        Something to do about it; empty where none is known.
     """
 
     where: str
@@ -23,7 +30,13 @@ class Problem:
 
 
 class InputRefused(Exception):  # noqa: N818 (it says what happened, not that it is an error)
-    """What was asked for cannot be run. ``problems`` holds every reason found; nothing has been computed."""
+    """A request cannot be carried out; nothing has been computed.
+
+    Attributes
+    ----------
+    problems : list of Problem
+        Every reason.
+    """
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = list(problems)
@@ -47,7 +60,8 @@ class RunFailed(Exception):  # noqa: N818
     run: Any = None
 
     def __init__(self, component: str, time: float, what: str) -> None:
-        self.component, self.time = component, time
+        self.component = component
+        self.time = time
         super().__init__(f"{component} at t = {time:.9g} s: {what}")
 
 

@@ -1,7 +1,7 @@
 """Run a system from its data to its results: the one function that an application needs."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -10,7 +10,7 @@ from typing import Any
 from .errors import RunFailed
 from .fmu.fmu_slave import FmuFile
 from .fmu.slave import FATAL, Slave, Source
-from .loop.exchange import State, make_driver
+from .loop.buses import Buses
 from .loop.initialisation import free, initialise, instantiate
 from .loop.journal import Journal
 from .loop.ledger import Accounts
@@ -21,12 +21,13 @@ from .results.provenance import describe_run
 from .results.reading import Run, read_run
 from .results.run_folder import RunFolder
 from .system.clock import to_seconds
-from .system.plan import Plan, make_plan
+from .system.plan import Plan
+from .system.planning import make_plan
 from .system.system import System
 
 
 def sources_of(system: System) -> dict[str, Source]:
-    """The FMU files of a system."""
+    """Return the FMU files of a system by component."""
     return {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
 
 
@@ -36,24 +37,45 @@ def simulate(
     *,
     sources: Mapping[str, Source] | None = None,
     allow_unstable: bool = False,
-    plain: bool = False,
     progress: Progress | None = None,
     facts: Mapping[str, Any] | None = None,
 ) -> Run:
-    """Run a system and write its results into ``folder``. Ctrl-C ends the run and keeps what was computed.
+    """Run a system and write its results into a folder.
 
-    sources: what to make components from instead of their FMU files.
-    plain: call the slaves one by one from Python instead of in the compiled loop.
-    facts: added to the run's provenance.
+    Ctrl-C ends the run and keeps what was computed. Everything happens in the calling process:
+    code of an FMU that crashes takes it along (the command ``rockshed run`` does not die of it).
 
-    Raises:
-        InputRefused: the system, the FMUs' answer to it, or the folder; nothing is left behind.
-        RunFailed: the run began and could not go on; the results until then are in the folder.
+    Parameters
+    ----------
+    system : System
+        Components, connections and times.
+    folder : Path
+        Folder of the run. An earlier run in it is replaced at the end.
+    sources : mapping of str to Source, optional
+        Makers of components in the place of their FMU files.
+    allow_unstable : bool
+        Warn of steps that are too long, and do not refuse them.
+    progress : callable, optional
+        Called now and then with the time reached and the stop time (s).
+    facts : mapping, optional
+        Added to the provenance of the run.
+
+    Returns
+    -------
+    Run
+        Complete or interrupted.
+
+    Raises
+    ------
+    InputRefused
+        The system, the FMUs' answer to it, or the folder; nothing is left behind.
+    RunFailed
+        The run began and could not go on; the results until then are in the folder.
     """
     made_from = {**sources_of(system), **(sources or {})}
     plan = make_plan(system, made_from)
     with Interruption() as interruption, RunFolder(folder) as results:
-        session = _Session(plan, made_from, results, plain)
+        session = _Session(plan, made_from, results)
         try:
             session.prepare(allow_unstable, dict(facts or {}))
             session.run(interruption, progress)
@@ -69,38 +91,27 @@ class _Session:
     plan: Plan
     sources: Mapping[str, Source]
     results: RunFolder
-    plain: bool
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         """Make and initialise the slaves, then open the results."""
         began = time.perf_counter()
-        self.journal = Journal(self.results.running, self.plan.order)
-        self.slaves = instantiate(self.plan, self.sources, self.journal.prepares)
-        state = State(self.plan, self.journal.entries)
-        self.warnings = [
-            *facts.get("warnings", ()),
-            *self.plan.warnings,
-            *initialise(self.plan, self.slaves, state, allow_unstable, self.journal.prepares),
-        ]
+        plan = self.plan
+        self.journal = Journal(self.results.running, plan.order)
+        self.slaves = instantiate(plan, self.sources, self.journal.prepares)
+        buses = Buses(plan, self.journal.entries)
+        initial = initialise(self.slaves, buses, allow_unstable, self.journal.prepares)
+        self.warnings = [*plan.warnings, *initial]
         self.initialised = True
-        self.accounts = Accounts(self.plan, self.slaves, state)
-        recorder = Recorder(self.plan, self.slaves, state.snapshots, self.accounts, self.results)
-        self.watched = state.watched
-        self.master = Master(
-            self.plan, self.slaves, state, make_driver(state, self.slaves, self.plain), recorder
-        )
-        self.journal.legend(
-            state.operations,
-            self.plan.timing.start,
-            self.plan.timing.exchange,
-            self.plan.schedule.period,
-        )
+        self.accounts = Accounts(self.slaves, buses)
+        recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results)
+        self.watched = buses.watched
+        self.master = Master(self.slaves, buses, recorder)
+        self.journal.legend(buses.operations, plan.timing.start, plan.schedule)
         self.preparation = time.perf_counter() - began
-        self.results.begin(
-            recorder.columns, {**describe_run(self.plan, self.sources, self.slaves), **facts}
-        )
+        known = describe_run(plan, self.sources, self.slaves)
+        self.results.begin(recorder.columns, {**known, **facts})
 
     def run(self, interruption: Interruption, progress: Progress | None) -> None:
         """Carry out the exchanges and finish the results, also those of a run that fails."""
@@ -108,11 +119,12 @@ class _Session:
         try:
             status = "complete" if self.master.run(interruption, progress) else "interrupted"
         except RunFailed as error:
-            status, failure = "failed", error
+            status = "failed"
+            failure = error
         self.journal.close()
         self.results.finish(
             status,
-            self._figures(),
+            self._metrics(),
             error=str(failure) if failure else None,
             ended=datetime.now(UTC).isoformat(),
             warnings=self.warnings + self.accounts.warnings,
@@ -126,35 +138,33 @@ class _Session:
         if failure is not None:
             raise failure
 
-    def _figures(self) -> list[Metric]:
-        timing, figures = self.plan.timing, list[Metric]()
-        for entry in self.watched:
-            end = self.plan.outputs[entry["place"]]
-            for which, bound in (("maximum", "high"), ("minimum", "low")):
-                figures += [
-                    Metric(f"{end.name} {which}", float(entry[bound]), end.port.unit_name),
-                    Metric(
-                        f"{end.name} {which} at", timing.seconds(int(entry[bound + "_at"])), "s"
-                    ),
-                ]
-            figures.append(
-                Metric(
-                    f"{end.name} integral",
-                    float(entry["area"]) * to_seconds(timing.exchange),
-                    "s" if end.port.unit_name == "1" else f"{end.port.unit_name}.s",
-                )
-            )
-        simulated = to_seconds(self.master.exchanges * timing.exchange)
+    def _metrics(self) -> list[Metric]:
+        simulated = to_seconds(self.master.exchanges * self.plan.timing.exchange)
         return [
-            *figures,
-            *self.accounts.figures(),
+            *(metric for entry in self.watched for metric in self._of_watched(entry)),
+            *self.accounts.metrics(),
             Metric("simulated time", simulated, "s"),
             Metric("exchanges", self.master.exchanges),
             Metric("wall time of the exchanges", self.master.wall_time, "s"),
         ]
 
+    def _of_watched(self, entry: Any) -> Iterator[Metric]:
+        """Extremes, their times, and the integral of a watched output."""
+        timing = self.plan.timing
+        end = self.plan.outputs[entry["place"]]
+        unit = end.port.unit_name
+        for which, bound in (("maximum", "high"), ("minimum", "low")):
+            at = timing.seconds(int(entry[f"{bound}_at"]))
+            yield Metric(f"{end.name} {which}", float(entry[bound]), unit)
+            yield Metric(f"{end.name} {which} at", at, "s")
+        area = float(entry["area"]) * to_seconds(timing.exchange)
+        yield Metric(f"{end.name} integral", area, "s" if unit == "1" else f"{unit}.s")
+
     def close(self) -> None:
-        """End and free all slaves; one that has failed beyond repair may not be called any more."""
+        """End and free all slaves.
+
+        One that has failed beyond repair may not be called any more.
+        """
         for slave in self.slaves.values():
             if self.initialised and all(status != FATAL for status, _ in slave.messages):
                 slave.terminate()

@@ -13,7 +13,8 @@ from ..core.fmu.description import Port
 from ..core.fmu.fmu_slave import READABLE, FmuFile, read_description
 from ..core.fmu.slave import REAL
 from ..core.run import sources_of
-from ..core.system.plan import Plan, make_plan
+from ..core.system.plan import Plan
+from ..core.system.planning import make_plan
 from ..core.system.system import System
 from ..core.system.values import written
 from ..tables import Table

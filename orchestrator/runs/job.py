@@ -284,7 +284,7 @@ def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem
         Empty if the system can be run.
     """
     from ..core.run import sources_of
-    from ..core.system.plan import make_plan
+    from ..core.system.planning import make_plan
 
     try:
         make_plan(system, {**sources_of(system), **sources})

@@ -3,6 +3,7 @@
 import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -161,6 +162,29 @@ class MockSlave:
 
     def free(self) -> None:
         pass
+
+
+class CalledBack:
+    """An FMU file whose instances hide their C functions, as slaves in Python that have none."""
+
+    def __init__(self, path: Any) -> None:
+        from rockshed.core.fmu.fmu_slave import FmuFile
+
+        self._file = FmuFile(path)
+        self.origin = self._file.origin
+
+    def model_description(self) -> bytes:
+        return self._file.model_description()
+
+    def instantiate(self, name: str) -> Any:
+        slave = self._file.instantiate(name)
+        slave.addresses = None
+        return slave
+
+
+def called_back(system: Any) -> dict[str, CalledBack]:
+    """The FMUs of a system, to be called through Python."""
+    return {name: CalledBack(Path(spec.fmu)) for name, spec in system.components.items()}
 
 
 def mass(weight: float = 1.0, position: float = 0.0, velocity: float = 0.0) -> Mock:

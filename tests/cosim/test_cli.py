@@ -476,7 +476,7 @@ def test_times_that_a_refusal_proposes_together_are_accepted(rockshed):
 
 def test_the_interval_that_a_refusal_proposes_is_accepted(rockshed):
     from rockshed.core.run import sources_of
-    from rockshed.core.system.plan import make_plan
+    from rockshed.core.system.planning import make_plan
     from rockshed.runs.job import Request, prepare
 
     system = prepare(

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,19 +19,21 @@ import sys
 from pathlib import Path
 from rockshed.core.run import simulate
 from rockshed.core.system.system import system_from
+from tests.cosim.mocks import called_back
 
-fmu, folder, plain = sys.argv[1:]
+fmu, folder, way = sys.argv[1:]
 system = system_from({"name": "slow", "components": {"a": {"fmu": fmu, "parameters": {"pause": 0.001}, "record_states": True}},
                       "exchange_step": 0.01, "stop_time": 1000.0, "state_interval": 0.1})
-run = simulate(system, Path(folder), plain=plain == "plain")
+run = simulate(system, Path(folder), sources=called_back(system) if way == "back" else {})
 print(run.status)
 """
 
 
-def start(fmu, folder, plain):
+def start(fmu, folder, way):
     """A run of a hundred seconds, once it has written its first rows."""
     process = subprocess.Popen(
-        [sys.executable, "-c", SCRIPT, str(fmu), str(folder), plain],
+        [sys.executable, "-c", SCRIPT, str(fmu), str(folder), way],
+        cwd=Path(__file__).parents[2],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -53,9 +56,9 @@ def is_sound(run):
     )
 
 
-@pytest.mark.parametrize("plain", ["plain", "compiled"])
-def test_ctrl_c_ends_the_run_and_keeps_everything(foreign, tmp_path, plain):
-    process = start(foreign, tmp_path / "run", plain)
+@pytest.mark.parametrize("way", ["back", "direct"])
+def test_ctrl_c_ends_the_run_and_keeps_everything(foreign, tmp_path, way):
+    process = start(foreign, tmp_path / "run", way)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=30)
     assert (process.returncode, out.strip()) == (0, "interrupted"), err
@@ -69,7 +72,7 @@ def test_ctrl_c_ends_the_run_and_keeps_everything(foreign, tmp_path, plain):
 
 
 def test_a_killed_run_can_be_read_and_its_folder_used_again(foreign, tmp_path):
-    process = start(foreign, tmp_path / "run", "compiled")
+    process = start(foreign, tmp_path / "run", "direct")
     process.kill()
     process.communicate(timeout=30)
     run = read_run(tmp_path / "run")

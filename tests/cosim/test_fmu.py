@@ -16,7 +16,7 @@ from rockshed.core.fmu.slave import BOOLEAN, DISCARD, ERROR, INTEGER, OK
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
 from rockshed.core.system.system import system_from
-from tests.cosim.mocks import Mock, inp, mass, out
+from tests.cosim.mocks import Mock, called_back, inp, mass, out
 
 RING = [
     "a.force -> b.speed",
@@ -44,10 +44,10 @@ def strangers(fmu, connections=(), **settings):
 
 
 def both_ways(system, folder, **rest):
-    """The same run with the plain and with the compiled driver."""
+    """The same run with calls back through Python, and with calls of the C functions."""
     return [
-        simulate(system, folder / way, plain=way == "plain", **rest)
-        for way in ("plain", "compiled")
+        simulate(system, folder / "back", sources=called_back(system), **rest),
+        simulate(system, folder / "direct", **rest),
     ]
 
 
@@ -96,14 +96,14 @@ def test_both_ways_give_the_same_bits(foreign, rock_fmu, tmp_path):
         "watch": ["rock.velocity.x", "damper.force"],
     }
     for master in ("sequential", "jacobi"):
-        plain, compiled = both_ways(system_from({**data, "master": master}), tmp_path)
-        assert len(plain.series) == len(compiled.series) > 15
-        for name, values in plain.series.items():
-            assert values.tobytes() == compiled.series[name].tobytes(), name
-        assert list(plain.states("rock")) == list(compiled.states("rock"))
-        keep = [m for m in plain.metrics.values() if "wall time" not in m.name]
-        assert keep == [m for m in compiled.metrics.values() if "wall time" not in m.name]
-        assert abs(plain.series["coupling.x.energy"][-1]) > 1e-4
+        back, direct = both_ways(system_from({**data, "master": master}), tmp_path)
+        assert len(back.series) == len(direct.series) > 15
+        for name, values in back.series.items():
+            assert values.tobytes() == direct.series[name].tobytes(), name
+        assert list(back.states("rock")) == list(direct.states("rock"))
+        keep = [m for m in back.metrics.values() if "wall time" not in m.name]
+        assert keep == [m for m in direct.metrics.values() if "wall time" not in m.name]
+        assert abs(back.series["coupling.x.energy"][-1]) > 1e-4
 
 
 def test_the_same_as_fmpy_alone(rock_fmu, tmp_path):
@@ -228,29 +228,23 @@ def test_a_damaged_state_is_refused_and_a_sound_one_still_taken(rock_fmu):
     slave.free()
 
 
-@pytest.mark.parametrize("plain", [True, False])
-def test_a_strangers_failure_is_told_in_its_own_words(foreign, tmp_path, plain):
+@pytest.mark.parametrize("sources", [called_back, lambda system: {}], ids=["back", "direct"])
+def test_a_strangers_failure_is_told_in_its_own_words(foreign, tmp_path, sources):
+    system = strangers(foreign, RING, parameters={"b": {"fail_at": 0.55}})
     with pytest.raises(
         RunFailed,
         match=r"b at t = 0\.5 s: the step by 0\.1 s failed \(Discard\): the damper is broken",
     ):
-        simulate(
-            strangers(foreign, RING, parameters={"b": {"fail_at": 0.55}}),
-            tmp_path / "run",
-            plain=plain,
-        )
+        simulate(system, tmp_path / "run", sources=sources(system))
     kept = read_run(tmp_path / "run")
     assert (kept.status, kept.series["time"][-1]) == ("failed", 0.5)
 
 
-@pytest.mark.parametrize("plain", [True, False])
-def test_a_strangers_nan_is_found_where_it_comes_from(foreign, tmp_path, plain):
+@pytest.mark.parametrize("sources", [called_back, lambda system: {}], ids=["back", "direct"])
+def test_a_strangers_nan_is_found_where_it_comes_from(foreign, tmp_path, sources):
+    system = strangers(foreign, RING, parameters={"a": {"nan_at": 0.75}})
     with pytest.raises(RunFailed, match=r"a at t = 0\.8 s: a\.force is no finite number"):
-        simulate(
-            strangers(foreign, RING, parameters={"a": {"nan_at": 0.75}}),
-            tmp_path / "run",
-            plain=plain,
-        )
+        simulate(system, tmp_path / "run", sources=sources(system))
 
 
 def test_an_error_logged_in_the_initialisation_is_a_refusal(foreign, tmp_path):

@@ -1,110 +1,59 @@
-"""The exchange loop in three forms side by side: as kept machine code, compiled by numba in this process, and call by call."""
+"""The exchange loop in three forms side by side: as kept machine code, compiled by numba in this
+process, and call by call with numpy. Slaves in Python are called back."""
 
-import ctypes
 import math
 
 import numpy as np
 import pytest
 
 from rockshed.bench.exchange import relay
-from rockshed.core.fmu.slave import BOOLEAN, INTEGER, REAL, Addresses
 from rockshed.core.loop import compiled as loop
-from rockshed.core.loop.exchange import CompiledDriver, PlainDriver, State
+from rockshed.core.loop.buses import Buses
+from rockshed.core.loop.exchange import ExchangeLoop
 from rockshed.core.loop.initialisation import free, initialise, instantiate
 from rockshed.core.loop.tables import NOT_FINITE
 from rockshed.core.run import sources_of
-from rockshed.core.system.plan import make_plan
+from rockshed.core.system.planning import make_plan
 from rockshed.core.system.system import system_from
 from rockshed.fmus.build import BuildError, Runtime, build_component
 from rockshed.fmus.native.fmu import compiler, own_platform
-from tests.cosim.mocks import Mock, MockSlave, inp, mass, out, spring, wired
-
-MOVE = ctypes.CFUNCTYPE(
-    ctypes.c_int, ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint), ctypes.c_size_t, ctypes.c_void_p
-)
-STEP = ctypes.CFUNCTYPE(
-    ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int
-)
+from tests.cosim.mocks import Mock, inp, mass, out, spring, wired
+from tests.cosim.reference_loop import ReferenceLoop
 
 
-class WithAddresses(MockSlave):
-    """A mock whose calls are C functions as well."""
-
-    def __init__(self, mock, name):
-        super().__init__(mock, name)
-        self._kept = {}
-        for kind, number in (
-            (REAL, ctypes.c_double),
-            (INTEGER, ctypes.c_int),
-            (BOOLEAN, ctypes.c_int),
-        ):
-            self._kept["set", kind], self._kept["get", kind] = (
-                MOVE(self._setter(kind, number)),
-                MOVE(self._getter(kind, number)),
-            )
-        self._kept["step"] = STEP(lambda _c, time, step, _k: self.step(time, step))
-
-        def address(*key):
-            return ctypes.cast(self._kept[key[0] if len(key) == 1 else key], ctypes.c_void_p).value
-
-        kinds = (REAL, INTEGER, BOOLEAN)
-        self.addresses = Addresses(
-            1,
-            {k: address("set", k) for k in kinds},
-            {k: address("get", k) for k in kinds},
-            address("step"),
-        )
-
-    def _setter(self, kind, number):
-        def call(_c, references, n, values):
-            given = (number * n).from_address(values)
-            return self.set(list(references[:n]), np.array(given[:], float), kind)
-
-        return call
-
-    def _getter(self, kind, number):
-        def call(_c, references, n, values):
-            found = np.zeros(n)
-            status = self.get(list(references[:n]), found, kind)
-            (number * n).from_address(values)[:] = [
-                number(int(v) if number is ctypes.c_int else v).value for v in found
-            ]
-            return status
-
-        return call
-
-
-class ByNumba(CompiledDriver):
+class ByNumba(ExchangeLoop):
     """The loop as numba compiles it, called by numba's own dispatcher."""
 
-    def __init__(self, state, slaves):
-        super().__init__(state, slaves)
+    def __init__(self, buses, slaves):
+        super().__init__(buses, slaves)
         self._loop = lambda _head, first, count: loop.advance(
             self._tables._replace(row=len(self._waiting)), first, count
         )
 
 
-def carried_out(driver, system, sources, parts):
-    """Everything that a driver leaves behind after so many exchanges in each part, and its fault."""
+def carried_out(form, system, sources, parts):
+    """Everything that a form of the loop leaves behind after so many exchanges in each part, and its fault."""
     plan = make_plan(system, sources)
     slaves = instantiate(plan, sources)
-    state = State(plan)
-    initialise(plan, slaves, state)
-    state.open_accounts()
-    made, first, fault = driver(state, slaves), 0, None
+    buses = Buses(plan)
+    initialise(slaves, buses)
+    buses.open_accounts()
+    made, first, fault = form(buses, slaves), 0, None
+    assert made.record(0) is None
+    buses.snapshots.waiting.append(0)
     for count in parts:
         fault = made.advance(first, count)
         first += count
         if fault is not None:
             break
-        state.snapshots.waiting.extend(state.snapshots.due(first - count, first))
-    rows = state.snapshots.rows[: len(state.snapshots.waiting)].copy()
+        buses.snapshots.waiting.extend(buses.snapshots.due(first - count, first))
+    rows = buses.snapshots.rows[: len(buses.snapshots.waiting)].copy()
     free(slaves.values())
     return {
-        "inputs": state.inputs,
-        "outputs": state.outputs,
-        "channels": state.channels,
-        "watched": state.watched,
+        "inputs": buses.inputs,
+        "outputs": buses.outputs,
+        "channels": buses.channels,
+        "watched": buses.watched,
         "rows": rows,
         "fault": np.array(
             [fault.exchange, fault.operation.action, fault.status] if fault else [], float
@@ -113,13 +62,13 @@ def carried_out(driver, system, sources, parts):
 
 
 def assert_the_same(system, sources, parts=(1, 10, 49)):
-    machine_code, by_numba, plain = (
-        carried_out(driver, system, sources(), parts)
-        for driver in (CompiledDriver, ByNumba, PlainDriver)
+    machine_code, by_numba, reference = (
+        carried_out(form, system, sources(), parts)
+        for form in (ExchangeLoop, ByNumba, ReferenceLoop)
     )
     for name, found in machine_code.items():
         assert found.tobytes() == by_numba[name].tobytes(), name
-        assert found.tobytes() == plain[name].tobytes(), name
+        assert found.tobytes() == reference[name].tobytes(), name
     return machine_code
 
 
@@ -139,24 +88,16 @@ def counter():
     )
 
 
-def callables(mocks):
-    for mock in mocks.values():
-        mock.instantiate = lambda name, mock=mock: WithAddresses(mock, name)
-    return mocks
-
-
 @pytest.mark.parametrize("master", ["sequential", "jacobi"])
 def test_mocks_of_all_kinds_and_rates_give_the_same_bits(master):
     def sources():
-        return callables(
-            {
-                "spring": spring(30.0, ends=2),
-                "a": mass(1.0, position=1.0),
-                "b": mass(3.0),
-                "c": counter(),
-                "d": counter(),
-            }
-        )
+        return {
+            "spring": spring(30.0, ends=2),
+            "a": mass(1.0, position=1.0),
+            "b": mass(3.0),
+            "c": counter(),
+            "d": counter(),
+        }
 
     system, _ = wired(
         sources(),
@@ -185,7 +126,7 @@ def test_mocks_of_all_kinds_and_rates_give_the_same_bits(master):
         },
     )
     found = assert_the_same(system, sources)
-    assert len(found["rows"]) == 20
+    assert len(found["rows"]) == 21
     assert abs(found["channels"]["taken"][0]) > 0.01
     assert found["watched"]["high"][1] == pytest.approx(1.0, abs=0.02)
 
@@ -203,13 +144,13 @@ def test_the_first_bad_status_ends_all_three_in_the_same_place(answer, status, e
         return None
 
     def sources():
-        return callables({"a": Mock([out("y")], step), "b": Mock([inp("x")])})
+        return {"a": Mock([out("y")], step), "b": Mock([inp("x")])}
 
     system, _ = wired(sources(), ["a.y -> b.x"] if exchanged else [], exchange_step=0.01)
     found = assert_the_same(system, sources)
     assert found["fault"][2] == status
     assert found["fault"][0] == pytest.approx(30, abs=1)
-    assert len(found["rows"]) == 11  # those of the parts before
+    assert len(found["rows"]) == 12  # the first one, and those of the parts before
 
 
 def test_native_fmus_give_the_same_bits(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
-from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
+from tests.cosim.mocks import Mock, MockSlave, inp, mass, out, par, spring, wired
 
 PAIR = [
     "spring.end1.force -> a.force",
@@ -19,9 +19,8 @@ PAIR = [
 
 
 def run(folder, connections, mocks, **settings):
-    plain = settings.pop("plain", True)
     system, sources = wired(mocks, connections, **settings)
-    return simulate(system, folder / "run", sources=sources, plain=plain)
+    return simulate(system, folder / "run", sources=sources)
 
 
 def pair(folder, step, master, stop=6.4, **settings):
@@ -294,3 +293,47 @@ def test_integrals_of_watched_outputs_count_every_exchange(tmp_path):
     assert result.series["a.y"].tolist() == [0.0, 0.0]
     assert result.metrics["a_y_integral"].value == pytest.approx(0.99**2 + 0.5 * 0.01 * 1.98)
     assert result.metrics["a_y_integral"].unit == "N.s"
+
+
+# ---------------------------------------------------------------------- slaves in Python
+
+
+def broken(error):
+    def step(v, t, h):
+        v["y"] = t
+        if t > 0.45:
+            raise error
+
+    return {"a": Mock([out("y")], step), "b": Mock([inp("x")])}
+
+
+def test_an_exception_in_a_slave_is_its_failure_with_the_exception_as_cause(tmp_path):
+    message = r"a at t = 0\.5 s: the step by 0\.1 s failed \(Error\): ValueError: torn apart"
+    with pytest.raises(RunFailed, match=message) as failure:
+        run(tmp_path, ["a.y -> b.x"], broken(ValueError("torn apart")))
+    assert isinstance(failure.value.__cause__, ValueError)
+    kept = read_run(tmp_path / "run")
+    assert kept.status == "failed"
+    assert kept.metrics["exchanges"].value == 5
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, SystemExit])
+def test_what_ends_the_program_is_no_failure_of_a_slave(tmp_path, error):
+    with pytest.raises(error):
+        run(tmp_path, ["a.y -> b.x"], broken(error()))
+    assert read_run(tmp_path / "run").status == "running"
+
+
+@pytest.mark.parametrize("call", ["set", "get"])
+def test_an_exception_while_values_are_moved_is_not_lost(tmp_path, call, monkeypatch):
+    def fail(slave, *_rest):
+        if any(made[0] == "step" for made in slave.mock.calls):
+            raise ZeroDivisionError("no number")
+        return original(slave, *_rest)
+
+    original = getattr(MockSlave, call)
+    monkeypatch.setattr(MockSlave, call, fail)
+    mocks = {"a": Mock([inp("x"), out("z")]), "b": Mock([out("y")])}
+    with pytest.raises(RunFailed, match=r"a at t = 0.*\(Error\): ZeroDivisionError") as failure:
+        run(tmp_path, ["b.y -> a.x"], mocks, watch=["a.z"])
+    assert isinstance(failure.value.__cause__, ZeroDivisionError)

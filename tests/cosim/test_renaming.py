@@ -7,7 +7,7 @@ from rockshed.components.common.ports import Layout, Variable, param
 from rockshed.components.common.ports import out as output
 from rockshed.core.fmu.fmu_slave import read_description
 from rockshed.core.run import simulate
-from rockshed.core.system.plan import make_plan
+from rockshed.core.system.planning import make_plan
 from rockshed.core.system.renaming import with_present_names
 from rockshed.core.system.system import System
 from rockshed.fmus.description import fmi2, fmi3

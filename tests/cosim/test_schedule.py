@@ -6,7 +6,7 @@ counts the operations of the exchange.
 
 import pytest
 
-from rockshed.core.system.schedule import Action, Operation, fits, nearest_steps, plan
+from rockshed.core.system.schedule import Action, Operation, fits, make_schedule, nearest_steps
 
 SET, STEP, GET = Action.SET, Action.STEP, Action.GET
 
@@ -30,7 +30,7 @@ def test_sequential():
     sand  |1i======2=======3o|
     rock  |            4i==5==6o|    the rock takes what the sand has reached at 10
     """
-    assert _told(plan(["sand", "rock"], {"sand": 10, "rock": 10}, 10, "sequential")) == [
+    assert _told(make_schedule(["sand", "rock"], {"sand": 10, "rock": 10}, 10, "sequential")) == [
         ["i sand", "sand 0+10", "o sand", "i rock", "rock 0+10", "o rock"]
     ]
 
@@ -41,7 +41,7 @@ def test_sequential_in_the_other_order():
     rock  |1i======2=======3o|
     sand  |            4i==5==6o|
     """
-    assert _told(plan(["rock", "sand"], {"sand": 10, "rock": 10}, 10, "sequential")) == [
+    assert _told(make_schedule(["rock", "sand"], {"sand": 10, "rock": 10}, 10, "sequential")) == [
         ["i rock", "rock 0+10", "o rock", "i sand", "sand 0+10", "o sand"]
     ]
 
@@ -52,7 +52,7 @@ def test_jacobi():
     sand  |1i=====3========5o|
     rock  |2i=====4========6o|       both take the values of tick 0
     """
-    assert _told(plan(["sand", "rock"], {"sand": 10, "rock": 10}, 10, "jacobi")) == [
+    assert _told(make_schedule(["sand", "rock"], {"sand": 10, "rock": 10}, 10, "jacobi")) == [
         ["i sand", "i rock", "sand 0+10", "rock 0+10", "o sand", "o rock"]
     ]
 
@@ -63,7 +63,7 @@ def test_a_fast_component_is_stepped_several_times_with_the_inputs_held():
     sand  |1i=====2=====3o|
     beam  |4i=5=|=6==|=7==8o|
     """
-    assert _told(plan(["sand", "beam"], {"sand": 6, "beam": 2}, 6, "sequential")) == [
+    assert _told(make_schedule(["sand", "beam"], {"sand": 6, "beam": 2}, 6, "sequential")) == [
         ["i sand", "sand 0+6", "o sand", "i beam", "beam 0+2", "beam 2+2", "beam 4+2", "o beam"]
     ]
 
@@ -74,7 +74,7 @@ def test_a_slow_component_holds_its_inputs_and_shows_its_outputs_when_the_others
     slow   |1i...............1==2==o|     stepped in the second exchange, from 0 to 20
     quick  |2i==3==4o|3i==4==5o|           at 10 it still has the slow one's outputs of 0
     """
-    assert _told(plan(["slow", "quick"], {"slow": 20, "quick": 10}, 10, "sequential")) == [
+    assert _told(make_schedule(["slow", "quick"], {"slow": 20, "quick": 10}, 10, "sequential")) == [
         ["i slow", "i quick", "quick 0+10", "o quick"],
         ["slow 0+20", "o slow", "i quick", "quick 10+10", "o quick"],
     ]
@@ -86,7 +86,7 @@ def test_a_slow_component_under_jacobi():
     slow   |1i...............1==...3o|
     quick  |2i==3==4o|.....2i=2==..4o|
     """
-    assert _told(plan(["slow", "quick"], {"slow": 20, "quick": 10}, 10, "jacobi")) == [
+    assert _told(make_schedule(["slow", "quick"], {"slow": 20, "quick": 10}, 10, "jacobi")) == [
         ["i slow", "i quick", "quick 0+10", "o quick"],
         ["i quick", "slow 0+20", "quick 10+10", "o slow", "o quick"],
     ]
@@ -99,7 +99,9 @@ def test_three_rates_repeat_after_their_common_period():
     three  |i.............o|i.............o|
     fast   |i==o|i==o|i==o|i==o|i==o|i==o|        two steps of 2 each
     """
-    schedule = plan(["two", "three", "fast"], {"two": 8, "three": 12, "fast": 2}, 4, "sequential")
+    schedule = make_schedule(
+        ["two", "three", "fast"], {"two": 8, "three": 12, "fast": 2}, 4, "sequential"
+    )
     assert schedule.period == 6
     told = _told(schedule)
     assert [[word for word in exchange if word.startswith("two ")] for exchange in told] == [
@@ -124,7 +126,7 @@ def test_three_rates_repeat_after_their_common_period():
 @pytest.mark.parametrize("scheme", ["sequential", "jacobi"])
 def test_every_component_covers_the_whole_period_without_gap_or_overlap(scheme):
     steps = {"a": 3, "b": 12, "c": 18, "d": 6}
-    schedule = plan(list(steps), steps, 6, scheme)
+    schedule = make_schedule(list(steps), steps, 6, scheme)
     for name, step in steps.items():
         taken = [
             o
@@ -137,7 +139,7 @@ def test_every_component_covers_the_whole_period_without_gap_or_overlap(scheme):
 
 
 def test_an_operation_says_what_it_is():
-    assert plan(["a"], {"a": 1}, 1, "jacobi").operations == (
+    assert make_schedule(["a"], {"a": 1}, 1, "jacobi").operations == (
         (Operation(SET, "a"), Operation(STEP, "a", 0, 1), Operation(GET, "a")),
     )
 

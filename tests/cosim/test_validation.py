@@ -7,7 +7,7 @@ import pytest
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.run import sources_of
-from rockshed.core.system.plan import make_plan
+from rockshed.core.system.planning import make_plan
 from rockshed.core.system.system import system_from
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 

@@ -108,7 +108,7 @@ def ours(folder, outputs, tmp_path_factory):
             "output_interval": STEP,
         }
     )
-    result = simulate(system, tmp_path_factory.mktemp("ours") / "run", plain=True).series
+    result = simulate(system, tmp_path_factory.mktemp("ours") / "run").series
     return {port: result[".".join(port)] for port in outputs}
 
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK
 
-from ...core.results.columns import Column, result_column, result_table
+from ...core.results.columns import ArrowColumn, result_column, result_table
 from ...core.results.metric import Metric
 from ...core.results.run_folder import RUN, SUMMARY
 from ...files import write_json
@@ -165,7 +165,7 @@ def trial_table(campaign: Campaign, records: TrialRecords) -> Any:
     return result_table(columns)
 
 
-def _end_columns(campaign: Campaign, outcomes: NDArray[np.float64]) -> Iterator[Column]:
+def _end_columns(campaign: Campaign, outcomes: NDArray[np.float64]) -> Iterator[ArrowColumn]:
     import pyarrow as pa
 
     numbers = np.searchsorted(list(ENDS), outcomes[:, OUTCOME.end]).astype(np.int32)
@@ -179,7 +179,7 @@ def _end_columns(campaign: Campaign, outcomes: NDArray[np.float64]) -> Iterator[
     yield result_column("barrier", barriers, "1", "the barrier that stopped it")
 
 
-def _passage_columns(line: str, rows: NDArray[np.float64]) -> Iterator[Column]:
+def _passage_columns(line: str, rows: NDArray[np.float64]) -> Iterator[ArrowColumn]:
     count = rows[:, PASSAGE.count].astype(np.int64)
     yield result_column(f"{line}.passages", count, "1", f"passages of {line}")
     for name, column, unit in _AT_PASSAGE:

@@ -1,6 +1,7 @@
-"""A component for the benchmark of the exchange: many inputs and outputs, and hardly anything to compute.
+"""A component for the benchmark of the exchange: many ports, and hardly anything to compute.
 
-It is imported as if it lay among the components, whose modules it uses: see :mod:`rockshed.bench.exchange`.
+It is imported as if it lay among the components, whose modules it uses: see
+:mod:`rockshed.bench.exchange`.
 """
 
 from pathlib import Path

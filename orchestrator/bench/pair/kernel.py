@@ -10,14 +10,15 @@ A = LAYOUT.array
 
 @kernel
 def initialise(w, x, k):
-    """Nothing is kept."""
+    """Keep nothing from the initialisation."""
     return OK
 
 
 @kernel
 def evaluate(w, x, k):
-    """The outputs, from the inputs."""
-    given, shown = view(w, k, A.u), view(w, k, A.y)
+    """Compute the outputs from the inputs."""
+    given = view(w, k, A.u)
+    shown = view(w, k, A.y)
     for begin in range(0, shown.size, given.size):
         part = shown[begin : begin + given.size]
         for i in range(part.size):
@@ -27,5 +28,5 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    """The same at the end of a step."""
+    """Compute the outputs at the end of a step."""
     return evaluate(w, x, k)

@@ -1,4 +1,4 @@
-"""What a model description tells about a subsystem, as far as a co-simulation needs it."""
+"""A model description, as far as a co-simulation needs it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -16,8 +16,15 @@ UNIT_TOLERANCE = 1e-12
 class Unit:
     """A unit and its meaning: value in base units = ``factor`` * value + ``offset``.
 
-    base: exponents of the SI base units (kg, m, s, A, K, mol, cd, rad) other than zero; None where the description names the
-        unit and does not say what it is.
+    Attributes
+    ----------
+    name : str
+        As the description has it.
+    base : mapping of str to int, optional
+        Exponents of the SI base units (kg, m, s, A, K, mol, cd, rad) other than zero; None where
+        the description names the unit and does not define it.
+    factor, offset : float
+        Of the conversion.
     """
 
     name: str
@@ -26,7 +33,7 @@ class Unit:
     offset: float = 0.0
 
     def agrees_with(self, other: "Unit") -> bool | None:
-        """Whether a value means the same in both units; None where that cannot be known."""
+        """Tell whether a value means the same in both units; None where that cannot be known."""
         if self.base is None or other.base is None:
             return True if self.name == other.name else None
         return (
@@ -40,10 +47,28 @@ class Unit:
 class Port:
     """A variable of a subsystem.
 
-    kind: the family of FMI calls that moves it: Real, Integer, Boolean or String.
-    causality: parameter, input, output, local, ... as in the model description.
-    items: names of an enumeration's values; empty for anything else.
-    annotation: role, older names and figures, where the description tells them.
+    Attributes
+    ----------
+    name : str
+        Without the component.
+    reference : int
+        Value reference.
+    kind : str
+        Family of FMI calls that moves it: Real, Integer, Boolean or String.
+    causality : str
+        parameter, input, output, local, ... as in the model description.
+    unit : Unit, optional
+        Of the value.
+    minimum, maximum : float, optional
+        Range.
+    items : mapping of str to int
+        Names of an enumeration's values; empty for anything else.
+    start : str, optional
+        Start value as the description has it.
+    description : str
+        In words.
+    annotation : Annotation
+        Role, older names and figures, where the description has them.
     """
 
     name: str
@@ -60,12 +85,12 @@ class Port:
 
     @property
     def unit_name(self) -> str:
-        """The unit's name; "1" where there is none."""
+        """Name of the unit; "1" where there is none."""
         return self.unit.name if self.unit else "1"
 
     @property
     def is_number(self) -> bool:
-        """Whether a float can carry the value."""
+        """Tell whether a float can carry the value."""
         return self.kind != STRING
 
 
@@ -73,9 +98,22 @@ class Port:
 class Description:
     """The model description of an FMU.
 
-    warnings: where it does not keep to the standard, without being useless.
-    contents: what a serialized state holds; empty where the description does not tell.
-    pictures: pictures of the outputs, as data.
+    Attributes
+    ----------
+    model, guid, identifier, generation_tool : str
+        As in the file.
+    once_per_process : bool
+        There may be one instance only.
+    serializes_state : bool
+        The state can be got, and serialized.
+    ports : mapping of str to Port
+        All variables by name.
+    warnings : tuple of str
+        Departures from the standard that do no harm.
+    contents : str
+        Kind of data in a serialized state; empty where the description does not tell.
+    pictures : tuple of mapping
+        Pictures of the outputs, as data.
     """
 
     model: str
@@ -91,7 +129,7 @@ class Description:
 
     @cached_property
     def renamed_bases(self) -> dict[str, str]:
-        """Present names of variables by their older ones; of arrays without the number of an element."""
+        """Present names of variables by their older ones; of arrays without an element."""
         return {
             old: port.name.partition("[")[0]
             for port in self.ports.values()
@@ -99,5 +137,5 @@ class Description:
         }
 
     def named(self, causality: str) -> list[Port]:
-        """The ports of this causality, in the order of the description."""
+        """Return the ports of a causality in the order of the description."""
         return [port for port in self.ports.values() if port.causality == causality]

@@ -1,4 +1,7 @@
-"""FMU files behind the interface of :mod:`rockshed.core.fmu.slave`. The only module that imports fmpy."""
+"""FMU files behind the interface of :mod:`rockshed.core.fmu.slave`.
+
+The only module that imports fmpy.
+"""
 
 import contextlib
 import ctypes
@@ -20,7 +23,7 @@ from xml.etree import ElementTree
 
 import fmpy
 import numpy as np
-import pythonfmu  # noqa: F401 (FMUs bring parts of it; the first import serves the whole process, and must be the complete one)
+import pythonfmu  # noqa: F401 (FMUs bring parts of it; the first import serves the whole process)
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
     FMU2Slave,
@@ -57,24 +60,39 @@ from .slave import (
 )
 
 _DESCRIPTION_FILE = "modelDescription.xml"
-DRIVEN, READABLE = ("2.0",), ("2.0", "3.0")
-"""Versions of FMI that this program drives, and those whose descriptions it can show."""
+DRIVEN = ("2.0",)
+"""Versions of FMI that this program drives."""
+READABLE = ("2.0", "3.0")
+"""Versions of FMI whose descriptions it can show."""
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 _MESSAGES_KEPT = 1000
 
 
 class FmuFile:
-    """An FMU file."""
+    """An FMU file, from which instances are made.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+
+    Attributes
+    ----------
+    origin : dict of str to str
+        Path, and hash of the content once it has been read.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.origin = {"fmu": str(path)}
 
     def model_description(self) -> bytes:
-        """The modelDescription.xml of the file, after a look at whether this machine can run the FMU.
+        """Read the modelDescription.xml, and see whether this machine can run the FMU.
 
-        Raises:
-            InputRefused: no such file, not an FMU, or no binary for this platform.
+        Raises
+        ------
+        InputRefused
+            No such file, not an FMU, or no binary for this platform.
         """
         if not self.path.is_file():
             raise self._refusal("there is no such file", "build the FMU or correct the path")
@@ -90,13 +108,12 @@ class FmuFile:
             raise self._refusal(
                 f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again"
             )
-        self._check_binary(
-            names, fmpy.platform_tuple if _version(xml).startswith("3") else fmpy.platform
-        )
+        is_fmi_3 = _version(xml).startswith("3")
+        self._check_binary(names, fmpy.platform_tuple if is_fmi_3 else fmpy.platform)
         return xml
 
     def content(self, name: str) -> bytes | None:
-        """A file in the FMU, which has been looked at before; None if it is not in it."""
+        """Read a file in the FMU; return None if it is not in it."""
         with zipfile.ZipFile(self.path) as archive:
             return archive.read(name) if name in archive.namelist() else None
 
@@ -109,10 +126,9 @@ class FmuFile:
             }
         )
         if platform not in platforms:
-            raise self._refusal(
-                f"has no binary for this machine ({platform}); it has {', '.join(platforms) or 'none'}",
-                f"export it for {platform}",
-            )
+            listed = ", ".join(platforms) or "none"
+            what = f"has no binary for this machine ({platform}); it has {listed}"
+            raise self._refusal(what, f"export it for {platform}")
 
     def _refusal(self, what: str, remedy: str) -> InputRefused:
         return InputRefused([Problem(str(self.path), what, remedy)])
@@ -120,18 +136,40 @@ class FmuFile:
     def instantiate(self, name: str) -> "FmuSlave":
         """Unpack the file into a temporary folder, load its library and make an instance.
 
-        Raises:
-            InputRefused: the library cannot be loaded, or it makes no instance.
+        Parameters
+        ----------
+        name : str
+            Of the component.
+
+        Raises
+        ------
+        InputRefused
+            The library cannot be loaded, or it makes no instance.
         """
         return FmuSlave(self, name)
 
 
 @lru_cache(maxsize=32)
 def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Description:
-    """What ``modelDescription.xml`` says. An array of FMI 3.0 is described by its elements, ``name[1]``, ``name[2]``, ...
+    """Read a model description.
 
-    Raises:
-        ValueError: it is for another version of FMI or no co-simulation, or cannot be understood.
+    An array of FMI 3.0 is described by its elements, ``name[1]``, ``name[2]``, ...
+
+    Parameters
+    ----------
+    xml : bytes
+        Content of ``modelDescription.xml``.
+    versions : tuple of str
+        Versions of FMI that are of use.
+
+    Returns
+    -------
+    Description
+
+    Raises
+    ------
+    ValueError
+        It is for another version of FMI or no co-simulation, or cannot be understood.
     """
     root = _checked_root(xml, versions)
     archive = io.BytesIO()
@@ -181,7 +219,7 @@ def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
 
 
 def _version(xml: bytes) -> str:
-    """The version of FMI; empty where the description cannot be read."""
+    """Return the version of FMI; empty where the description cannot be read."""
     try:
         return ElementTree.fromstring(xml).get("fmiVersion") or ""
     except ElementTree.ParseError:
@@ -220,28 +258,27 @@ _KINDS_OF_FMI_3 = {
 def _ports(
     variable: ModelVariable, units: dict[str, Unit], annotation: Annotation
 ) -> Iterator[Port]:
-    """One port, or as many as an array of fixed size has elements."""
+    """Return one port, or as many as an array of fixed size has elements."""
     port = replace(_port(variable, units), annotation=annotation)
     lengths = [int(dimension.start or 1) for dimension in variable.dimensions]
     if not lengths:
         yield port
         return
-    starts = (port.start or "").split()
-    for number, place in enumerate(
-        itertools.product(*(range(1, length + 1) for length in lengths))
-    ):
-        start = starts[number] if number < len(starts) else starts[0] if len(starts) == 1 else None
+    places = list(itertools.product(*(range(1, length + 1) for length in lengths)))
+    starts: list[str | None] = [*(port.start or "").split()]
+    if len(starts) == 1:
+        starts *= len(places)
+    starts += [None] * len(places)
+    for place, start in zip(places, starts):
         yield replace(port, name=f"{port.name}[{','.join(map(str, place))}]", start=start)
 
 
 def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
     def attribute(name: str) -> Any:
         own = getattr(variable, name, None)
-        return (
-            own
-            if own is not None or variable.declaredType is None
-            else getattr(variable.declaredType, name)
-        )
+        if own is not None or variable.declaredType is None:
+            return own
+        return getattr(variable.declaredType, name)
 
     def bound(name: str) -> float | None:
         return None if attribute(name) is None else float(attribute(name))
@@ -267,11 +304,14 @@ _keys = itertools.count(1)
 
 
 def _log(environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
-    """Give a message of an FMU to the slave it belongs to. One function for all: fmpy's proxy remembers only the last one."""
+    """Pass a message of an FMU to the slave it belongs to.
+
+    One function for all: fmpy's proxy remembers only the last one.
+    """
     slave = _slaves.get(environment)
     if slave is not None:
         del slave.messages[:-_MESSAGES_KEPT]
-        slave.messages.append((status, message.decode("utf-8", "replace") if message else ""))
+        slave.messages.append((status, (message or b"").decode("utf-8", "replace")))
 
 
 _LOGGER = fmi2CallbackLoggerTYPE(_log)
@@ -282,7 +322,10 @@ def _made_by_pythonfmu(generation_tool: str) -> bool:
 
 
 def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
-    """Callbacks for one instance. pythonfmu logs plain text where FMI asks for a format: a percent sign in it must not be read."""
+    """Return the callbacks of one instance.
+
+    pythonfmu logs plain text where FMI asks for a format: a percent sign in it must not be read.
+    """
     callbacks = fmi2CallbackFunctions()
     callbacks.logger = _LOGGER
     callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
@@ -294,9 +337,10 @@ def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
 
 
 def _release_python(library: ctypes.CDLL) -> None:
-    """Let go what pythonfmu's binary would let go a second time when the process ends, which may abort it there.
+    """Let go what pythonfmu's binary would let go a second time when the process ends.
 
-    Runs when a slave is freed, or else when Python ends, which is before the library's own end.
+    That may abort the process. Runs when a slave is freed, or else when Python ends, which is
+    before the library's own end.
     """
     release = getattr(library, "finalizePythonInterpreter", None)
     if release is not None:
@@ -325,9 +369,8 @@ class FmuSlave:
         _slaves[key] = self
         try:
             fmpy.extract(file.path, self._folder.name)
-            with contextlib.chdir(
-                os.getcwd()
-            ):  # fmpy goes elsewhere, and stays there if the library cannot be loaded
+            # fmpy goes elsewhere, and stays there if the library cannot be loaded
+            with contextlib.chdir(os.getcwd()):
                 self._fmu = FMU2Slave(
                     name,
                     guid=description.guid,
@@ -357,14 +400,18 @@ class FmuSlave:
         self._getters = {kind: _MOVE(address) for kind, address in self.addresses.get.items()}
 
     def _instantiate(self, callbacks: fmi2CallbackFunctions, by_pythonfmu: bool) -> None:
-        """Make the instance, as fmpy does but for the location of the resources: of all that is escaped in the URI of a path,
-        pythonfmu's binary knows spaces only, and ends the process where it does not find its files."""
+        """Make the instance, as fmpy does but for the location of the resources.
+
+        Of all that is escaped in the URI of a path, pythonfmu's binary knows spaces only, and ends
+        the process where it does not find its files.
+        """
         location = Path(self._folder.name, "resources").absolute().as_uri()
         if by_pythonfmu:
             location = unquote(location)
             if "%20" in location:  # the binary would read a space
                 raise ValueError(
-                    f"the temporary folder {self._folder.name} has %20 in its name: set TMPDIR to another one"
+                    f"the temporary folder {self._folder.name} has %20 in its name: set TMPDIR to "
+                    "another one"
                 )
         self._fmu.callbacks = callbacks
         self._fmu.component = self._fmu.fmi2Instantiate(
@@ -418,7 +465,7 @@ class FmuSlave:
         return status
 
     def set_text(self, reference: int, text: str) -> int:
-        """Set a variable of the kind String."""
+        """Set one variable of the kind String."""
         return self._status(self._fmu.setString, [reference], [text])
 
     def setup_experiment(self, start: float, stop: float) -> int:
@@ -426,22 +473,24 @@ class FmuSlave:
         return self._status(self._fmu.setupExperiment, None, start, stop)
 
     def enter_initialisation(self) -> int:
-        """Enter the initialisation mode."""
+        """Enter the initialisation mode of the FMU."""
         return self._status(self._fmu.enterInitializationMode)
 
     def exit_initialisation(self) -> int:
-        """Leave the initialisation mode."""
+        """Leave the initialisation mode of the FMU."""
         return self._status(self._fmu.exitInitializationMode)
 
     def step(self, time: float, step: float) -> int:
-        """Advance from ``time`` by ``step`` (s)."""
+        """Make a step (s) from a time (s)."""
         return int(self._step(self._fmu.component, time, step, 1))
 
     def state(self) -> bytes:
-        """The complete state, serialized.
+        """Serialize the complete state.
 
-        Raises:
-            RuntimeError: a call failed.
+        Raises
+        ------
+        RuntimeError
+            A call failed.
         """
         with self._refusals_raised("the state cannot be read"):
             state = self._fmu.getFMUState()
@@ -453,8 +502,15 @@ class FmuSlave:
     def restore(self, content: bytes) -> None:
         """Take over a state of :meth:`state`.
 
-        Raises:
-            RuntimeError: a call failed, or the slave says that this is no state of its own.
+        Parameters
+        ----------
+        content : bytes
+            State of this FMU.
+
+        Raises
+        ------
+        RuntimeError
+            A call failed, or the slave says that this is no state of its own.
         """
         with self._refusals_raised("the state cannot be restored"):
             state = self._fmu.deserializeFMUState(content)
@@ -465,8 +521,12 @@ class FmuSlave:
 
     @contextlib.contextmanager
     def _refusals_raised(self, what: str) -> Iterator[None]:
-        """Raise a RuntimeError for a bad status, or for an error that is logged: pythonfmu's binary returns OK for both."""
-        earlier, self.messages = self.messages, []
+        """Raise a RuntimeError for a bad status, or for an error that is logged.
+
+        pythonfmu's binary returns OK for both.
+        """
+        earlier = self.messages
+        self.messages = []
         reasons: list[str] = []
         try:
             yield
@@ -479,15 +539,18 @@ class FmuSlave:
             raise RuntimeError(f"{self.name}: {what}: {'; '.join(reasons)}")
 
     def reset(self) -> int:
-        """Back to the state after instantiation."""
+        """Go back to the state after the instantiation."""
         return self._status(self._fmu.reset)
 
     def terminate(self) -> int:
-        """End the run."""
+        """End the run of this instance."""
         return self._status(self._fmu.terminate)
 
     def free(self) -> None:
-        """Free the instance unless it failed beyond repair, unload the library and remove the unpacked files."""
+        """Free the instance, unload the library and remove the unpacked files.
+
+        An instance that failed beyond repair is not called any more.
+        """
         if all(status != FATAL for status, _ in self.messages):
             self._fmu.fmi2FreeInstance(self._fmu.component)
         self._unload()
@@ -497,12 +560,14 @@ class FmuSlave:
             self._release()
             self._fmu.freeLibrary()
         self._folder.cleanup()
-        sys.path[:] = [
-            path for path in sys.path if not path.startswith(self._folder.name)
-        ]  # where an FMU's Python code was
+        # where an FMU's Python code was
+        sys.path[:] = [path for path in sys.path if not path.startswith(self._folder.name)]
 
     def _status(self, call: Callable[..., Any], *arguments: Any) -> int:
-        """Status of a call of fmpy, which raises an exception for a bad one; the exception is noted where the FMU is silent."""
+        """Return the status of a call of fmpy, which raises an exception for a bad one.
+
+        The exception becomes a message where the FMU is silent.
+        """
         count = len(self.messages)
         try:
             return int(call(*arguments) or OK)

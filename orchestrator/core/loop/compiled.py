@@ -1,7 +1,8 @@
-"""The exchange loop, compiled: calls the C functions of FMUs by their addresses, whatever the FMUs are.
+"""The exchange loop, compiled: calls the C functions of slaves by their addresses.
 
-What numba makes of it is kept as object code (:mod:`rockshed.core.loop.machine_code`), and this module is imported only where there
-is none yet. The global interpreter lock is kept while the loop runs: FMUs with Python inside need it.
+What numba makes of it is kept as object code (:mod:`rockshed.core.loop.machine_code`), and this
+module is imported only where there is none yet. The global interpreter lock is kept while the loop
+runs: FMUs with Python inside need it, and so do slaves that are called back.
 """
 
 import math
@@ -18,13 +19,18 @@ from ..system.clock import TICKS_PER_SECOND
 from ..system.schedule import Action
 from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
 
-_SET, _STEP = int(Action.SET), int(Action.STEP)
+_SET = int(Action.SET)
+_STEP = int(Action.STEP)
 _WARNING = WARNING
 _TICKS_PER_SECOND = float(TICKS_PER_SECOND)
 
 
 def _compiled(function: Callable[..., Any]) -> Any:
-    """Compile with numba. Nothing is allocated, so arrays need no counted references; counting them would cost 7 us an exchange."""
+    """Compile with numba.
+
+    Nothing is allocated, so arrays need no counted references; counting them would cost 7 us an
+    exchange.
+    """
     return njit(error_model="numpy", _nrt=False)(function)
 
 
@@ -36,8 +42,13 @@ def _pointer(builder: Any, value: Any) -> Any:
 
 
 @_intrinsic
-def _call_move(_context, function, instance, references, count, values):  # type: ignore[no-untyped-def]
-    """``int function(void* instance, const unsigned* references, size_t count, void* values)`` at an address."""
+def _call_move(  # type: ignore[no-untyped-def]
+    _context, function, instance, references, count, values
+):
+    """Call a C function at an address.
+
+    ``int function(void* instance, const unsigned* references, size_t count, void* values)``
+    """
 
     def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         pointer = ir.IntType(8).as_pointer()
@@ -53,10 +64,14 @@ def _call_move(_context, function, instance, references, count, values):  # type
 
 @_intrinsic
 def _call_step(_context, function, instance, time, step):  # type: ignore[no-untyped-def]
-    """``int function(void* instance, double time, double step, int)`` at an address; no earlier state will be asked for."""
+    """Call a C function at an address; its last argument says that no earlier state is needed.
+
+    ``int function(void* instance, double time, double step, int)``
+    """
 
     def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        real, integer = ir.DoubleType(), ir.IntType(32)
+        real = ir.DoubleType()
+        integer = ir.IntType(32)
         kind = ir.FunctionType(integer, [ir.IntType(8).as_pointer(), real, real, integer])
         f, c, t, h = arguments
         return builder.call(
@@ -71,9 +86,9 @@ def _call_step(_context, function, instance, time, step):  # type: ignore[no-unt
 def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
     """Enter the work of one exchange.
 
-    The taker moves under the force that it was given at the exchange: force times its own displacement. The giver sees the
-    position jump from one value to the next while its force changes: the mean of both forces times the jump, which is exact
-    for a spring.
+    The taker moves under the force that was set at the exchange: force times its own displacement.
+    The giver sees the position jump from one value to the next while its force changes: the mean
+    of both forces times the jump, which is exact for a spring.
     """
     for i in range(channels.size):
         channel = channels[i]
@@ -81,7 +96,8 @@ def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
         channel["taken"] += inputs[channel["given"]] * (position - channel["last_position"])
         channel["last_position"] = position
         if channel["seen"] >= 0:
-            seen, force = inputs[channel["seen"]], outputs[channel["force"]]
+            seen = inputs[channel["seen"]]
+            force = outputs[channel["force"]]
             channel["given_back"] -= (
                 0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
             )
@@ -91,7 +107,7 @@ def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _watch(watched, outputs, exchange):  # type: ignore[no-untyped-def]
-    """Enter the values after ``exchange`` exchanges into extremes and integrals (trapezoidal rule)."""
+    """Enter the values after so many exchanges into extremes and integrals (trapezoidal rule)."""
     for i in range(watched.size):
         entry = watched[i]
         value = outputs[entry["place"]]
@@ -107,13 +123,16 @@ def _watch(watched, outputs, exchange):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _is_bad(status):  # type: ignore[no-untyped-def]
-    """Whether a run has to end at this status."""
+    """Tell whether a run has to end at this status."""
     return status > _WARNING or status == NOT_FINITE
 
 
 @_compiled
 def _lost(values):  # type: ignore[no-untyped-def]
-    """How many of the values are no finite numbers. Without a way out in between, the compiler takes several at a time."""
+    """Count the values that are no finite numbers.
+
+    Without a way out in between, the compiler takes several at a time.
+    """
     count = 0
     for i in range(values.size):
         count += 0 if math.isfinite(values[i]) else 1
@@ -122,9 +141,11 @@ def _lost(values):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _give(tables, move):  # type: ignore[no-untyped-def]
-    """Set connected inputs of a component to the newest values. Returns the status."""
-    begin, number = move["begin"], move["number"]
-    inputs, source = tables.inputs[begin : begin + number], tables.source[begin : begin + number]
+    """Set connected inputs of a component to the newest values; return the status."""
+    begin = move["begin"]
+    number = move["number"]
+    inputs = tables.inputs[begin : begin + number]
+    source = tables.source[begin : begin + number]
     for i in range(number):
         inputs[i] = tables.outputs[source[i]]
     address = tables.inputs.ctypes.data + 8 * begin
@@ -137,9 +158,15 @@ def _give(tables, move):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
-    """Get outputs of a component into a row of numbers that begins at ``base``. Returns the status, or :data:`NOT_FINITE`."""
-    begin, number = base + move["begin"], move["number"]
-    address = tables.integers.ctypes.data if move["whole"] else values.ctypes.data + 8 * begin
+    """Get outputs of a component into a row of numbers that begins at ``base``.
+
+    Returns the status, or :data:`NOT_FINITE`.
+    """
+    begin = base + move["begin"]
+    number = move["number"]
+    address = values.ctypes.data + 8 * begin
+    if move["whole"]:
+        address = tables.integers.ctypes.data
     status = _call_move(move["function"], move["instance"], move["references"], number, address)
     if move["whole"]:
         for i in range(number):
@@ -151,21 +178,19 @@ def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
-    """Carry out an operation of a period that began at the tick ``origin``. Returns the first bad status, or OK."""
+    """Carry out an operation of a period that began at the tick ``origin``.
+
+    Returns the first bad status, or OK.
+    """
     if operation["action"] == _STEP:
         time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
-        return _call_step(
-            operation["do_step"],
-            operation["instance"],
-            time,
-            float(operation["length"]) / _TICKS_PER_SECOND,
-        )
+        step = float(operation["length"]) / _TICKS_PER_SECOND
+        return _call_step(operation["do_step"], operation["instance"], time, step)
     for m in range(operation["first_move"], operation["end_move"]):
-        status = (
-            _give(tables, tables.moves[m])
-            if operation["action"] == _SET
-            else _take(tables, tables.moves[m], tables.outputs, 0)
-        )
+        if operation["action"] == _SET:
+            status = _give(tables, tables.moves[m])
+        else:
+            status = _take(tables, tables.moves[m], tables.outputs, 0)
         if _is_bad(status):
             return status
     return 0
@@ -173,7 +198,10 @@ def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
 
 @_compiled
 def _record(tables, base):  # type: ignore[no-untyped-def]
-    """Take a snapshot into the row that begins at ``base``. Returns the operation that failed, and its status."""
+    """Take a snapshot into the row that begins at ``base``.
+
+    Returns the operation that failed, and its status.
+    """
     for i in range(tables.outputs.size):
         tables.snapshots[base + i] = tables.outputs[i]
     works = base + tables.width - 2 * tables.channels.size
@@ -186,16 +214,33 @@ def _record(tables, base):  # type: ignore[no-untyped-def]
             status = _take(tables, tables.moves[m], tables.snapshots, base)
             if _is_bad(status):
                 return o, status
+    tables.journal[1] = -1
     return 0, 0
 
 
 @_compiled
 def advance(tables, first, count):  # type: ignore[no-untyped-def]
-    """Carry out ``count`` exchanges from exchange number ``first`` on, and take the snapshots that are due.
+    """Carry out exchanges, and take the snapshots that are due.
 
-    Returns (number of exchanges before the one that failed, operation, status): the operation that ended the run early and its
-    status, OK if none did.
+    Parameters
+    ----------
+    tables : Tables
+        Values and addresses.
+    first : int
+        Number of the first exchange.
+    count : int
+        How many. With 0, a snapshot of the present values is taken.
+
+    Returns
+    -------
+    (int, int, int)
+        Number of exchanges before the one that failed; operation and status that ended the loop
+        early, status OK if none did.
     """
+    if count == 0:
+        tables.journal[0] = first - 1
+        o, status = _record(tables, tables.row * tables.width)
+        return -1, o, status
     period = tables.first.size - 1
     for n in range(first, first + count):
         origin = tables.start + n // period * period * tables.exchange
@@ -217,15 +262,24 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
 
 
 def object_code(target: llvm.TargetMachine) -> bytes:
-    """:func:`advance` as object code for a processor, which needs nothing from outside. Its one C function :data:`ENTRY` takes the
-    address of :func:`rockshed.core.loop.tables.head`, ``first``, ``count``, and the address of three numbers for the result.
+    """Compile :func:`advance` to object code that needs nothing from outside.
+
+    Its one C function :data:`ENTRY` takes the address of :func:`rockshed.core.loop.tables.head`,
+    ``first``, ``count``, and the address of three numbers for the result.
+
+    Parameters
+    ----------
+    target : llvmlite.binding.TargetMachine
+        Processor.
+
+    Returns
+    -------
+    bytes
+        An object file.
     """
     arrays = [types.Array(from_dtype(kind), 1, "C") for kind in KINDS.values()]
-    signature = (
-        types.NamedTuple([*[types.int64] * len(NUMBERS), *arrays], Tables),
-        types.int64,
-        types.int64,
-    )
+    tables = types.NamedTuple([*[types.int64] * len(NUMBERS), *arrays], Tables)
+    signature = (tables, types.int64, types.int64)
     advance.compile(signature)
     compiled = advance.overloads[signature]
     whole = llvm.parse_assembly(compiled.library.get_llvm_str())
@@ -233,9 +287,8 @@ def object_code(target: llvm.TargetMachine) -> bytes:
     for function in whole.functions:
         if not function.is_declaration and function.name != ENTRY:
             function.linkage = "internal"
-            function.add_function_attribute(
-                "alwaysinline"
-            )  # a call would pass all tables on, field by field
+            # a call would pass all tables on, field by field
+            function.add_function_attribute("alwaysinline")
     builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options(speed_level=3))
     builder.getModulePassManager().run(whole, builder)
     foreign = [
@@ -248,45 +301,46 @@ def object_code(target: llvm.TargetMachine) -> bytes:
 
 
 def _entry(compiled: Any) -> ir.Module:
-    """The C function, which calls the compiled one by numba's own convention. Nothing in it raises, so the status says nothing."""
-    module, integer = ir.Module(), ir.IntType(64)
-    descriptor, convention = compiled.fndesc, compiled.target_context.call_conv
-    callee = ir.Function(
-        module,
-        convention.get_function_type(descriptor.restype, descriptor.argtypes),
-        descriptor.llvm_func_name,
-    )
+    """Return the C function, which calls the compiled one by numba's own convention.
+
+    Nothing in that one raises, so its status says nothing.
+    """
+    module = ir.Module()
+    integer = ir.IntType(64)
+    convention = compiled.target_context.call_conv
+    descriptor = compiled.fndesc
+    kind = convention.get_function_type(descriptor.restype, descriptor.argtypes)
+    callee = ir.Function(module, kind, descriptor.llvm_func_name)
     entry = ir.Function(module, ir.FunctionType(integer, [integer] * 4), ENTRY)
     builder = ir.IRBuilder(entry.append_basic_block())
     head, first, count, outcome = entry.args
-    kinds = callee.function_type.args
-
-    def number(address: Any, place: int) -> Any:
-        return builder.gep(builder.inttoptr(address, integer.as_pointer()), [integer(place)])
-
-    arguments = [
-        builder.alloca(kinds[0].pointee),
-        builder.alloca(kinds[1].pointee),
-        *(builder.load(number(head, place)) for place in range(len(NUMBERS))),
-    ]
-    for place, kind in enumerate(KINDS.values()):
-        address, length = (
-            builder.load(number(head, len(NUMBERS) + 2 * place + i)) for i in range(2)
-        )
-        fields = kinds[len(arguments) :]
-        size = integer(kind.itemsize)
-        arguments += [
-            fields[0](None),
-            fields[1](None),
-            length,
-            size,
-            builder.inttoptr(address, fields[4]),
-            length,
-            size,
-        ]  # owner, parent, number of elements, bytes of one, data, shape, strides
-    builder.call(callee, [*arguments, first, count])
-    found = builder.load(arguments[0])
+    results = [builder.alloca(callee.function_type.args[place].pointee) for place in range(2)]
+    tables = _table_arguments(builder, head, callee.function_type.args[2:])
+    builder.call(callee, [*results, *tables, first, count])
+    found = builder.load(results[0])
     for place in range(3):
-        builder.store(builder.extract_value(found, place), number(outcome, place))
+        builder.store(builder.extract_value(found, place), _number(builder, outcome, place))
     builder.ret(integer(0))
     return module
+
+
+def _table_arguments(builder: Any, head: Any, kinds: Any) -> list[Any]:
+    """Return the fields of :class:`Tables` as numba passes them, read from their head."""
+    integer = ir.IntType(64)
+    arguments = [builder.load(_number(builder, head, place)) for place in range(len(NUMBERS))]
+    for place, kind in enumerate(KINDS.values()):
+        at = len(NUMBERS) + 2 * place
+        address = builder.load(_number(builder, head, at))
+        length = builder.load(_number(builder, head, at + 1))
+        owner, parent, _elements, _bytes, data = kinds[len(arguments) :][:5]
+        size = integer(kind.itemsize)
+        values = builder.inttoptr(address, data)
+        # owner, parent, number of elements, bytes of one, data, shape, strides
+        arguments += [owner(None), parent(None), length, size, values, length, size]
+    return arguments
+
+
+def _number(builder: Any, address: Any, place: int) -> Any:
+    """Return a pointer to an integer in a row at an address."""
+    integer = ir.IntType(64)
+    return builder.gep(builder.inttoptr(address, integer.as_pointer()), [integer(place)])

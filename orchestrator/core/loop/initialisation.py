@@ -1,4 +1,7 @@
-"""From FMU files to slaves that are ready for their first step; what they refuse is collected from all of them."""
+"""From FMU files to slaves that are ready for their first step.
+
+What they refuse is collected from all of them.
+"""
 
 from collections.abc import Callable, Iterable, Mapping
 
@@ -8,28 +11,43 @@ from ..errors import InputRefused, Problem
 from ..fmu.description import Port
 from ..fmu.slave import ERROR, STATUS_NAMES, WARNING, Slave, Source, without_name
 from ..system.plan import Plan
-from .exchange import State
+from .buses import Buses
 
 _ROUNDS = 20
-"""How often outputs are passed on at the start; a chain of components needs one round for each of them."""
+"""Most rounds in which outputs are passed on at the start; a chain of components needs one round
+for each of them."""
 
-
-Told = Callable[[str], None]
-"""Called with the name of a component before it is called."""
+Entering = Callable[[str], None]
+"""Called with the name of a component before the component is called."""
 
 
 def instantiate(
-    plan: Plan, sources: Mapping[str, Source], told: Told = lambda name: None
+    plan: Plan, sources: Mapping[str, Source], entering: Entering = lambda name: None
 ) -> dict[str, Slave]:
-    """One slave for each component.
+    """Make one slave for each component.
 
-    Raises:
-        InputRefused: the reasons of all that cannot be made.
+    Parameters
+    ----------
+    plan : Plan
+        Gives the order.
+    sources : mapping of str to Source
+        Makers of the slaves, by component.
+    entering : callable, optional
+        Called with the name of each component before its turn.
+
+    Returns
+    -------
+    dict of str to Slave
+
+    Raises
+    ------
+    InputRefused
+        The reasons of all that cannot be made.
     """
     slaves: dict[str, Slave] = {}
     problems: list[Problem] = []
     for name in plan.order:
-        told(name)
+        entering(name)
         try:
             slaves[name] = sources[name].instantiate(name)
         except InputRefused as refusal:
@@ -41,57 +59,81 @@ def instantiate(
 
 
 def free(slaves: Iterable[Slave]) -> None:
-    """Give back all slaves."""
+    """Free slaves, in whatever state they are."""
     for slave in slaves:
         slave.free()
 
 
 def initialise(
-    plan: Plan,
     slaves: Mapping[str, Slave],
-    state: State,
+    buses: Buses,
     allow_unstable: bool = False,
-    told: Told = lambda name: None,
+    entering: Entering = lambda name: None,
 ) -> list[str]:
-    """Set parameters, pass outputs on to inputs in the initialisation mode and after it, check the steps. Returns warnings.
+    """Bring slaves to their first step.
 
-    Raises:
-        InputRefused: a slave refuses its parameters or inputs, or would be unstable.
+    Parameters are set, outputs passed on to inputs in the initialisation mode and after it, and
+    steps compared with the largest stable ones.
+
+    Parameters
+    ----------
+    slaves : mapping of str to Slave
+        As :func:`instantiate` made them.
+    buses : Buses
+        Get the values at the start.
+    allow_unstable : bool
+        Warn of steps that are too long, and do not refuse them.
+    entering : callable, optional
+        Called with the name of each component before its turn.
+
+    Returns
+    -------
+    list of str
+        Warnings.
+
+    Raises
+    ------
+    InputRefused
+        A slave refuses its parameters or inputs, or would be unstable.
     """
-    timing = plan.timing
-    _phase(
-        slaves,
-        lambda slave: _begin(
-            slave, plan.starts[slave.name], timing.seconds(0), timing.seconds(timing.exchanges)
-        ),
-        told,
-    )
-    before = _settle(state, slaves, told)
-    _phase(slaves, lambda slave: slave.exit_initialisation(), told)
-    unsettled = _settle(state, slaves, told) or before
-    if bad := [end for name in plan.order if (end := state.not_finite(name)) is not None]:
-        raise InputRefused(
-            [
-                Problem(
-                    e.name, "is no finite number after the initialisation", "check the parameters"
-                )
-                for e in bad
-            ]
-        )
-    warnings = [
-        f"{name}: {without_name(name, text)}"
-        for name, slave in slaves.items()
-        for status, text in slave.messages
-        if status == WARNING
-    ]
+    plan = buses.plan
+    span = (plan.timing.seconds(0), plan.timing.seconds(plan.timing.exchanges))
+    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], *span), entering)
+    before = _settle(buses, slaves, entering)
+    _phase(slaves, lambda slave: slave.exit_initialisation(), entering)
+    unsettled = _settle(buses, slaves, entering) or before
+    _refuse_lost(buses)
+    warnings = [text for slave in slaves.values() for text in _warnings(slave)]
     if unsettled:
         warnings.append(
-            f"outputs at the start still change after {_ROUNDS} rounds of exchange, {unsettled} among them"
+            f"outputs at the start still change after {_ROUNDS} rounds of exchange, "
+            f"{unsettled} among them"
         )
-    unstable = [p for name in plan.order for p in _stability(plan, slaves[name])]
+    unstable = [problem for name in plan.order for problem in _stability(plan, slaves[name])]
     if unstable and not allow_unstable:
         raise InputRefused(unstable)
     return warnings + [str(problem) for problem in unstable]
+
+
+def _warnings(slave: Slave) -> list[str]:
+    name = slave.name
+    return [
+        f"{name}: {without_name(name, text)}"
+        for status, text in slave.messages
+        if status == WARNING
+    ]
+
+
+def _refuse_lost(buses: Buses) -> None:
+    """Refuse outputs that are no finite numbers."""
+    lost = [buses.not_finite(name) for name in buses.plan.order]
+    problems = [
+        Problem(end.name, "is no finite number after the initialisation", "check the parameters")
+        for end in lost
+        if end is not None
+    ]
+    if problems:
+        raise InputRefused(problems)
 
 
 def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, stop: float) -> int:
@@ -107,58 +149,70 @@ def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, s
     return max(worst, slave.setup_experiment(start, stop), slave.enter_initialisation())
 
 
-def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], told: Told) -> None:
+def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: Entering) -> None:
     """Do the same with all slaves, then see whether any of them refused."""
     problems = []
     for slave in slaves.values():
-        told(slave.name)
+        entering(slave.name)
         problems += _refusals(slave, call(slave))
     if problems:
         raise InputRefused(problems)
 
 
 def _refusals(slave: Slave, status: int) -> list[Problem]:
-    """What a slave refused: it says so by its status, or by a message with the status Error."""
-    reasons = [text for severity, text in slave.messages if severity >= ERROR]
-    if status <= WARNING and not reasons:
+    """Return what a slave refused, by its status or by a message with the status Error."""
+    errors = [text for severity, text in slave.messages if severity >= ERROR]
+    if status <= WARNING and not errors:
         return []
-    texts = (
-        reasons
-        or [text for _, text in slave.messages]
-        or [f"returned {STATUS_NAMES[status]} without a message"]
-    )
+    silence = [f"returned {STATUS_NAMES[status]} without a message"]
+    texts = errors or [text for _, text in slave.messages] or silence
     return [Problem(slave.name, without_name(slave.name, text)) for text in dict.fromkeys(texts)]
 
 
-def _settle(state: State, slaves: Mapping[str, Slave], told: Told) -> str:
-    """Pass outputs on to inputs until they no longer change. Returns the name of one that still does, or nothing.
+def _settle(buses: Buses, slaves: Mapping[str, Slave], entering: Entering) -> str:
+    """Pass outputs on to inputs until they no longer change.
 
-    Those with the fewest inputs come first: what they show is then there for those that need much and may take long to compute what
-    follows from it. A warning about inputs that are then replaced is forgotten: the slave says it again if it still holds.
+    Those with the fewest inputs come first: what they show is then there for those that need much
+    and may take long to compute what follows from it.
+
+    Returns the name of an output that still changes, or nothing.
     """
-    outputs, needs = state.outputs, state.needs
-    turns = sorted(slaves.values(), key=lambda slave: len(needs[slave.name]))
-    before, taken = np.full_like(outputs, np.nan), set[int]()
+    outputs = buses.outputs
+    turns = sorted(slaves.values(), key=lambda slave: len(buses.needs[slave.name]))
+    before = np.full_like(outputs, np.nan)
+    taken: set[int] = set()
     said: dict[str, int] = {}
     for _ in range(_ROUNDS):
         problems: list[Problem] = []
         for slave in turns:
-            told(slave.name)
-            if needs[slave.name] <= taken:
-                if slave.name in said and needs[slave.name]:
-                    _forget_warnings(slave, said[slave.name])
-                problems += _refusals(slave, state.give(slave))
-            said[slave.name] = len(slave.messages)
-            refused = _refusals(slave, state.take(slave))
-            taken |= set() if refused else state.shows[slave.name]
-            problems += refused
+            entering(slave.name)
+            problems += _pass_on(buses, slave, taken, said)
         if problems:
             raise InputRefused(list(dict.fromkeys(problems)))
         changed = np.flatnonzero((outputs != before) & ~(np.isnan(outputs) & np.isnan(before)))
         if not changed.size:
             return ""
         before[:] = outputs
-    return state.plan.outputs[changed[0]].name
+    return buses.plan.outputs[changed[0]].name
+
+
+def _pass_on(buses: Buses, slave: Slave, taken: set[int], said: dict[str, int]) -> list[Problem]:
+    """Set the inputs of a slave, if all are there, and take its outputs.
+
+    A warning about inputs that are replaced now is forgotten: the slave says it again if it still
+    holds. ``taken`` are the places of the outputs that are there, ``said`` counts messages.
+    """
+    name = slave.name
+    problems: list[Problem] = []
+    if buses.needs[name] <= taken:
+        if name in said and buses.needs[name]:
+            _forget_warnings(slave, said[name])
+        problems += _refusals(slave, buses.give(slave))
+    said[name] = len(slave.messages)
+    refused = _refusals(slave, buses.take(slave))
+    if not refused:
+        taken |= buses.shows[name]
+    return problems + refused
 
 
 def _forget_warnings(slave: Slave, since: int) -> None:
@@ -169,36 +223,50 @@ def _forget_warnings(slave: Slave, since: int) -> None:
 
 
 def _stability(plan: Plan, slave: Slave) -> list[Problem]:
-    """Whether the component's steps exceed the largest ones that it publishes."""
-    ports, communication = plan.descriptions[slave.name].ports, plan.system.step(slave.name)
-    found = []
-    if "step_limit" in ports and communication > (limit := _value(slave, ports["step_limit"])) * (
-        1.0 + 1e-9
-    ):
-        found.append(
-            Problem(
-                slave.name,
-                f"the communication step of {communication:.6g} s exceeds step_limit = {limit:.6g} s, the "
-                "longest that its ports bear",
-                "reduce the exchange step, or use a port of waves",
-            )
-        )
-    if "stable_step" not in ports or "internal_step" not in ports:
-        return found
-    stable, internal = _value(slave, ports["stable_step"]), _value(slave, ports["internal_step"])
-    longest = (
-        _value(slave, ports["time_step"]) if "time_step" in ports else min(internal, communication)
-    )
-    if longest <= stable:
-        return found
+    """Compare the component's steps with the largest ones that it publishes."""
     return [
-        *found,
+        *_port_stability(plan, slave),
+        *_internal_stability(plan, slave),
+    ]
+
+
+def _port_stability(plan: Plan, slave: Slave) -> list[Problem]:
+    ports = plan.descriptions[slave.name].ports
+    step = plan.system.step(slave.name)
+    if "step_limit" not in ports:
+        return []
+    limit = _value(slave, ports["step_limit"])
+    if step <= limit * (1.0 + 1e-9):
+        return []
+    return [
+        Problem(
+            slave.name,
+            f"the communication step of {step:.6g} s exceeds step_limit = {limit:.6g} s, the "
+            "longest that its ports bear",
+            "reduce the exchange step, or use a port of waves",
+        )
+    ]
+
+
+def _internal_stability(plan: Plan, slave: Slave) -> list[Problem]:
+    ports = plan.descriptions[slave.name].ports
+    step = plan.system.step(slave.name)
+    if "stable_step" not in ports or "internal_step" not in ports:
+        return []
+    stable = _value(slave, ports["stable_step"])
+    internal = _value(slave, ports["internal_step"])
+    longest = min(internal, step)
+    if "time_step" in ports:
+        longest = _value(slave, ports["time_step"])
+    if longest <= stable:
+        return []
+    return [
         Problem(
             f"{slave.name}.internal_step",
             f"steps of {longest:.6g} s (internal_step {internal:.6g} s, "
-            f"communication step {communication:.6g} s) exceed stable_step = {stable:.6g} s",
+            f"communication step {step:.6g} s) exceed stable_step = {stable:.6g} s",
             f"set {slave.name}.internal_step to less than {stable:.3g} s, or allow instability",
-        ),
+        )
     ]
 
 

@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 
 from ..system.clock import to_seconds
-from ..system.schedule import Action, Operation
+from ..system.schedule import Action, Operation, Schedule
 from .tables import Integers
 
-FILE, LEGEND = "journal.bin", "journal.json"
+FILE = "journal.bin"
+LEGEND = "journal.json"
 EXCHANGE, OPERATION = range(2)
 """Places in a journal."""
 _NOTHING = -1
@@ -25,40 +26,53 @@ _IS_FILE = os.name == "posix"
 
 
 class Journal:
-    """The journal of a run in the folder in which it writes.
+    """The journal of a run.
 
-    entries: numbers by place. An operation of -1 is none of an FMU; -2, -3, ... are preparations of the first, second, ...
-    component.
+    Parameters
+    ----------
+    folder : Path
+        In which the run writes.
+    components : sequence of str
+        Their names in order.
+
+    Attributes
+    ----------
+    entries : array of int64, shape (2,)
+        Exchange and operation under way. An operation of -1 is none of an FMU; -2, -3, ... are
+        preparations of the first, second, ... component.
     """
 
     def __init__(self, folder: Path, components: Sequence[str]) -> None:
-        self._folder, self._components = folder, list(components)
-        self.entries: Integers = (
-            np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
-            if _IS_FILE
-            else np.zeros(2, np.int64)
-        )
+        self._folder = folder
+        self._components = list(components)
+        self.entries: Integers = np.zeros(2, np.int64)
+        if _IS_FILE:
+            self.entries = np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
         self.entries[:] = _NOTHING
-        self.legend([], 0, 0, 1)
+        self.legend([])
 
     def legend(
-        self, operations: Sequence[Operation], start: int, exchange: int, period: int
+        self, operations: Sequence[Operation], start: int = 0, schedule: Schedule | None = None
     ) -> None:
-        """Write down what the numbers of operations mean. start, exchange: ticks. period: number of exchanges."""
-        (self._folder / LEGEND).write_text(
-            json.dumps(
-                {
-                    "components": self._components,
-                    "start": start,
-                    "exchange": exchange,
-                    "period": period,
-                    "operations": [
-                        [o.component, int(o.action), o.begin, o.length] for o in operations
-                    ],
-                }
-            ),
-            encoding="utf-8",
-        )
+        """Write down what the numbers of operations mean.
+
+        Parameters
+        ----------
+        operations : sequence of Operation
+            In the order of their numbers.
+        start : int
+            Time at the start (ticks).
+        schedule : Schedule, optional
+            Gives times; not needed where there are no operations.
+        """
+        legend = {
+            "components": self._components,
+            "start": start,
+            "exchange": schedule.exchange if schedule else 0,
+            "period": schedule.period if schedule else 1,
+            "operations": [[o.component, int(o.action), o.begin, o.length] for o in operations],
+        }
+        (self._folder / LEGEND).write_text(json.dumps(legend), encoding="utf-8")
 
     def prepares(self, component: str) -> None:
         """Note that a component is being made or initialised."""

@@ -1,4 +1,7 @@
-"""The exchange loop as machine code: compiled by numba once, kept on this computer, and from then on loaded without numba."""
+"""The exchange loop as machine code.
+
+It is compiled by numba once, kept on this computer, and from then on loaded without numba.
+"""
 
 import ctypes
 import hashlib
@@ -16,10 +19,11 @@ from ...versions import version_of
 from .tables import ENTRY, Integers
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
-"""Environment variable that moves the folder in which machine code is kept, by default ``~/.cache/rockshed``."""
+"""Environment variable with the folder of machine code, by default ``~/.cache/rockshed``."""
 
 Advance = Callable[[Integers, int, int], tuple[int, int, int]]
-"""The function :func:`rockshed.core.loop.compiled.advance`, but for its tables, which are given by their :func:`~.tables.head`."""
+"""The function :func:`rockshed.core.loop.compiled.advance`, with the :func:`~.tables.head` of the
+tables in the place of the tables."""
 
 _CORE = Path(__file__).parents[1]
 _SOURCES = (
@@ -35,7 +39,7 @@ _SOURCES = (
 
 @cache
 def _engine() -> Any:
-    """The machine code in memory."""
+    """Return the machine code in memory."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     target = llvm.Target.from_default_triple().create_target_machine(
@@ -49,11 +53,13 @@ def _engine() -> Any:
 
 @cache
 def advance() -> Advance:
-    """The loop, ready to be called. The global interpreter lock is kept during the call."""
+    """Return the loop, ready to be called.
+
+    The global interpreter lock is kept during the call.
+    """
     integer = ctypes.c_int64
-    function = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)(
-        _engine().get_function_address(ENTRY)
-    )
+    kind = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)
+    function = kind(_engine().get_function_address(ENTRY))
 
     def call(head: Integers, first: int, count: int) -> tuple[int, int, int]:
         outcome = (integer * 3)()
@@ -68,8 +74,8 @@ def _features() -> str:
 
 
 def _code(target: llvm.TargetMachine) -> bytes:
-    """Object code from the cache, or compiled and kept."""
-    file = _folder() / f"loop-{_stamp()}.o"
+    """Return object code from the cache, or compile and keep it."""
+    file = _file()
     with suppress(OSError):
         return file.read_bytes()
     from .compiled import object_code
@@ -82,32 +88,23 @@ def _code(target: llvm.TargetMachine) -> bytes:
 
 
 def is_kept() -> bool:
-    """Whether the loop has been compiled for this computer already."""
-    return (_folder() / f"loop-{_stamp()}.o").is_file()
+    """Tell whether the loop has been compiled for this computer already."""
+    return _file().is_file()
 
 
-def _folder() -> Path:
-    root = os.environ.get(CACHE_VARIABLE) or os.path.join(
-        os.environ.get("XDG_CACHE_HOME") or "~/.cache", "rockshed"
-    )
-    return Path(os.path.expanduser(root))
+def _file() -> Path:
+    caches = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+    folder = os.environ.get(CACHE_VARIABLE) or os.path.join(caches, "rockshed")
+    return Path(os.path.expanduser(folder)) / f"loop-{_stamp()}.o"
 
 
 @cache
 def _stamp() -> str:
-    """Hash of all that the code follows from: sources, compilers, processor."""
+    """Return a hash of all that the code follows from: sources, compilers, processor."""
     digest = hashlib.sha256()
     for name in _SOURCES:
         digest.update((_CORE / name).read_bytes() + b"\0")
-    digest.update(
-        repr(
-            [
-                version_of("numba"),
-                version_of("llvmlite"),
-                llvm.get_default_triple(),
-                llvm.get_host_cpu_name(),
-                _features(),
-            ]
-        ).encode()
-    )
+    compilers = [version_of("numba"), version_of("llvmlite")]
+    processor = [llvm.get_default_triple(), llvm.get_host_cpu_name(), _features()]
+    digest.update(repr(compilers + processor).encode())
     return digest.hexdigest()[:24]

@@ -1,4 +1,4 @@
-"""The loop of a run, and what ends it early: a slave that fails, or Ctrl-C."""
+"""The course of a run, and what ends it early: a slave that fails, or Ctrl-C."""
 
 import signal
 import threading
@@ -10,15 +10,16 @@ from typing import Any
 from ..errors import RunFailed
 from ..fmu.slave import FATAL, STATUS_NAMES, Slave
 from ..system.clock import to_seconds
-from ..system.plan import Plan
-from ..system.schedule import Action, Operation
-from .exchange import Driver, Fault, State
+from ..system.schedule import Action
+from .buses import Buses
+from .exchange import ExchangeLoop, Fault
 from .recording import Recorder, last_words
 from .tables import NOT_FINITE
 
 _MOST_AT_ONCE = 1000
+"""Exchanges between two looks at Ctrl-C."""
 _SECONDS_AT_ONCE = 0.1
-"""Exchanges between two looks at Ctrl-C, and the time (s) that they should take."""
+"""Time (s) between two looks at Ctrl-C."""
 _GROWTH = 10
 """So many times as many exchanges may follow as came before: what they take may grow."""
 
@@ -27,10 +28,10 @@ Progress = Callable[[float, float], None]
 
 
 class Interruption:
-    """Ctrl-C as a flag that the loop asks for. A context manager.
+    """Ctrl-C as a flag that the master asks for. A context manager.
 
-    An exception would be raised wherever Python happens to be, inside an FMU too, which takes it for its own failure. The second
-    Ctrl-C is not caught any more.
+    An exception would be raised wherever Python happens to be, inside an FMU too, which takes it
+    for its own failure. The second Ctrl-C is not caught any more.
     """
 
     def __init__(self) -> None:
@@ -57,36 +58,58 @@ class Interruption:
 
 
 class Master:
-    """Drives slaves that are initialised through a run.
+    """Drives initialised slaves through a run.
 
-    exchanges: number of exchanges carried out. wall_time: time (s) that they took, snapshots included. cpu_time: that of the
-    processor (s). recording_time: time (s) from snapshots to files, and for states.
+    Parameters
+    ----------
+    slaves : mapping of str to Slave
+        By component.
+    buses : Buses
+        With the values after the initialisation.
+    recorder : Recorder
+        Takes what is to be kept.
+
+    Attributes
+    ----------
+    exchanges : int
+        Number of exchanges carried out.
+    wall_time, cpu_time : float
+        Time (s) that they took, snapshots included; that of the processor.
+    recording_time : float
+        Time (s) from snapshots to files, and for states.
     """
 
-    def __init__(
-        self,
-        plan: Plan,
-        slaves: Mapping[str, Slave],
-        state: State,
-        driver: Driver,
-        recorder: Recorder,
-    ) -> None:
-        self._plan, self._slaves, self._state, self._driver, self._recorder = (
-            plan,
-            slaves,
-            state,
-            driver,
-            recorder,
-        )
-        self._snapshots = state.snapshots
-        self.exchanges, self._at_once = 0, 1
-        self.wall_time, self.cpu_time, self.recording_time = 0.0, 0.0, 0.0
+    def __init__(self, slaves: Mapping[str, Slave], buses: Buses, recorder: Recorder) -> None:
+        self._plan = buses.plan
+        self._slaves = slaves
+        self._buses = buses
+        self._recorder = recorder
+        self._loop = ExchangeLoop(buses, slaves)
+        self._at_once = 1
+        self.exchanges = 0
+        self.wall_time = 0.0
+        self.cpu_time = 0.0
+        self.recording_time = 0.0
 
     def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
-        """Carry out all exchanges. False if Ctrl-C has ended the run before; rows up to the end are recorded in any case.
+        """Carry out all exchanges. Rows up to the end are recorded in any case.
 
-        Raises:
-            RunFailed: a slave failed, or gave a value that is no finite number.
+        Parameters
+        ----------
+        interruption : Interruption
+            Ends the run when it is requested.
+        progress : callable, optional
+            Called now and then with the time reached and the stop time (s).
+
+        Returns
+        -------
+        bool
+            False if the run was interrupted.
+
+        Raises
+        ------
+        RunFailed
+            A slave failed, or gave a value that is no finite number.
         """
         began = time.perf_counter()
         try:
@@ -96,98 +119,101 @@ class Master:
             self.recording_time = time.perf_counter() - began - self.wall_time
 
     def _run(self, interruption: Interruption, progress: Progress | None) -> bool:
-        timing, stop = self._plan.timing, self._plan.timing.seconds(self._plan.timing.exchanges)
-        self._state.open_accounts()
+        timing = self._plan.timing
+        stop = timing.seconds(timing.exchanges)
+        snapshots = self._buses.snapshots
+        self._buses.open_accounts()
         self._record()
         self._recorder.frames(0)
         while self.exchanges < timing.exchanges and not interruption.requested:
             due = min(self._recorder.next_frames(self.exchanges), timing.exchanges)
-            self._advance(min(due - self.exchanges, self._at_once, self._snapshots.room))
+            self._advance(min(due - self.exchanges, self._at_once, snapshots.room))
             if self.exchanges == due:
                 self._recorder.frames(due)
             if progress is not None:
                 progress(timing.seconds(self.exchanges), stop)
-        if self.exchanges % self._snapshots.every:
+        if self.exchanges % snapshots.every:
             self._record()
         return self.exchanges == timing.exchanges
 
     def _record(self) -> None:
-        """Write a row now."""
-        self._state.journal[:] = self.exchanges - 1, -1
-        lost = self._state.record(self._slaves, len(self._snapshots.waiting))
-        if lost is not None:
-            raise self._failure(
-                Fault(self.exchanges - 1, Operation(Action.RECORD, lost[0]), lost[1])
-            )
-        self._snapshots.waiting.append(self.exchanges)
+        """Take a row of the present values."""
+        fault = self._loop.record(self.exchanges)
+        if fault is not None:
+            raise self._failure(fault) from fault.cause
+        self._buses.snapshots.waiting.append(self.exchanges)
         self._recorder.look()
 
     def _advance(self, count: int) -> None:
-        began, began_of_thread = time.perf_counter(), time.thread_time()
-        fault = self._driver.advance(self.exchanges, count)
+        began = time.perf_counter()
+        began_of_thread = time.thread_time()
+        fault = self._loop.advance(self.exchanges, count)
         took = time.perf_counter() - began
         self.wall_time += took
         self.cpu_time += time.thread_time() - began_of_thread
-        first, self.exchanges = self.exchanges, self.exchanges + count
+        self._arrive(count, fault)
+        if fault is not None:
+            raise self._failure(fault) from fault.cause
+        self._recorder.look()
+        in_time = int(count * _SECONDS_AT_ONCE / max(took, 1e-9))
+        self._at_once = max(1, min(_MOST_AT_ONCE, _GROWTH * self._at_once, in_time))
+
+    def _arrive(self, count: int, fault: Fault | None) -> None:
+        """Count exchanges and the rows that were taken in them, up to a fault."""
+        first = self.exchanges
+        self.exchanges = first + count
+        rows_until = self.exchanges
         if fault is not None:
             recording = fault.operation.action is Action.RECORD
             self.exchanges = fault.exchange + recording
-            self._snapshots.waiting.extend(self._snapshots.due(first, self.exchanges - recording))
-            raise self._failure(fault)
-        self._snapshots.waiting.extend(self._snapshots.due(first, self.exchanges))
-        self._recorder.look()
-        self._at_once = max(
-            1,
-            min(
-                _MOST_AT_ONCE,
-                _GROWTH * self._at_once,
-                int(count * _SECONDS_AT_ONCE / max(took, 1e-9)),
-            ),
-        )
+            rows_until = fault.exchange
+        snapshots = self._buses.snapshots
+        snapshots.waiting.extend(snapshots.due(first, rows_until))
 
     def _failure(self, fault: Fault) -> RunFailed:
-        """What went wrong, with the slave's own words."""
-        schedule, operation, timing = self._plan.schedule, fault.operation, self._plan.timing
-        name, said = operation.component, last_words(self._slaves[operation.component])
+        """Say what went wrong, in the slave's own words."""
+        name = fault.operation.component
+        said = last_words(self._slaves[name])
         if fault.status == FATAL:
             self._slaves[name].messages.append((FATAL, "cannot be used any more"))
-        if operation.action is Action.RECORD:
-            return RunFailed(
-                name,
-                timing.seconds(fault.exchange + 1),
-                self._not_recorded(name)
-                if fault.status == NOT_FINITE
-                else f"does not give its values ({STATUS_NAMES[fault.status]}): {said}",
-            )
-        period = (
-            timing.start + fault.exchange // schedule.period * schedule.period * schedule.exchange
-        )
         if fault.status == NOT_FINITE:
-            end = self._state.not_finite(name)
-            assert end is not None
-            return RunFailed(
-                name,
-                timing.seconds(fault.exchange + 1),
-                f"{end.name} is no finite number: the computation diverges; "
-                "reduce the exchange step or the steps of the components connected with it",
-            )
-        what = {
+            return RunFailed(name, self._plan.timing.seconds(fault.exchange + 1), self._lost(fault))
+        what = f"{self._what(fault)} ({STATUS_NAMES[fault.status]}): {said}"
+        return RunFailed(name, self._time(fault), what)
+
+    def _what(self, fault: Fault) -> str:
+        return {
             Action.SET: "the inputs are refused",
             Action.GET: "the outputs are refused",
-            Action.STEP: f"the step by {to_seconds(operation.length):.6g} s failed",
-        }[operation.action]
-        at = (
-            to_seconds(period + operation.begin)
-            if operation.action is Action.STEP
-            else timing.seconds(fault.exchange)
-        )
-        return RunFailed(name, at, f"{what} ({STATUS_NAMES[fault.status]}): {said}")
+            Action.STEP: f"the step by {to_seconds(fault.operation.length):.6g} s failed",
+            Action.RECORD: "does not give its values",
+        }[fault.operation.action]
 
-    def _not_recorded(self, name: str) -> str:
-        snapshots = self._snapshots
+    def _time(self, fault: Fault) -> float:
+        """Return the time (s) at which an operation failed."""
+        schedule = self._plan.schedule
+        timing = self._plan.timing
+        if fault.operation.action is Action.RECORD:
+            return timing.seconds(fault.exchange + 1)
+        if fault.operation.action is not Action.STEP:
+            return timing.seconds(fault.exchange)
+        period = fault.exchange // schedule.period * schedule.period
+        return to_seconds(timing.start + period * schedule.exchange + fault.operation.begin)
+
+    def _lost(self, fault: Fault) -> str:
+        """Name the value that is no finite number, and say what may be done about it."""
+        name = fault.operation.component
+        if fault.operation.action is not Action.RECORD:
+            end = self._buses.not_finite(name)
+            assert end is not None
+            return (
+                f"{end.name} is no finite number: the computation diverges; reduce the exchange "
+                "step or the steps of the components connected with it"
+            )
+        snapshots = self._buses.snapshots
         row = snapshots.rows[len(snapshots.waiting)]
         place = snapshots.lost(row, name)
         return (
-            f"{snapshots.ends[place].name} = {row[place]} is no finite number; reduce the steps, or leave the "
-            "variable out of the record if it may be so"
+            f"{snapshots.ends[place].name} = {row[place]} is no finite number; reduce the steps, "
+            "or leave the variable out of the record if it may be so"
         )

@@ -1,4 +1,4 @@
-"""What is kept of a run: rows of the time series, frames of serialized states, the energies of the couplings."""
+"""Records of a run: rows of the time series, and frames of serialized states."""
 
 import time
 from collections.abc import Mapping
@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ..errors import RunFailed
 from ..fmu.slave import Slave, without_name
 from ..results.run_folder import Column
-from ..system.plan import Plan
 from .ledger import Accounts
 from .snapshots import Snapshots
 
@@ -19,7 +18,7 @@ _SECONDS_TOGETHER = 1.0
 
 
 class Sink(Protocol):
-    """Where rows and frames go."""
+    """Takes rows and frames."""
 
     def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
         """Append the values of all columns, a row for each time (s)."""
@@ -29,30 +28,37 @@ class Sink(Protocol):
 
 
 class Recorder:
-    """Makes rows of snapshots, and frames of states."""
+    """Makes rows of snapshots, and frames of states.
+
+    Parameters
+    ----------
+    slaves : mapping of str to Slave
+        By component.
+    snapshots : Snapshots
+        Rows that the loop has taken.
+    accounts : Accounts
+        Gives the columns of the energy accounts.
+    sink : Sink
+        Takes rows and frames.
+    """
 
     def __init__(
-        self,
-        plan: Plan,
-        slaves: Mapping[str, Slave],
-        snapshots: Snapshots,
-        accounts: Accounts,
-        sink: Sink,
+        self, slaves: Mapping[str, Slave], snapshots: Snapshots, accounts: Accounts, sink: Sink
     ) -> None:
-        self._plan, self._slaves, self._snapshots, self._accounts, self._sink = (
-            plan,
-            slaves,
-            snapshots,
-            accounts,
-            sink,
-        )
-        self._places = np.array([snapshots.place[end.name] for end in plan.recorded], np.int64)
-        self._framed = [name for name in plan.order if plan.system.components[name].record_states]
+        self._plan = accounts.plan
+        self._slaves = slaves
+        self._snapshots = snapshots
+        self._accounts = accounts
+        self._sink = sink
+        recorded = self._plan.recorded
+        self._places = np.array([snapshots.place[end.name] for end in recorded], np.int64)
+        components = self._plan.system.components
+        self._framed = [name for name in self._plan.order if components[name].record_states]
         self._flushed_at = time.monotonic()
 
     @property
     def columns(self) -> list[Column]:
-        """The columns of a row."""
+        """Columns of a row, without the time."""
         recorded = [
             Column(end.name, end.port.unit_name, end.port.description)
             for end in self._plan.recorded
@@ -60,7 +66,7 @@ class Recorder:
         return recorded + self._accounts.described
 
     def look(self) -> None:
-        """Pass on the snapshots that wait, if they have done so for a while or there is no more room."""
+        """Pass on the snapshots that wait, if they have done so for a while or fill all rows."""
         if time.monotonic() - self._flushed_at > _SECONDS_TOGETHER or self._snapshots.room <= 0:
             self.flush()
 
@@ -68,27 +74,30 @@ class Recorder:
         """Pass on the snapshots that wait."""
         waiting = self._snapshots.waiting
         if waiting:
-            found = self._snapshots.rows[: len(waiting)]
+            rows = self._snapshots.rows[: len(waiting)]
             times = np.array([self._plan.timing.seconds(exchange) for exchange in waiting])
-            self._sink.rows(
-                times,
-                np.concatenate(
-                    (found[:, self._places], self._accounts.values(found, times)), axis=1
-                ),
-            )
+            energies = self._accounts.values(rows, times)
+            self._sink.rows(times, np.concatenate((rows[:, self._places], energies), axis=1))
             waiting.clear()
         self._flushed_at = time.monotonic()
 
     def next_frames(self, exchange: int) -> int:
-        """The next exchange after which states are to be recorded; the last one where none are."""
+        """Return the next exchange after which states are recorded; the last one if none are."""
         every = self._plan.timing.state_every
         return exchange - exchange % every + every if self._framed else self._plan.timing.exchanges
 
     def frames(self, exchange: int) -> None:
         """Record the states that are due after this many exchanges.
 
-        Raises:
-            RunFailed: a slave does not give its state.
+        Parameters
+        ----------
+        exchange : int
+            Number of exchanges carried out.
+
+        Raises
+        ------
+        RunFailed
+            A slave does not give its state.
         """
         if exchange % self._plan.timing.state_every == 0:
             at = self._plan.timing.seconds(exchange)
@@ -103,7 +112,7 @@ class Recorder:
 
 
 def last_words(slave: Slave) -> str:
-    """What a slave logged last; nothing if it never did."""
-    return (
-        without_name(slave.name, slave.messages[-1][1]) if slave.messages else "without a message"
-    )
+    """Return the last message of a slave."""
+    if not slave.messages:
+        return "without a message"
+    return without_name(slave.name, slave.messages[-1][1])

@@ -1,4 +1,7 @@
-"""The tables that the exchange loop works on, as it finds them in memory. Addresses, places and ticks are int64, values float64."""
+"""The tables that the exchange loop works on, as they lie in memory.
+
+Addresses, places and ticks are int64, values float64.
+"""
 
 from typing import NamedTuple
 
@@ -10,7 +13,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 NOT_FINITE = -1
-"""Outcome of an operation that brought a value that is no finite number."""
+"""Status of an operation that brought a value that is no finite number."""
 
 
 def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
@@ -21,34 +24,60 @@ def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
 
 
 OPERATION = _record("action instance do_step begin length first_move end_move")
-"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks, from the beginning of the period.
-first_move, end_move: rows in the table of moves, for any other action."""
+"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks,
+from the beginning of the period. first_move, end_move: rows in the table of moves, for other
+actions."""
 
 MOVE = _record("function instance references number begin whole")
-"""A bulk call that moves ``number`` values from place ``begin`` of a bus on. function, instance, references: addresses. whole: the
-values travel as 32-bit integers."""
+"""A call that moves ``number`` values from place ``begin`` of a bus on. function, instance,
+references: addresses. whole: the values travel as 32-bit integers."""
 
 CHANNEL = _record(
     "given seen force position", "last_seen last_force last_position taken given_back"
 )
-"""A force of a power bond. Places as in :class:`rockshed.core.system.plan.Bond`. taken, given_back: work (J) on the taker, and on the
-giver by what it was shown."""
+"""A force of a power bond. Places as in :class:`rockshed.core.system.plan.BondPlaces`. taken,
+given_back: work (J) on the taker, and on the giver by what it was shown."""
 
 WATCHED = _record("place low_at high_at", "low high last area")
-"""Smallest and largest value of a watched output, and the exchanges after which they were reached; its newest value, and the area
-under it: its integral in units of the exchange step."""
+"""Smallest and largest value of a watched output, and the exchanges after which they were reached;
+its newest value, and the area under it: its integral in units of the exchange step."""
 
 
 class Tables(NamedTuple):
     """Everything that the loop works on.
 
-    first: operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those after the last of a period read
-    what is recorded. start, exchange: ticks.
-    inputs, outputs: the two buses. source: for each input, the place of the output that feeds it; unsigned, so that numba does not
-    look whether it counts from the end.
-    integers: buffer for values on their way as integers, as long as any row of them.
-    snapshots: rows of :class:`rockshed.core.loop.snapshots.Snapshots`, ``width`` numbers each, one ``every`` so many exchanges, the
-    next one in ``row``. journal: exchange and operation under way, -1 while none is.
+    Attributes
+    ----------
+    start, exchange : int
+        Time at the start and exchange step (ticks).
+    every : int
+        Number of exchanges for one row of snapshots.
+    width : int
+        Numbers in a row.
+    row : int
+        The next row.
+    first : array of int64
+        Operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those
+        after the last of a period read what is recorded.
+    operations : array of OPERATION
+        All operations of a period, then those that read what is recorded.
+    moves : array of MOVE
+        Calls that move values.
+    inputs, outputs : array of float64
+        The two buses.
+    source : array of uint64
+        For each input, the place of the output that feeds it; unsigned, so that numba does not
+        look whether it counts from the end.
+    integers : array of int32
+        Buffer for values on their way as integers, as long as any row of them.
+    channels : array of CHANNEL
+        Forces of power bonds.
+    watched : array of WATCHED
+        Watched outputs.
+    snapshots : array of float64
+        Rows of :class:`rockshed.core.loop.snapshots.Snapshots`, one after the other.
+    journal : array of int64, shape (2,)
+        Exchange and operation under way, -1 while none is.
     """
 
     start: int
@@ -92,10 +121,21 @@ ENTRY = "rockshed_advance"
 
 
 def head(tables: Tables) -> Integers:
-    """All that the loop is told: numbers, then address and length of each array, which has to stay where it is.
+    """Return the numbers among the tables, then address and length of each array.
 
-    Raises:
-        ValueError: an array is not of its kind, or not in one piece.
+    Parameters
+    ----------
+    tables : Tables
+        The arrays have to stay where they are.
+
+    Returns
+    -------
+    array of int64
+
+    Raises
+    ------
+    ValueError
+        An array is not of its kind, or not in one piece.
     """
     entries = [getattr(tables, name) for name in NUMBERS]
     for name, kind in KINDS.items():

@@ -1,4 +1,4 @@
-"""Where the results of a run come from: files, versions, parameters."""
+"""Provenance of a run: files, versions, parameters."""
 
 import platform
 from collections.abc import Mapping
@@ -19,7 +19,22 @@ _PACKAGES = ("numpy", "numba", "llvmlite", "fmpy", "pythonfmu", "pyarrow", "h5py
 def describe_run(
     plan: Plan, sources: Mapping[str, Source], slaves: Mapping[str, Slave]
 ) -> dict[str, Any]:
-    """Everything that is known of a run before its first step, as plain data."""
+    """Describe a run before its first step, as plain data.
+
+    Parameters
+    ----------
+    plan : Plan
+        The system as it is run.
+    sources : mapping of str to Source
+        Makers of the slaves.
+    slaves : mapping of str to Slave
+        Initialised: their parameters are read.
+
+    Returns
+    -------
+    dict
+        For ``run.json``.
+    """
     return {
         "name": plan.system.name,
         "started": datetime.now(UTC).isoformat(),
@@ -53,7 +68,8 @@ def declarations(description: Description) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``contents`` of its states, ``pictures``, and ``variables``: roles, labels and figures of those
+        ``contents`` of its states, ``pictures``, and ``variables``: roles, labels and figures of
+        those
         that have any; of an array once, without the number of an element.
     """
     variables = {
@@ -66,7 +82,7 @@ def declarations(description: Description) -> dict[str, Any]:
 
 
 def _parameters(plan: Plan, slave: Slave) -> dict[str, Any]:
-    """The values of all parameters as the slave has them; of strings, those that were set."""
+    """Read the values of all parameters from the slave; of strings, those that were set."""
     found: dict[str, Any] = {
         port.name: {"value": value}
         for port, value in plan.starts[slave.name]

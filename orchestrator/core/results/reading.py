@@ -1,4 +1,7 @@
-"""Reading the results of a run, finished or not. The files: :mod:`rockshed.core.results.run_folder`."""
+"""Reading the results of a run, finished or not.
+
+The files are described in :mod:`rockshed.core.results.run_folder`.
+"""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -134,7 +137,18 @@ class Run:
         return f"{name}: {self.status}, {reached} of {len(self.series) - 1} variables".lstrip(": ")
 
     def states(self, component: str) -> Iterator[tuple[float, bytes]]:
-        """Time (s) and serialized state of a component, in the order in which they were recorded."""
+        """Read the recorded states of a component in the order of time.
+
+        Parameters
+        ----------
+        component : str
+            Its name in the system.
+
+        Yields
+        ------
+        (float, bytes)
+            Time (s) and serialized state.
+        """
         if (self.folder / STATES_STREAM).is_file():
             yield from (
                 (at, state)
@@ -155,49 +169,56 @@ def _stored_states(path: Path, component: str) -> Iterator[tuple[float, bytes]]:
 
 
 def read_run(folder: Path) -> Run:
-    """Read the folder of a run, or what a run that was killed has left beside it.
+    """Read the folder of a run, or what a run that was killed has left.
 
-    Raises:
-        InputRefused: there is no run, or a file of it is damaged.
+    Parameters
+    ----------
+    folder : Path
+        Folder of the run.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    InputRefused
+        There is no run, or a file of it is damaged.
     """
-    places = (folder, running_folder(folder.absolute()))
-    found = next((place for place in places if (place / RUN).is_file()), None)
-    if found is None:
-        raise InputRefused(
-            [
-                Problem(
-                    str(folder),
-                    f"is no folder of a run: there is no {RUN}",
-                    "give the folder of a run",
-                )
-            ]
-        )
-    with _undamaged(found / RUN):
-        provenance = json.loads((found / RUN).read_text(encoding="utf-8"))
+    place = _place_of(folder)
+    with _undamaged(place / RUN):
+        provenance = json.loads((place / RUN).read_text(encoding="utf-8"))
         if not isinstance(provenance, dict) or "status" not in provenance:
             raise ValueError("it does not describe a run")
-    if not (found / COLUMNS).is_file() and "kind" in provenance:
-        raise InputRefused(
-            [
-                Problem(
-                    str(folder),
-                    f"is a {provenance['kind']} campaign, which has no time series",
-                    "give the folder of a run; the campaign's pictures are in its folder figures",
-                )
-            ]
+    if not (place / COLUMNS).is_file() and "kind" in provenance:
+        raise _refusal(
+            folder,
+            f"is a {provenance['kind']} campaign, which has no time series",
+            "give the folder of a run; the campaign's pictures are in its folder figures",
         )
-    with _undamaged(found / COLUMNS):
-        columns = read_columns(found / COLUMNS)
-    with _undamaged(found / SUMMARY):
-        summary = (
-            [
-                Metric.from_entry(entry)
-                for entry in json.loads((found / SUMMARY).read_text(encoding="utf-8"))
-            ]
-            if (found / SUMMARY).is_file()
-            else []
-        )
-    return Run(found, provenance, Metrics(summary), columns, _read_series(found, columns))
+    with _undamaged(place / COLUMNS):
+        columns = read_columns(place / COLUMNS)
+    with _undamaged(place / SUMMARY):
+        metrics = _read_metrics(place / SUMMARY)
+    return Run(place, provenance, metrics, columns, _read_series(place, columns))
+
+
+def _place_of(folder: Path) -> Path:
+    for place in (folder, running_folder(folder.absolute())):
+        if (place / RUN).is_file():
+            return place
+    raise _refusal(folder, f"is no folder of a run: there is no {RUN}", "give the folder of a run")
+
+
+def _refusal(folder: Path, what: str, remedy: str) -> InputRefused:
+    return InputRefused([Problem(str(folder), what, remedy)])
+
+
+def _read_metrics(path: Path) -> Metrics:
+    """Read a summary, which a run that has not ended does not have."""
+    if not path.is_file():
+        return Metrics()
+    return Metrics(map(Metric.from_entry, json.loads(path.read_text(encoding="utf-8"))))
 
 
 @contextmanager
@@ -207,12 +228,8 @@ def _undamaged(path: Path) -> Iterator[None]:
         yield
     except (ValueError, TypeError, KeyError, AttributeError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise InputRefused(
-            [
-                Problem(
-                    str(path), f"cannot be read: {reason}", "the results are damaged; run it again"
-                )
-            ]
+        raise _refusal(
+            path, f"cannot be read: {reason}", "the results are damaged; run it again"
         ) from error
 
 
@@ -221,10 +238,9 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     import pyarrow.parquet
 
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
-        with (
-            _undamaged(folder / PARQUET),
-            pyarrow.parquet.ParquetFile(folder / PARQUET) as file,
-        ):  # read_table imports more
+        path = folder / PARQUET
+        # read_table would import more
+        with _undamaged(path), pyarrow.parquet.ParquetFile(path) as file:
             table = file.read(columns=[column.name for column in columns])
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))

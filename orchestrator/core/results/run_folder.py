@@ -1,23 +1,26 @@
-"""Results of a run: a folder with time series, states, summary and provenance, written so that a killed run can be read.
+"""Results of a run: a folder that appears as a whole and that can be read after a crash.
 
-While a run is going on, everything goes into ``NAME.running`` beside the folder ``NAME``; when it ends, that takes the place of
-``NAME`` as a whole. Rows and states are appended to Arrow streams, which can be read up to the last complete batch whatever
-happens, and are turned into the final files at the end.
+While a run is going on, everything goes into ``NAME.running`` in the same place as the folder
+``NAME``; when the run ends, that takes the place of ``NAME`` as a whole. Rows and states are
+appended to Arrow streams, which can be read up to the last complete batch whatever happens, and are
+turned into the final files at the end.
 
-==================  =====================================================================================================
+==================  ================================================================================
 run.json            status (running, complete, interrupted, failed), error, warnings, provenance
-summary.json        list of {name, value, unit}, with {references} where an application knows of any
-timeseries.parquet  columns ``time`` and ``component.variable``; unit and description in the metadata of each field
+summary.json        list of {id, name, value, unit}, with {references} where there are any
+timeseries.parquet  columns ``time`` and ``component.variable``; unit and description in the
+                    metadata of each field
 timeseries.csv      the same, ``time`` first, one line of names
 columns.csv         name, unit and description of each column
-states.h5           per component: ``time`` (n,), and serialized states ``state/0`` to ``state/n-1`` (bytes as uint8)
-==================  =====================================================================================================
+states.h5           per component: ``time`` (n,), and serialized states ``state/0`` to
+                    ``state/n-1`` (bytes as uint8)
+==================  ================================================================================
 """
 
 import csv
 import json
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import chain
 from pathlib import Path
@@ -29,17 +32,32 @@ from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from ...files import write_json
-from ..errors import InputRefused, Problem
+from ..errors import InputRefused, Problem, refusing_unwritable
 from .metric import Metric
 
-RUN, SUMMARY, COLUMNS = "run.json", "summary.json", "columns.csv"
-PARQUET, CSV, STATES = "timeseries.parquet", "timeseries.csv", "states.h5"
-ROWS_STREAM, STATES_STREAM = "timeseries.arrows", "states.arrows"
+RUN = "run.json"
+SUMMARY = "summary.json"
+COLUMNS = "columns.csv"
+PARQUET = "timeseries.parquet"
+CSV = "timeseries.csv"
+STATES = "states.h5"
+ROWS_STREAM = "timeseries.arrows"
+STATES_STREAM = "states.arrows"
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the time series."""
+    """A column of the time series.
+
+    Attributes
+    ----------
+    name : str
+        ``time`` or ``component.variable``.
+    unit : str
+        FMI unit, ``1`` where there is none.
+    description : str
+        Of the variable.
+    """
 
     name: str
     unit: str
@@ -49,21 +67,32 @@ class Column:
 class RunFolder:
     """The folder of one run, locked against other runs while it is open. A context manager.
 
-    Left before :meth:`begin`, it leaves nothing behind; left between :meth:`begin` and :meth:`finish`, what a killed run leaves.
+    Left before :meth:`begin`, it leaves nothing behind; left between :meth:`begin` and
+    :meth:`finish`, what a killed run leaves.
 
-    Raises:
-        InputRefused: the folder cannot be written, holds something else than a run, or another run is writing it.
+    Parameters
+    ----------
+    folder : Path
+        Its final place.
+
+    Attributes
+    ----------
+    running : Path
+        Folder in which the run writes.
+
+    Raises
+    ------
+    InputRefused
+        The folder cannot be written, holds something else than a run, or another run is writing
+        it.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.absolute()
         self.running = running_folder(self.folder)
         self._old = self.folder.parent / f".{self.folder.name}.old"
-        self._made = [
-            parent
-            for parent in (self.folder.parent, *self.folder.parent.parents)
-            if not parent.exists()
-        ]
+        above = (self.folder.parent, *self.folder.parent.parents)
+        self._made = [parent for parent in above if not parent.exists()]
         self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
         self.columns: list[Column] = []
         self._rows: _Stream | None = None
@@ -75,24 +104,30 @@ class RunFolder:
                 "is no folder of a run, and would be overwritten", "choose another folder"
             )
         try:
+            self._open()
+        except InputRefused:
+            self._clean()
+            raise
+        return self
+
+    def _open(self) -> None:
+        with refusing_unwritable(self.folder, "choose another folder"):
             self.folder.parent.mkdir(parents=True, exist_ok=True)
-            self._lock.acquire(timeout=0)
+            try:
+                self._lock.acquire(timeout=0)
+            except Timeout:
+                raise self._taken() from None
             for left in filter(Path.exists, (self.running, self._old)):  # by a run that was killed
                 shutil.rmtree(left)
             self.running.mkdir()
-        except Timeout:
-            if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
-                self._clean()
-                raise self._refusal("cannot be written", "choose another folder") from None
-            raise self._refusal(
-                "another run is writing there", "wait for its end or choose another folder"
-            ) from None
-        except OSError as error:
-            self._clean()
-            raise self._refusal(
-                f"cannot be written: {error.strerror or error}", "choose another folder"
-            ) from error
-        return self
+
+    def _taken(self) -> InputRefused:
+        """Say why there is no lock."""
+        if not Path(self._lock.lock_file).exists():  # nobody holds it: it cannot be made here
+            return self._refusal("cannot be written", "choose another folder")
+        return self._refusal(
+            "another run is writing there", "wait for its end or choose another folder"
+        )
 
     def __exit__(
         self,
@@ -121,7 +156,15 @@ class RunFolder:
     # ------------------------------------------------------------------ during the run
 
     def begin(self, columns: Sequence[Column], provenance: Mapping[str, Any]) -> None:
-        """Write down what is about to run. ``columns`` without the time."""
+        """Write down what is about to run.
+
+        Parameters
+        ----------
+        columns : sequence of Column
+            Without the time.
+        provenance : mapping
+            Content of ``run.json``, without the status.
+        """
         import pyarrow as pa
 
         self.columns = [Column("time", "s", "simulated time"), *columns]
@@ -134,7 +177,7 @@ class RunFolder:
         )
 
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
-        """Replace ``run.json``."""
+        """Replace ``run.json`` by other facts."""
         self.provenance = dict(provenance)
         write_json(self.running / RUN, self.provenance)
 
@@ -145,7 +188,15 @@ class RunFolder:
             writer.writerows(map(asdict, self.columns))
 
     def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
-        """Append the values of all columns, a row for each time (s)."""
+        """Append the values of all columns.
+
+        Parameters
+        ----------
+        times : array of float, shape (n,)
+            In s.
+        values : array of float, shape (n, columns)
+            Without the time.
+        """
         if self._rows is not None:
             self._rows.append([times, *np.ascontiguousarray(values.T)])
 
@@ -156,22 +207,41 @@ class RunFolder:
 
     # ------------------------------------------------------------------ at the end
 
-    def finish(self, status: str, figures: Sequence[Metric], **facts: Any) -> None:
-        """Write the final files and put them in the place of the folder. ``facts`` are added to the provenance."""
+    def finish(self, status: str, metrics: Sequence[Metric], **facts: Any) -> None:
+        """Write the final files and put them in the place of the folder.
+
+        Parameters
+        ----------
+        status : str
+            ``complete``, ``interrupted`` or ``failed``.
+        metrics : sequence of Metric
+            For the summary.
+        **facts
+            Added to the provenance.
+        """
         for stream in filter(None, (self._rows, self._states)):
             stream.close()
-        self.complete(status, figures, **facts)
+        self.complete(status, metrics, **facts)
 
-    def complete(self, status: str, figures: Sequence[Metric], **facts: Any) -> None:
-        """Turn streams, which may have been cut off, into the final files, and put them in the place of the folder."""
-        write_json(self.running / SUMMARY, [figure.as_entry() for figure in figures])
+    def complete(self, status: str, metrics: Sequence[Metric], **facts: Any) -> None:
+        """Turn streams into the final files, and put them in the place of the folder.
+
+        Parameters
+        ----------
+        status, metrics, **facts
+            As for :meth:`finish`. The streams may have been cut off.
+        """
+        write_json(self.running / SUMMARY, [metric.as_entry() for metric in metrics])
         _convert_rows(self.running, self.columns)
         _convert_states(self.running)
         self.write_provenance({**self.provenance, "status": status, **facts})
         self.swap()
 
     def swap(self) -> None:
-        """The new folder takes the place of the old one. Renaming is one step each for the file system."""
+        """Put the new folder in the place of the old one.
+
+        Renaming is one step each for the file system.
+        """
         if self.folder.exists():
             self.folder.rename(self._old)
         self.running.rename(self.folder)
@@ -179,27 +249,23 @@ class RunFolder:
 
 
 class _Stream:
-    """An Arrow stream in a file; each batch is handed to the operating system as soon as it is written."""
+    """An Arrow stream in a file. Each batch goes to the operating system at once."""
 
     def __init__(self, path: Path, schema: Any) -> None:
         import pyarrow as pa
 
-        self._schema, self._file = schema, path.open("wb")
-        self._writer = pa.ipc.new_stream(
-            self._file, schema, options=pa.ipc.IpcWriteOptions(compression="zstd")
-        )
+        self._schema = schema
+        self._file = path.open("wb")
+        compressed = pa.ipc.IpcWriteOptions(compression="zstd")
+        self._writer = pa.ipc.new_stream(self._file, schema, options=compressed)
         self._file.flush()
 
     def append(self, columns: Sequence[Any]) -> None:
-        """Write a batch, given by columns of equal length."""
+        """Write a batch: columns of equal length."""
         import pyarrow as pa
 
-        self._writer.write_batch(
-            pa.record_batch(
-                [pa.array(c, f.type) for c, f in zip(columns, self._schema, strict=True)],
-                schema=self._schema,
-            )
-        )
+        arrays = [pa.array(c, field.type) for c, field in zip(columns, self._schema, strict=True)]
+        self._writer.write_batch(pa.record_batch(arrays, schema=self._schema))
         self._file.flush()
 
     def close(self) -> None:
@@ -209,7 +275,22 @@ class _Stream:
 
 
 def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:
-    """Make what a run has left that crashed the results of a run that failed. False if it had not begun; then nothing is left."""
+    """Turn what a crashed run has left into the results of a run that failed.
+
+    Parameters
+    ----------
+    folder : Path
+        Final place of the run.
+    error : str
+        Reason of the crash.
+    **facts
+        Added to the provenance.
+
+    Returns
+    -------
+    bool
+        False if the run had not begun; then nothing is left.
+    """
     results = RunFolder(folder)
     (results.folder.parent / f".{results.folder.name}.lock").unlink(missing_ok=True)
     for left in results.running.glob("journal.*"):
@@ -224,7 +305,7 @@ def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:
 
 
 def running_folder(folder: Path) -> Path:
-    """Where a run writes before it has ended."""
+    """Return the folder in which a run writes before it has ended."""
     return folder.parent / f"{folder.name}.running"
 
 
@@ -233,25 +314,21 @@ def _is_run_or_empty(folder: Path) -> bool:
 
 
 def read_columns(path: Path) -> list[Column]:
-    """The columns in a ``columns.csv``."""
+    """Read the columns of a run from ``columns.csv``."""
     with path.open(encoding="utf-8", newline="") as file:
         return [Column(**entry) for entry in csv.DictReader(file)]
 
 
 def schema(columns: Sequence[Column]) -> Any:
-    """Arrow's schema of the time series."""
+    """Return Arrow's schema of the time series."""
     import pyarrow as pa
 
-    return pa.schema(
-        [
-            pa.field(c.name, pa.float64(), metadata={"unit": c.unit, "description": c.description})
-            for c in columns
-        ]
-    )
+    described = [(c.name, {"unit": c.unit, "description": c.description}) for c in columns]
+    return pa.schema([pa.field(name, pa.float64(), metadata=d) for name, d in described])
 
 
 def batches(path: Path) -> Iterator[Any]:
-    """The batches of a stream, up to where it was cut off."""
+    """Read the batches of a stream, up to where it was cut off."""
     import pyarrow as pa
 
     if not path.is_file():
@@ -264,7 +341,7 @@ def batches(path: Path) -> Iterator[Any]:
 
 
 def streamed_frames(folder: Path) -> Iterator[tuple[str, float, bytes]]:
-    """Component, time (s) and state of each frame in the stream of a run."""
+    """Read component, time (s) and state of each frame in the stream of a run."""
     for batch in batches(folder / STATES_STREAM):
         yield from zip(*(column.to_pylist() for column in batch.columns), strict=True)
 
@@ -281,21 +358,27 @@ def _convert_rows(folder: Path, columns: Sequence[Column]) -> None:
 
 
 def _convert_states(folder: Path) -> None:
-    times: dict[str, list[float]] = {}
     frames = streamed_frames(folder)
-    if (first := next(frames, None)) is not None:
-        import h5py
-
-        with h5py.File(folder / STATES, "w") as file:
-            for component, at, state in chain([first], frames):
-                times.setdefault(component, []).append(at)
-                file.create_dataset(
-                    f"{component}/state/{len(times[component]) - 1}",
-                    data=np.frombuffer(state, np.uint8),
-                    compression="gzip",
-                    compression_opts=1,
-                    shuffle=True,
-                )
-            for component, values in times.items():
-                file.create_dataset(f"{component}/time", data=values).attrs["unit"] = "s"
+    first = next(frames, None)
+    if first is not None:
+        _write_states(folder / STATES, chain([first], frames))
     (folder / STATES_STREAM).unlink()
+
+
+def _write_states(path: Path, frames: Iterable[tuple[str, float, bytes]]) -> None:
+    import h5py
+
+    times: dict[str, list[float]] = {}
+    with h5py.File(path, "w") as file:
+        for component, at, state in frames:
+            its_times = times.setdefault(component, [])
+            file.create_dataset(
+                f"{component}/state/{len(its_times)}",
+                data=np.frombuffer(state, np.uint8),
+                compression="gzip",
+                compression_opts=1,
+                shuffle=True,
+            )
+            its_times.append(at)
+        for component, values in times.items():
+            file.create_dataset(f"{component}/time", data=values).attrs["unit"] = "s"

@@ -8,16 +8,30 @@ _RANGE = re.compile(r"\[(?:\*|(\d+)\.\.(\d+))\]")
 
 
 def is_shorthand(name: str) -> bool:
-    """Whether the name stands for several elements of an array."""
+    """Tell whether a name stands for several elements of an array."""
     return _RANGE.search(name) is not None
 
 
 def expand(name: str, known: Iterable[str]) -> list[str]:
-    """The names that a shorthand stands for, by rising index: ``x[*]`` all that are ``known``, ``x[1..24]`` exactly these."""
+    """Return the names that a shorthand stands for, by rising index.
+
+    Parameters
+    ----------
+    name : str
+        ``x[*]`` for all elements that are known, ``x[1..24]`` for exactly these.
+    known : iterable of str
+        Names that there are.
+
+    Returns
+    -------
+    list of str
+        The name itself where it is no shorthand.
+    """
     found = _RANGE.search(name)
     if found is None:
         return [name]
-    head, tail = name[: found.start()], name[found.end() :]
+    head = name[: found.start()]
+    tail = name[found.end() :]
     if found.group(1) is not None:
         return [f"{head}[{i}]{tail}" for i in range(int(found.group(1)), int(found.group(2)) + 1)]
     element = re.compile(re.escape(head) + r"\[(\d+)\]" + re.escape(tail))
@@ -26,24 +40,36 @@ def expand(name: str, known: Iterable[str]) -> list[str]:
 
 
 def matches(shorthand: str, name: str) -> bool:
-    """Whether ``shorthand`` stands for ``name``, or both are the same."""
+    """Tell whether a shorthand stands for a name, or both are the same."""
     return shorthand == name or name in expand(shorthand, [name])
 
 
 def select(pattern: str, known: Sequence[str]) -> list[str]:
-    """The names that fit a pattern in which ``*`` stands for any text, also in ``[*]``."""
+    """Return the names that fit a pattern in which ``*`` stands for any text, also in ``[*]``."""
     regular = re.compile(re.escape(pattern).replace(r"\*", ".*"))
     return [name for name in known if regular.fullmatch(name)]
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """A remedy that names what was probably meant."""
+    """Suggest the known names that come nearest to one that is not known.
+
+    Parameters
+    ----------
+    name : str
+        Not among the known ones.
+    known : iterable of str
+        Names that there are.
+
+    Returns
+    -------
+    str
+        For the remedy of a problem.
+    """
     names = list(known)
     close = get_close_matches(name, names, 3, 0.5)
     if close:
         return f"did you mean {' or '.join(close)}?"
-    return (
-        f"there are {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}"
-        if names
-        else "there are none"
-    )
+    if not names:
+        return "there are none"
+    more = ", ..." if len(names) > 12 else ""
+    return f"there are {', '.join(names[:12])}{more}"

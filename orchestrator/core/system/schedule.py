@@ -1,8 +1,9 @@
 """The order of exchanges and steps, in whole ticks. Pure functions.
 
-Values move at exchanges. A component whose step divides the exchange step is stepped several times in each; one whose step is m
-times the exchange step takes its inputs in the first and is stepped in the last of m exchanges: it holds its inputs over its own
-step, and shows its outputs when the others have reached the same time.
+Values move at exchanges. A component whose step divides the exchange step is stepped several times
+in each; one whose step is m times the exchange step takes its inputs in the first and is stepped in
+the last of m exchanges: it holds its inputs over its own step, and shows its outputs when the
+others have reached the same time.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,10 +16,10 @@ Scheme = Literal["sequential", "jacobi"]
 
 
 class Action(IntEnum):
-    """What the master does with a component."""
+    """An action of the master on a component."""
 
     SET = 1
-    """Give it the newest values of its inputs."""
+    """Set its inputs to the newest values."""
     STEP = 2
     """Advance it."""
     GET = 3
@@ -29,7 +30,10 @@ class Action(IntEnum):
 
 @dataclass(frozen=True)
 class Operation:
-    """One action on one component. A step goes from ``begin`` by ``length``, in ticks since the period began."""
+    """One action on one component.
+
+    A step goes from ``begin`` by ``length``, in ticks since the period began.
+    """
 
     action: Action
     component: str
@@ -39,7 +43,15 @@ class Operation:
 
 @dataclass(frozen=True)
 class Schedule:
-    """What happens in each exchange. After ``period`` exchanges the same follows again, ``period * exchange`` ticks later."""
+    """Operations of each exchange, which come again after ``period`` exchanges.
+
+    Attributes
+    ----------
+    exchange : int
+        Exchange step (ticks).
+    operations : tuple of tuple of Operation
+        For each exchange of a period.
+    """
 
     exchange: int
     operations: tuple[tuple[Operation, ...], ...]
@@ -51,26 +63,41 @@ class Schedule:
 
 
 def fits(step: int, exchange: int) -> bool:
-    """Whether a component with this step can take part: it divides the exchange step or is a whole multiple of it."""
+    """Tell whether a step (ticks) divides the exchange step or is a whole multiple of it."""
     return step > 0 and (exchange % step == 0 or step % exchange == 0)
 
 
 def nearest_steps(step: int, exchange: int) -> list[int]:
-    """The steps next below and next above ``step`` that fit (ticks)."""
+    """Return the steps next below and next above a step that fit (ticks)."""
     if step > exchange:
         return [step // exchange * exchange, (step // exchange + 1) * exchange]
     divisors = [
         d for n in range(1, int(exchange**0.5) + 1) if exchange % n == 0 for d in (n, exchange // n)
     ]
-    below, above = [d for d in divisors if d <= step], [d for d in divisors if d >= step]
-    return [max(below), min(above)]
+    return [max(d for d in divisors if d <= step), min(d for d in divisors if d >= step)]
 
 
-def plan(order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: Scheme) -> Schedule:
-    """The operations of each exchange.
+def make_schedule(
+    order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: Scheme
+) -> Schedule:
+    """Order the operations of each exchange.
 
-    sequential: one component after the other, each with the newest values there are.
-    jacobi: all take the values of the beginning of the exchange, then all step, then all show what they have reached.
+    Parameters
+    ----------
+    order : sequence of str
+        Components.
+    steps : mapping of str to int
+        Communication step of each component (ticks).
+    exchange : int
+        Exchange step (ticks).
+    scheme : str
+        ``sequential``: one component after the other, each with the newest values there are.
+        ``jacobi``: all take the values of the beginning of the exchange, then all step, then all
+        show their new outputs.
+
+    Returns
+    -------
+    Schedule
     """
     period = lcm(*(max(1, steps[name] // exchange) for name in order))
     return Schedule(
@@ -95,7 +122,7 @@ def _exchange(
 
 
 def _turn(number: int, name: str, step: int, exchange: int) -> list[Operation]:
-    """What component ``name`` does in exchange ``number``."""
+    """Return the operations of a component in exchange ``number``."""
     multiple = max(1, step // exchange)
     operations = []
     if number % multiple == 0:

@@ -1,7 +1,7 @@
-"""A system as data: components, connections, shared values, power bonds, and how the run is to be made.
+"""A system as data: components, connections, shared values, power bonds, and how it is run.
 
-A system is read from a TOML file or built in Python; both are checked for their form here, and against the FMUs in
-:mod:`rockshed.core.system.plan`.
+A system is read from a TOML file or built in Python; both are checked for their form here, and
+against the FMUs in :mod:`rockshed.core.system.planning`.
 """
 
 import re
@@ -16,7 +16,7 @@ from ..errors import InputRefused, Problem
 from .names import matches, nearest
 
 Value = bool | int | float | str
-"""Value of a parameter or input. An item of an enumeration may be given by its name or its number."""
+"""Value of a parameter or input; of an enumeration, the name or the number of an item."""
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
@@ -43,11 +43,17 @@ class _Data(BaseModel):
 class ComponentSpec(_Data):
     """A subsystem: an FMU and how it takes part.
 
-    fmu: path of the file; in a TOML file, relative to the folder of that file.
-    step: communication step (s); without it, the exchange step.
-    parameters: values of parameters and of unconnected inputs that differ from the FMU's start values. ``name[*]`` sets a
-        whole array.
-    record_states: keep serialized states every ``state_interval``.
+    Attributes
+    ----------
+    fmu : str
+        Path of the file; in a TOML file, relative to the folder of that file.
+    step : float, optional
+        Communication step (s); without it, the exchange step.
+    parameters : dict
+        Values of parameters and of unconnected inputs that differ from the FMU's start values.
+        ``name[*]`` sets a whole array.
+    record_states : bool
+        Keep serialized states every ``state_interval``.
     """
 
     fmu: str
@@ -57,9 +63,10 @@ class ComponentSpec(_Data):
 
 
 class Connection(_Data):
-    """An output that feeds an input, both written ``component.port``. In TOML: ``"sand.rock.force.x -> rock.force.x"``.
+    """An output that feeds an input, both written ``component.port``.
 
-    ``[*]`` stands for all elements of an array, ``[1..24]`` for some; source and target then need the same number of them.
+    In TOML: ``"sand.rock.force.x -> rock.force.x"``. ``[*]`` stands for all elements of an array,
+    ``[1..24]`` for some; source and target then need the same number of them.
     """
 
     source: str
@@ -79,20 +86,36 @@ class Connection(_Data):
 
 
 class SharedValue(_Data):
-    """One value that several parameters take: the radius of the rock, for instance. Targets are ``component.parameter``."""
+    """One value that several parameters take: the radius of the rock, for instance.
+
+    Targets are ``component.parameter``.
+    """
 
     value: Value
     targets: list[str] = Field(min_length=1)
 
 
 class PowerBond(_Data):
-    """An interface through which energy flows: the giver computes forces, the taker moves under them.
+    """An interface through which energy flows.
 
-    force: outputs of ``giver``, force or torque on the taker. position: outputs of ``taker``, one for each force, of the point
-        and direction (or angle) in which it acts.
-    work: output of ``giver`` that counts the energy which this interface brings into it. Without it, the ledger takes the
-        force that the giver computed times the displacement that it was shown.
-    opposed: force and position count in opposite directions, as the compression at a toe and its way downwards do.
+    The giver computes forces, the taker moves under them.
+
+    Attributes
+    ----------
+    giver, taker : str
+        Components.
+    force : list of str
+        Outputs of ``giver``, force or torque on the taker.
+    position : list of str
+        Outputs of ``taker``, one for each force, of the point and direction (or angle) in which
+        it acts.
+    work : str, optional
+        Output of ``giver`` that counts the energy which this interface brings into it. Without
+        it, the ledger takes the force that the giver computed times the displacement that it was
+        shown.
+    opposed : bool
+        Force and position count in opposite directions, as the compression at a toe and its way
+        downwards do.
     """
 
     giver: str
@@ -106,7 +129,12 @@ class PowerBond(_Data):
 class EnergyAlarm(_Data):
     """Warn when the energy that a coupling made or lost exceeds ``share`` of a reference.
 
-    reference: an energy (J), or the output ``component.port`` whose value at the start is taken.
+    Attributes
+    ----------
+    share : float
+        Largest share that is no alarm.
+    reference : float or str
+        An energy (J), or the output ``component.port`` whose value at the start is taken.
     """
 
     share: float = Field(default=0.01, gt=0.0, allow_inf_nan=False)
@@ -116,14 +144,35 @@ class EnergyAlarm(_Data):
 class System(_Data):
     """A co-simulation: what takes part, how it is connected and how it is run.
 
-    master: sequential (in ``order``, each component takes the newest values) or jacobi (all take the values of the beginning
-        of the exchange).
-    order: every component once; without it, as they are listed.
-    output_interval: time between two rows of the results (s); without it, the exchange step.
-    state_interval: time between two recorded states (s) of the components with ``record_states``.
-    record: variables in the results, ``component.port``; ``*`` stands for any text, and then selects outputs. Default: all
-        outputs.
-    watch: outputs whose extremes and integral over all exchanges go into the summary, in the same notation.
+    Attributes
+    ----------
+    components : dict of str to ComponentSpec
+        Subsystems.
+    connections : list of Connection
+        Outputs that feed inputs.
+    shared : dict of str to SharedValue
+        Values that several parameters take.
+    bonds : dict of str to PowerBond
+        Interfaces whose energy is accounted for.
+    energy_alarm : EnergyAlarm, optional
+        Limit of the energy that a coupling makes.
+    master : str
+        ``sequential`` (in ``order``, each component takes the newest values) or ``jacobi`` (all
+        take the values of the beginning of the exchange).
+    order : list of str
+        Every component once; without it, as they are listed.
+    start_time, stop_time, exchange_step : float
+        Times (s).
+    output_interval : float, optional
+        Time between two rows of the results (s); without it, the exchange step.
+    state_interval : float, optional
+        Time between two recorded states (s) of the components with ``record_states``.
+    record : list of str
+        Variables in the results, ``component.port``; ``*`` stands for any text, and then selects
+        outputs. Default: all outputs.
+    watch : list of str
+        Outputs whose extremes and integral over all exchanges go into the summary, in the same
+        notation.
     """
 
     name: str
@@ -144,15 +193,29 @@ class System(_Data):
     watch: list[str] = []
 
     def step(self, component: str) -> float:
-        """Communication step of a component (s)."""
+        """Return the communication step of a component (s)."""
         return self.components[component].step or self.exchange_step
 
 
 def system_from(data: Mapping[str, Any], where: str = "system") -> System:
-    """A system from plain data.
+    """Make a system of plain data.
 
-    Raises:
-        InputRefused: unknown or missing keys, values of the wrong type or out of range; each with the path of its key.
+    Parameters
+    ----------
+    data : mapping
+        Keys and values as in a TOML file.
+    where : str
+        Stands before the key of a problem.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    InputRefused
+        Unknown or missing keys, values of the wrong type or out of range; each with the path of
+        its key.
     """
     try:
         return System.model_validate(data)
@@ -166,10 +229,21 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
 
 
 def load_system(path: Path) -> System:
-    """The system in a TOML file. Relative paths of FMUs count from the folder of the file.
+    """Read a system from a TOML file.
 
-    Raises:
-        InputRefused: no such file, not TOML, or :func:`system_from` refuses the content.
+    Parameters
+    ----------
+    path : Path
+        Relative paths of FMUs count from its folder.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    InputRefused
+        No such file, not TOML, or :func:`system_from` refuses the content.
     """
     try:
         data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
@@ -183,86 +257,94 @@ def load_system(path: Path) -> System:
         raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
     system = system_from(data, str(path))
     folder = path.resolve().parent
-    return system.model_copy(
-        update={
-            "components": {
-                name: spec.model_copy(update={"fmu": str(folder / spec.fmu)})
-                for name, spec in system.components.items()
-            }
-        }
-    )
+    components = {
+        name: spec.model_copy(update={"fmu": str(folder / spec.fmu)})
+        for name, spec in system.components.items()
+    }
+    return system.model_copy(update={"components": components})
 
 
 def _not_utf_8(path: Path) -> Problem:
-    utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
+    is_utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
+    encoding = "written in UTF-16" if is_utf_16 else "no text in UTF-8"
     return Problem(
-        str(path),
-        f"is {'written in UTF-16' if utf_16 else 'no text in UTF-8'}, and TOML is UTF-8",
-        "save it again with the encoding UTF-8",
+        str(path), f"is {encoding}, and TOML is UTF-8", "save it again with the encoding UTF-8"
     )
 
 
 def with_values(system: System, values: Mapping[str, Value]) -> System:
-    """The system with other values, by ``component.parameter`` or by the name of a shared value.
+    """Return the system with other values.
 
-    A value that is shared changes for all its targets.
+    Parameters
+    ----------
+    system : System
+        Stays as it is.
+    values : mapping of str to value
+        By ``component.parameter`` or by the name of a shared value. A value that is shared changes
+        for all its targets.
 
-    Raises:
-        InputRefused: no such component, or two different values for one shared value. Names of parameters are not checked
-            here: only the FMU knows them.
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    InputRefused
+        No such component, or two different values for one shared value. Names of parameters are
+        not checked here: only the FMU knows them.
     """
     parameters = {name: dict(spec.parameters) for name, spec in system.components.items()}
     shared: dict[str, dict[str, Value]] = {}
     problems = []
     for name, value in values.items():
         component, _, parameter = name.partition(".")
-        owners = [
-            key
-            for key, entry in system.shared.items()
-            if name == key or any(matches(t, name) for t in entry.targets)
-        ]
-        if owners:
-            shared.setdefault(owners[0], {})[name] = value
+        owner = _owner(system, name)
+        if owner is not None:
+            shared.setdefault(owner, {})[name] = value
         elif component in parameters and parameter:
             parameters[component][parameter] = value
         else:
-            problems.append(
-                Problem(
-                    name,
-                    "is neither component.parameter nor a shared value",
-                    nearest(component, [*system.components, *system.shared]),
-                )
-            )
-    problems += [
-        Problem(
-            key,
-            "is one value for all its targets, and is given several: "
-            + ", ".join(f"{n} = {v}" for n, v in given.items()),
-            "give one of them",
-        )
-        for key, given in shared.items()
-        if len(set(map(str, given.values()))) > 1
-    ]
+            known = [*system.components, *system.shared]
+            what = "is neither component.parameter nor a shared value"
+            problems.append(Problem(name, what, nearest(component, known)))
+    problems += [problem for key, given in shared.items() for problem in _one_value(key, given)]
     if problems:
         raise InputRefused(problems)
+    components = {
+        name: spec.model_copy(update={"parameters": parameters[name]})
+        for name, spec in system.components.items()
+    }
+    replaced = {
+        key: system.shared[key].model_copy(update={"value": next(iter(given.values()))})
+        for key, given in shared.items()
+    }
     return system.model_copy(
-        update={
-            "components": {
-                name: spec.model_copy(update={"parameters": parameters[name]})
-                for name, spec in system.components.items()
-            },
-            "shared": {
-                key: entry.model_copy(update={"value": next(iter(shared[key].values()))})
-                if key in shared
-                else entry
-                for key, entry in system.shared.items()
-            },
-        }
+        update={"components": components, "shared": {**system.shared, **replaced}}
     )
 
 
+def _owner(system: System, name: str) -> str | None:
+    """Return the shared value that a name stands for or that its parameter takes."""
+    for key, entry in system.shared.items():
+        if name == key or any(matches(target, name) for target in entry.targets):
+            return key
+    return None
+
+
+def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
+    """Refuse several values for one shared value."""
+    if len(set(map(str, given.values()))) <= 1:
+        return []
+    listed = ", ".join(f"{name} = {value}" for name, value in given.items())
+    what = f"is one value for all its targets, and is given several: {listed}"
+    return [Problem(key, what, "give one of them")]
+
+
 def _path(location: tuple[int | str, ...]) -> str:
-    """``components.rock.step``; the names that pydantic gives to the alternatives of a type are left out."""
+    """Return the path of a key, ``components.rock.step``.
+
+    The names that pydantic gives to the alternatives of a type are left out.
+    """
     kept = [
         part
         for part in location
@@ -276,11 +358,9 @@ def _sentence(error: Any) -> str:
         return f"there is no such key; {nearest(str(error['loc'][-1]), _KEYS)}"
     if error["type"] == "missing":
         return "is missing"
-    given = (
-        ""
-        if isinstance(error["input"], dict | list) or error["type"] == "value_error"
-        else f" (given: {error['input']!r})"
-    )
+    given = f" (given: {error['input']!r})"
+    if isinstance(error["input"], dict | list) or error["type"] == "value_error":
+        given = ""
     message = str(error["msg"]).removeprefix("Value error, ")
     return message[0].lower() + message[1:] + given
 

@@ -11,7 +11,19 @@ from .system import System
 
 @dataclass(frozen=True)
 class Timing:
-    """Start, exchange step and communication steps in ticks; length of the run and intervals of its results in exchanges."""
+    """Times of a run.
+
+    Attributes
+    ----------
+    start, exchange : int
+        Time at the start and exchange step (ticks).
+    exchanges : int
+        Length of the run (exchanges).
+    output_every, state_every : int
+        Intervals of rows and of states (exchanges).
+    steps : mapping of str to int
+        Communication step of each component (ticks).
+    """
 
     start: int
     exchange: int
@@ -21,12 +33,44 @@ class Timing:
     steps: Mapping[str, int]
 
     def seconds(self, exchange: int) -> float:
-        """Time (s) at the beginning of this exchange."""
+        """Return the time (s) at the beginning of an exchange."""
         return to_seconds(self.start + exchange * self.exchange)
 
 
 def make_timing(system: System, problems: list[Problem]) -> Timing | None:
-    """Whole ticks for every time; None, and the reasons in ``problems``, where that is not possible."""
+    """Turn every time of a system into whole ticks.
+
+    Parameters
+    ----------
+    system : System
+        Times in s.
+    problems : list of Problem
+        Gets the reasons where steps and times do not fit together.
+
+    Returns
+    -------
+    Timing or None
+        None where a time is no whole number of ticks.
+    """
+    ticks = _all_ticks(system, problems)
+    if ticks is None:
+        return None
+    exchange = ticks["exchange_step"]
+    steps = {name: ticks.get(f"{name}.step", exchange) for name in system.components}
+    misfits = _misfits(system, ticks, steps)
+    problems += misfits
+    length = ticks["stop_time"] - ticks["start_time"]
+    return Timing(
+        start=ticks["start_time"],
+        exchange=exchange,
+        exchanges=length // exchange,
+        output_every=ticks["output_interval"] // exchange,
+        state_every=ticks["state_interval"] // exchange,
+        steps=steps,
+    )
+
+
+def _all_ticks(system: System, problems: list[Problem]) -> dict[str, int] | None:
     before = len(problems)
     times = {
         "exchange_step": system.exchange_step,
@@ -37,53 +81,43 @@ def make_timing(system: System, problems: list[Problem]) -> Timing | None:
         **{f"{name}.step": spec.step for name, spec in system.components.items() if spec.step},
     }
     ticks = {key: _ticks(key, seconds, problems) for key, seconds in times.items()}
-    if len(problems) > before:
-        return None
-    exchange, start, length = (
-        ticks["exchange_step"],
-        ticks["start_time"],
-        ticks["stop_time"] - ticks["start_time"],
-    )
-    steps = {name: ticks.get(f"{name}.step", exchange) for name in system.components}
-    for name, step in steps.items():
-        problems += _step_problems(f"{name}.step", step, exchange)
+    return ticks if len(problems) == before else None
+
+
+def _misfits(system: System, ticks: Mapping[str, int], steps: Mapping[str, int]) -> list[Problem]:
+    """Find steps and times that do not fit together, and a set of times that does."""
+    exchange = ticks["exchange_step"]
+    start = ticks["start_time"]
+    length = ticks["stop_time"] - start
+    problems = [
+        problem
+        for name, step in steps.items()
+        for problem in _step_problems(f"{name}.step", step, exchange)
+    ]
     if length <= 0:
-        problems.append(
-            Problem(
-                "stop_time",
-                f"{system.stop_time:g} s is not after start_time = {system.start_time:g} s",
-                "let it be later",
-            )
-        )
+        what = f"{system.stop_time:g} s is not after start_time = {system.start_time:g} s"
+        problems.append(Problem("stop_time", what, "let it be later"))
     fitting = {key: _nearest(ticks[key], exchange) for key in ("output_interval", "state_interval")}
     for key, near in fitting.items():
         problems += _multiple_problems(key, ticks[key], exchange, near, 0)
     longest = max(exchange, *steps.values())
     fitting["stop_time"] = _nearest(length, longest) if length > 0 else []
     problems += _multiple_problems("stop_time", length, longest, fitting["stop_time"], start)
-    wrong = {key: near for key, near in fitting.items() if near}
-    if len(wrong) > 1 and len(problems) - before == len(wrong):
-        origin = {"stop_time": start}
-        together = {
-            "exchange_step": exchange,
-            **{key: origin.get(key, 0) + near[0] for key, near in wrong.items()},
-        }
-        problems.append(
-            Problem(
-                "exchange_step",
-                "does not fit these times",
-                "this will do: "
-                + ", ".join(f"{key} = {to_seconds(value):.12g}" for key, value in together.items()),
-            )
-        )
-    return Timing(
-        start,
-        exchange,
-        length // exchange,
-        ticks["output_interval"] // exchange,
-        ticks["state_interval"] // exchange,
-        steps,
+    wrong = {key: near[0] for key, near in fitting.items() if near}
+    if len(wrong) > 1 and len(problems) == len(wrong):
+        problems.append(_together(exchange, start, wrong))
+    return problems
+
+
+def _together(exchange: int, start: int, nearest: Mapping[str, int]) -> Problem:
+    """Name times that fit the exchange step all at once."""
+    origin = {"stop_time": start}
+    times = {key: origin.get(key, 0) + near for key, near in nearest.items()}
+    listed = ", ".join(
+        f"{key} = {to_seconds(value):.12g}"
+        for key, value in {"exchange_step": exchange, **times}.items()
     )
+    return Problem("exchange_step", "does not fit these times", f"this will do: {listed}")
 
 
 def _ticks(key: str, seconds: float, problems: list[Problem]) -> int:
@@ -107,20 +141,18 @@ def _step_problems(key: str, step: int, exchange: int) -> list[Problem]:
     return [
         Problem(
             key,
-            f"{to_seconds(step):g} s neither divides the exchange step {to_seconds(exchange):g} s nor is a whole "
-            "multiple of it",
+            f"{to_seconds(step):g} s neither divides the exchange step {to_seconds(exchange):g} s "
+            "nor is a whole multiple of it",
             f"nearest are {near}",
         )
     ]
 
 
 def _nearest(length: int, step: int) -> list[int]:
-    """The whole numbers of steps (ticks) around a length that is none; nothing if it is one."""
-    return (
-        []
-        if length % step == 0
-        else [n * step for n in (length // step, length // step + 1) if n > 0]
-    )
+    """Return the whole numbers of steps (ticks) around a length that is none."""
+    if length % step == 0:
+        return []
+    return [n * step for n in (length // step, length // step + 1) if n > 0]
 
 
 def _multiple_problems(
@@ -132,7 +164,8 @@ def _multiple_problems(
     return [
         Problem(
             key,
-            f"{to_seconds(origin + length):g} s is no whole number of steps of {to_seconds(step):g} s{after}",
+            f"{to_seconds(origin + length):g} s is no whole number of steps of "
+            f"{to_seconds(step):g} s{after}",
             f"nearest {'is' if len(near) == 1 else 'are'} "
             + " or ".join(f"{to_seconds(origin + n):.12g} s" for n in near),
         )

@@ -6,14 +6,28 @@ from ..fmu.description import Port
 from ..fmu.slave import BOOLEAN, INTEGER, REAL, STRING
 from .system import Value
 
-_TRUE, _FALSE = ("true", "1", "on", "yes"), ("false", "0", "off", "no")
+_TRUE = ("true", "1", "on", "yes")
+_FALSE = ("false", "0", "off", "no")
 
 
 def value_for(port: Port, value: Value) -> float | str:
-    """The value as the port takes it. Text is read as a number, a word or an item of an enumeration, whatever the port is.
+    """Turn a value into the number or text that a port takes.
 
-    Raises:
-        ValueError: it does not fit; the text says what is allowed.
+    Parameters
+    ----------
+    port : Port
+        Says kind, items and range.
+    value : bool, int, float or str
+        Text is read as a number, a word or an item of an enumeration, whatever the port is.
+
+    Returns
+    -------
+    float or str
+
+    Raises
+    ------
+    ValueError
+        The value does not fit; the message says what is allowed.
     """
     if port.kind == STRING:
         return str(value)
@@ -35,7 +49,7 @@ def _range(low: float, high: float, unit: str) -> str:
 
 
 def _item(port: Port, value: Value) -> float:
-    """Number of an enumeration's item, given by name or number."""
+    """Return the number of an enumeration's item; the value is its name or its number."""
     if str(value) in port.items:
         return float(port.items[str(value)])
     numbers = {str(number): number for number in port.items.values()}
@@ -66,7 +80,20 @@ def _truth(value: Value) -> float:
 
 
 def written(port: Port, number: float) -> Value:
-    """A number as a person would write it: the name of an item, true or false, a whole number."""
+    """Return a number as a person would write it.
+
+    Parameters
+    ----------
+    port : Port
+        Whose value it is.
+    number : float
+        As the port gives it.
+
+    Returns
+    -------
+    bool, int, float or str
+        The name of an item, true or false, a whole number, or the number itself.
+    """
     if port.items:
         return next((name for name, n in port.items.items() if n == number), number)
     if port.kind == BOOLEAN:
@@ -75,7 +102,7 @@ def written(port: Port, number: float) -> Value:
 
 
 def finite_number(text: str) -> float | None:
-    """The number that a field of a text file says; None if it is none, or not finite."""
+    """Read a finite number; return None if the text is none."""
     try:
         value = float(text)
     except ValueError:

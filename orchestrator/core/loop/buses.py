@@ -1,0 +1,127 @@
+"""The values that a run carries from exchange to exchange."""
+
+from functools import cached_property
+
+import numpy as np
+
+from ..fmu.slave import Slave
+from ..system.plan import End, Plan
+from ..system.schedule import Action, Operation
+from .blocks import make_blocks
+from .snapshots import Snapshots
+from .tables import CHANNEL, WATCHED, Integers, Records
+
+
+class Buses:
+    """Both buses, the works of the bonds, the watched outputs and the snapshots of a run.
+
+    Parameters
+    ----------
+    plan : Plan
+        Says which ports lie where on the buses.
+    journal : array of int64, shape (2,), optional
+        Exchange and operation under way, see :mod:`rockshed.core.loop.journal`.
+
+    Attributes
+    ----------
+    inputs, outputs : array of float
+        Newest values of all connected inputs and of all exchanged outputs.
+    setters, getters : dict of str to list of Block
+        Calls that move a component's values.
+    channels : array of CHANNEL
+        Work of each force of a bond.
+    watched : array of WATCHED
+        Extremes and integral of each watched output.
+    """
+
+    def __init__(self, plan: Plan, journal: Integers | None = None) -> None:
+        self.plan = plan
+        self.inputs = np.zeros(len(plan.inputs))
+        self.outputs = np.zeros(len(plan.outputs))
+        self.setters = make_blocks(plan.inputs)
+        self.getters = make_blocks(plan.outputs)
+        self.channels = _channels(plan)
+        self.watched = _watched(plan)
+        self.snapshots = Snapshots(plan)
+        self.journal = np.full(2, -1, np.int64) if journal is None else journal
+
+    @cached_property
+    def needs(self) -> dict[str, set[int]]:
+        """Places of the outputs that feed each component's inputs."""
+        return {
+            name: {
+                int(place)
+                for block in self.setters.get(name, [])
+                for place in self.plan.source[block.places]
+            }
+            for name in self.plan.order
+        }
+
+    @cached_property
+    def shows(self) -> dict[str, set[int]]:
+        """Places of each component's outputs."""
+        return {
+            name: {
+                place
+                for block in self.getters.get(name, [])
+                for place in range(block.places.start, block.places.stop)
+            }
+            for name in self.plan.order
+        }
+
+    @cached_property
+    def operations(self) -> list[Operation]:
+        """Operations of a period, and behind them those that read what is recorded."""
+        return [
+            *(operation for exchange in self.plan.schedule.operations for operation in exchange),
+            *(Operation(Action.RECORD, name) for name in self.snapshots.blocks),
+        ]
+
+    def give(self, slave: Slave) -> int:
+        """Set all connected inputs of a slave to the newest values; return the worst status."""
+        worst = 0
+        for block in self.setters.get(slave.name, []):
+            self.inputs[block.places] = self.outputs[self.plan.source[block.places]]
+            worst = max(worst, slave.set(block.references, self.inputs[block.places], block.kind))
+        return worst
+
+    def take(self, slave: Slave) -> int:
+        """Get all exchanged outputs of a slave; return the worst status."""
+        worst = 0
+        for block in self.getters.get(slave.name, []):
+            worst = max(worst, slave.get(block.references, self.outputs[block.places], block.kind))
+        return worst
+
+    def not_finite(self, component: str) -> End | None:
+        """Return the first exchanged output of a component that is no finite number."""
+        blocks = self.getters.get(component)
+        if not blocks:
+            return None
+        begin = blocks[0].places.start
+        values = self.outputs[begin : blocks[-1].places.stop]
+        lost = np.flatnonzero(~np.isfinite(values))
+        return self.plan.outputs[begin + lost[0]] if lost.size else None
+
+    def open_accounts(self) -> None:
+        """Count works, extremes and integrals from the present values on."""
+        channels = self.channels
+        shown = channels["seen"] >= 0
+        channels["last_seen"][shown] = self.inputs[channels["seen"][shown]]
+        channels["last_force"] = self.outputs[channels["force"]]
+        channels["last_position"] = self.outputs[channels["position"]]
+        for name in ("low", "high", "last"):
+            self.watched[name] = self.outputs[self.watched["place"]]
+
+
+def _channels(plan: Plan) -> Records:
+    channels = np.zeros(sum(bond.force.size for bond in plan.bonds), CHANNEL)
+    if plan.bonds:
+        for name in ("given", "seen", "force", "position"):
+            channels[name] = np.concatenate([getattr(bond, name) for bond in plan.bonds])
+    return channels
+
+
+def _watched(plan: Plan) -> Records:
+    watched = np.zeros(plan.watched.size, WATCHED)
+    watched["place"] = plan.watched
+    return watched

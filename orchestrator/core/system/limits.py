@@ -1,0 +1,95 @@
+"""Limits of a run: refused is what would fill memory or disk hours later."""
+
+import math
+
+from ..errors import Problem
+from .clock import to_seconds
+from .plan import Starts
+from .system import System
+from .timing import Timing
+
+MOST_VALUES = 100_000_000
+"""Values in the time series of a run: at its end they are in memory at once (0.8 GB), and about
+2 GB as text."""
+MOST_STATES = 20_000
+"""Serialized states that a run may record."""
+MOST_INTERNAL_STEPS = 100_000
+"""Internal steps that a component may make in one communication step: it cannot be interrupted
+there, nor tell how far it is."""
+
+
+def amount_problems(system: System, timing: Timing, columns: int) -> list[Problem]:
+    """Find out whether a run would record too much.
+
+    Parameters
+    ----------
+    system : System
+        Says which states are recorded.
+    timing : Timing
+        Of the run.
+    columns : int
+        Columns of the time series.
+
+    Returns
+    -------
+    list of Problem
+    """
+    problems = []
+    rows = timing.exchanges // timing.output_every + 1
+    values = rows * columns
+    if values > MOST_VALUES:
+        what = (
+            f"{rows:,} rows of {columns:,} columns are {values:.2g} values "
+            f"({8e-9 * values:.2g} GB), and at most {MOST_VALUES:.0e} can be kept"
+        )
+        interval = _longer(timing, MOST_VALUES // columns)
+        remedy = f"{interval} or more will do; or shorten stop_time, or record less"
+        problems.append(Problem("output_interval", what, remedy))
+    framed = sum(spec.record_states for spec in system.components.values())
+    states = (timing.exchanges // timing.state_every + 1) * framed
+    if states > MOST_STATES:
+        what = f"{states:,} states would be recorded, and at most {MOST_STATES:,} can be kept"
+        interval = _longer(timing, MOST_STATES // framed)
+        remedy = f"{interval} or more will do; or shorten stop_time"
+        problems.append(Problem("state_interval", what, remedy))
+    return problems
+
+
+def internal_step_problems(system: System, starts: Starts) -> list[Problem]:
+    """Find components that would make too many internal steps at once.
+
+    Parameters
+    ----------
+    system : System
+        Gives the communication steps.
+    starts : Starts
+        Values of ``internal_step`` are looked for among them.
+
+    Returns
+    -------
+    list of Problem
+    """
+    return [
+        Problem(
+            f"{name}.internal_step",
+            f"steps of {value:g} s are {system.step(name) / value:.2g} in each communication step "
+            f"of {system.step(name):g} s, and at most {MOST_INTERNAL_STEPS:,} can be made",
+            f"raise it to {system.step(name) / MOST_INTERNAL_STEPS:g} s or more",
+        )
+        for name, values in starts.items()
+        for port, value in values
+        if port.name == "internal_step"
+        and isinstance(value, float)
+        and 0.0 < value * MOST_INTERNAL_STEPS < system.step(name)
+    ]
+
+
+def _longer(timing: Timing, most: int) -> str:
+    """Return the shortest interval that gives at most so many rows or states.
+
+    It is 1, 2 or 5 times a power of ten exchanges.
+    """
+    least = timing.exchanges / max(1, most - 1)
+    power = 10 ** math.floor(math.log10(max(1.0, least)))
+    every = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least)
+    return f"{to_seconds(every * timing.exchange):g} s"

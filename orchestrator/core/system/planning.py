@@ -1,0 +1,540 @@
+"""From a system to its plan: everything checked against the FMUs, names replaced by places.
+
+Nothing runs here. All problems of a system are found at once.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputRefused, Problem
+from ..fmu.description import Description, Port, Unit
+from ..fmu.fmu_slave import read_description
+from ..fmu.slave import REAL, Source
+from .limits import amount_problems, internal_step_problems
+from .names import expand, nearest, select
+from .plan import BondPlaces, End, Plan
+from .renaming import present_name, renaming_warning
+from .schedule import make_schedule
+from .system import ComponentSpec, Connection, PowerBond, System, Value
+from .timing import Timing, make_timing
+from .units import is_joule, unit_text, units_agree
+from .values import value_for
+
+
+def make_plan(system: System, sources: Mapping[str, Source]) -> Plan:
+    """Check the whole system and resolve every name.
+
+    Parameters
+    ----------
+    system : System
+        Checked in its form already.
+    sources : mapping of str to Source
+        Give the model descriptions of the components.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with the system.
+    """
+    return _Planner(system, sources).plan()
+
+
+_Links = list[tuple[End, End]]
+"""Source and target of every single connection."""
+
+
+class _Bond(NamedTuple):
+    """A power bond by ports."""
+
+    name: str
+    force: list[End]
+    position: list[End]
+    given: list[End]
+    seen: list[End]
+    work: End | None
+    sign: float
+
+
+class _Parts(NamedTuple):
+    """The parts of a system by ports."""
+
+    links: _Links
+    starts: dict[str, list[tuple[Port, float | str]]]
+    bonds: list[_Bond]
+    watched: list[End]
+    recorded: list[End]
+    reference: float | End | None
+
+
+@dataclass
+class _Planner:
+    """Works through a system and collects problems.
+
+    A part that depends on something missing is passed over in silence.
+    """
+
+    system: System
+    sources: Mapping[str, Source]
+    problems: list[Problem] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    descriptions: dict[str, Description] = field(default_factory=dict)
+
+    def plan(self) -> Plan:
+        """Go through the system part by part, then refuse it or return the plan."""
+        self._describe()
+        order = self._order()
+        timing = make_timing(self.system, self.problems)
+        parts = self._parts()
+        self._check_states()
+        if timing is not None and min(timing.output_every, timing.state_every) > 0:
+            columns = 1 + len(parts.recorded) + 3 * len(parts.bonds)
+            self.problems += amount_problems(self.system, timing, columns)
+        self.problems += internal_step_problems(self.system, parts.starts)
+        if self.problems or timing is None:
+            raise InputRefused(self.problems)
+        return self._resolved(order, timing, parts)
+
+    def _parts(self) -> _Parts:
+        links = self._links()
+        starts = self._starts({target.name for _, target in links})
+        bonds = [self._bond(name, bond, links) for name, bond in self.system.bonds.items()]
+        return _Parts(
+            links,
+            starts,
+            [bond for bond in bonds if bond],
+            self._selected("watch", self.system.watch),
+            self._selected("record", self.system.record),
+            self._reference(),
+        )
+
+    def _resolved(self, order: tuple[str, ...], timing: Timing, parts: _Parts) -> Plan:
+        """Replace ports by places on the buses."""
+        at_bonds = [end for bond in parts.bonds for end in bond.force + bond.position]
+        sources = [source for source, _ in parts.links]
+        inputs = _sorted(order, (target for _, target in parts.links))
+        outputs = _sorted(order, [*sources, *parts.watched, *at_bonds])
+        place = {end.name: i for i, end in enumerate(outputs)}
+        place_of_input = {end.name: i for i, end in enumerate(inputs)}
+        feeds = {target.name: place[source.name] for source, target in parts.links}
+        return Plan(
+            system=self.system,
+            order=order,
+            descriptions=self.descriptions,
+            timing=timing,
+            schedule=make_schedule(order, timing.steps, timing.exchange, self.system.master),
+            starts=parts.starts,
+            inputs=inputs,
+            outputs=outputs,
+            source=np.array([feeds[end.name] for end in inputs], np.int64),
+            bonds=tuple(_bond_places(bond, place, place_of_input) for bond in parts.bonds),
+            recorded=tuple(parts.recorded),
+            watched=np.array([place[end.name] for end in parts.watched], np.int64),
+            reference=parts.reference,
+            warnings=tuple(self.warnings),
+        )
+
+    def _refuse(self, where: str, what: str, remedy: str = "") -> None:
+        self.problems.append(Problem(where, what, remedy))
+
+    # ------------------------------------------------------------------ components
+
+    def _describe(self) -> None:
+        for name, source in self.sources.items():
+            try:
+                self.descriptions[name] = read_description(source.model_description())
+                self.warnings += [f"{name}: {text}" for text in self.descriptions[name].warnings]
+            except InputRefused as refusal:
+                self.problems += [
+                    Problem(name, f"{p.where}: {p.what}", p.remedy) for p in refusal.problems
+                ]
+            except ValueError as error:
+                self._refuse(
+                    name,
+                    f"{self.system.components[name].fmu} {error}",
+                    "use an FMU of it for FMI 2.0",
+                )
+        self._check_instances()
+
+    def _check_instances(self) -> None:
+        """Refuse two instances of an FMU that may be in a process only once."""
+        users: dict[str, list[str]] = {}
+        for name, description in self.descriptions.items():
+            if description.once_per_process:
+                users.setdefault(description.guid, []).append(name)
+        for names in users.values():
+            if len(names) > 1:
+                self._refuse(
+                    ", ".join(names),
+                    "use one FMU that can be instantiated only once in a process",
+                    "export it under two names",
+                )
+
+    def _order(self) -> tuple[str, ...]:
+        known = self.system.components
+        order = self.system.order or list(known)
+        for name in dict.fromkeys(order):
+            if name not in known:
+                self._refuse("order", f"there is no component {name!r}", nearest(name, known))
+            elif order.count(name) > 1:
+                self._refuse(
+                    "order", f"names {name} {order.count(name)} times", "name each component once"
+                )
+        if missing := [name for name in known if name not in order]:
+            self._refuse("order", f"does not name {', '.join(missing)}", "name each component once")
+        return tuple(order)
+
+    def _check_states(self) -> None:
+        wanted = [name for name, spec in self.system.components.items() if spec.record_states]
+        if wanted and self.system.state_interval is None:
+            self._refuse(
+                "state_interval",
+                f"is missing, and states of {', '.join(wanted)} are to be recorded",
+                "give it, in s",
+            )
+        for name in wanted:
+            if name in self.descriptions and not self.descriptions[name].serializes_state:
+                self._refuse(
+                    f"{name}.record_states", "the FMU cannot serialize its state", "leave it out"
+                )
+
+    # ------------------------------------------------------------------ names
+
+    def _ends(self, where: str, component: str, name: str) -> list[End]:
+        """Return the ports that a name or an array shorthand stands for.
+
+        None of them if any is unknown.
+        """
+        if component not in self.system.components:
+            self._refuse(
+                where,
+                f"there is no component {component!r}",
+                nearest(component, self.system.components),
+            )
+            return []
+        if component not in self.descriptions:
+            return []
+        ports = self.descriptions[component].ports
+        names = expand(self._present(component, name), ports)
+        unknown = [n for n in names if n not in ports] if names else [name]
+        if unknown:
+            more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
+            self._refuse(
+                where,
+                f"{component} has no variable {unknown[0]!r}{more}",
+                nearest(unknown[0], ports),
+            )
+            return []
+        return [End(component, ports[n]) for n in names]
+
+    def _present(self, component: str, name: str) -> str:
+        """Return the present name of a variable, and warn once of an older one."""
+        present = present_name(self.descriptions[component], name)
+        if present != name:
+            text = renaming_warning(component, name, present)
+            self.warnings += [] if text in self.warnings else [text]
+        return present
+
+    def _of_causality(self, where: str, ends: list[End], causality: str) -> list[End]:
+        wrong = [end for end in ends if end.port.causality != causality]
+        if not wrong:
+            return ends
+        name, port = wrong[0]
+        known = self.descriptions[name].named(causality)
+        remedy = f"{causality}s are: {_few(port.name for port in known)}"
+        if port.causality == "parameter":
+            remedy = (
+                f"a parameter is fixed before the run: set it under components.{name}.parameters"
+            )
+        what = f"is of the causality {port.causality}, and an {causality} is needed"
+        self._refuse(where, f"{wrong[0].name} {what}", remedy)
+        return []
+
+    def _selected(self, key: str, patterns: Iterable[str]) -> list[End]:
+        """Return the ports that patterns select.
+
+        Outputs where a pattern leaves something open, else any variable.
+        """
+        every = (
+            End(name, port)
+            for name, known in self.descriptions.items()
+            for port in known.ports.values()
+        )
+        ends = {end.name: end for end in every if end.port.is_number}
+        outputs = [name for name, end in ends.items() if end.port.causality == "output"]
+        chosen: dict[str, End] = {}
+        for given in patterns:
+            pattern = self._present_pattern(given)
+            names = [pattern] if pattern in ends and key == "record" else select(pattern, outputs)
+            if (
+                not names
+                and len(self.descriptions) == len(self.system.components)
+                and pattern != "*"
+            ):
+                self._refuse(key, f"{pattern!r} selects no output", nearest(pattern, outputs))
+            chosen |= {name: ends[name] for name in names}
+        return list(chosen.values())
+
+    def _present_pattern(self, pattern: str) -> str:
+        component, name = _split(pattern)
+        if component not in self.descriptions:
+            return pattern
+        return f"{component}.{self._present(component, name)}"
+
+    # ------------------------------------------------------------------ connections
+
+    def _links(self) -> _Links:
+        links: _Links = []
+        for connection in self.system.connections:
+            links += self._expanded(connection)
+        drivers: dict[str, list[str]] = {}
+        for source, target in links:
+            drivers.setdefault(target.name, []).append(source.name)
+        for name, sources in drivers.items():
+            if len(sources) > 1:
+                self._refuse(
+                    name,
+                    f"is driven {len(sources)} times: by {' and by '.join(sources)}",
+                    "keep one of the connections",
+                )
+        return links
+
+    def _expanded(self, connection: Connection) -> _Links:
+        where = f"{connection.source} -> {connection.target}"
+        sources = self._of_causality(where, self._ends(where, *_split(connection.source)), "output")
+        targets = self._of_causality(where, self._ends(where, *_split(connection.target)), "input")
+        if not sources or not targets:
+            return []
+        if len(sources) != len(targets):
+            self._refuse(
+                where,
+                f"connects {len(sources)} outputs with {len(targets)} inputs",
+                "give ranges of one length, [1..24], or build the FMUs with sizes that fit",
+            )
+            return []
+        pairs = list(zip(sources, targets, strict=True))
+        self._check_pairs(where, pairs)
+        return pairs
+
+    def _check_pairs(self, where: str, pairs: _Links) -> None:
+        """Refuse the first pair whose kinds or units do not fit.
+
+        The elements of an array have them in common.
+        """
+        for source, target in pairs:
+            if source.port.kind != target.port.kind or not source.port.is_number:
+                self._refuse(
+                    where,
+                    f"{source.name} is {source.port.kind} and {target.name} is {target.port.kind}",
+                    "connect ports of one type, Real, Integer or Boolean",
+                )
+                return
+            agree = units_agree(source.port.unit, target.port.unit)
+            if agree is False:
+                self._refuse(
+                    where,
+                    f"{source.name} is in {unit_text(source.port.unit)}, {target.name} in "
+                    f"{unit_text(target.port.unit)}",
+                    "connect ports of one unit",
+                )
+                return
+            if agree is None:
+                self.warnings.append(
+                    f"{where}: units {source.port.unit_name} and {target.port.unit_name} are not "
+                    "defined in the model descriptions and are taken to be the same"
+                )
+                return
+
+    # ------------------------------------------------------------------ values
+
+    def _starts(self, connected: set[str]) -> dict[str, list[tuple[Port, float | str]]]:
+        """Collect the values of each component, shared ones included."""
+        given: dict[str, tuple[End, str, Value]] = {}
+        for name, spec in self.system.components.items():
+            for key, value in self._parameters(name, spec).items():
+                self._give(
+                    given, f"{name}.{key}", f"components.{name}.parameters", value, connected
+                )
+        for key, shared in self.system.shared.items():
+            for target in shared.targets:
+                self._give(given, target, f"shared.{key}", shared.value, connected)
+        starts: dict[str, list[tuple[Port, float | str]]]
+        starts = {name: [] for name in self.system.components}
+        for end, _, value in given.values():
+            try:
+                starts[end.component].append((end.port, value_for(end.port, value)))
+            except ValueError as error:
+                self._refuse(
+                    end.name,
+                    f"{value!r}: {error}",
+                    f"set {end.name} ({end.port.description}) to another value",
+                )
+        return starts
+
+    def _parameters(self, name: str, spec: ComponentSpec) -> dict[str, Value]:
+        """Return the values of a component.
+
+        One under an older name takes the place of that under the present one.
+        """
+        if name not in self.descriptions:
+            return spec.parameters
+        present = {key: present_name(self.descriptions[name], key) for key in spec.parameters}
+        replaced = {new for old, new in present.items() if new != old}
+        return {
+            key: value
+            for key, value in spec.parameters.items()
+            if key not in replaced or present[key] != key
+        }
+
+    def _give(
+        self,
+        given: dict[str, tuple[End, str, Value]],
+        target: str,
+        giver: str,
+        value: Value,
+        connected: set[str],
+    ) -> None:
+        for end in self._ends(target, *_split(target)):
+            if end.port.causality not in ("parameter", "input"):
+                self._refuse(
+                    end.name,
+                    f"is of the causality {end.port.causality} and cannot be set",
+                    "set parameters and unconnected inputs only",
+                )
+            elif end.name in connected:
+                self._refuse(end.name, f"is set in {giver} and is connected", "remove one of both")
+            elif end.name in given:
+                self._refuse(
+                    end.name, f"is set in {given[end.name][1]} and in {giver}", "remove one of both"
+                )
+            else:
+                given[end.name] = (end, giver, value)
+
+    # ------------------------------------------------------------------ energy
+
+    def _bond(self, name: str, bond: PowerBond, links: _Links) -> _Bond | None:
+        where = f"bonds.{name}"
+        force = self._outputs(where, bond.giver, bond.force)
+        position = self._outputs(where, bond.taker, bond.position)
+        work = self._outputs(where, bond.giver, [bond.work] if bond.work else [])
+        if not force or not position or (bond.work and not work):
+            return None
+        if len(force) != len(position):
+            what = f"has {len(force)} forces and {len(position)} positions"
+            self._refuse(where, what, "name one position for each force")
+            return None
+        fed = _fed_by(links, bond.taker)
+        why = "the ledger takes the force that the taker was given"
+        given = self._connected(where, force, fed, bond.taker, why)
+        seen: list[End] = []
+        if not work:
+            why = (
+                "the ledger takes the displacement that the giver was shown; or name the giver's "
+                "work output"
+            )
+            fed = _fed_by(links, bond.giver)
+            seen = self._connected(where, position, fed, bond.giver, why)
+        self._check_energy_units(where, force, position, work)
+        sign = -1.0 if bond.opposed else 1.0
+        return _Bond(name, force, position, given, seen, work[0] if work else None, sign)
+
+    def _outputs(self, where: str, component: str, names: Iterable[str]) -> list[End]:
+        ends = [end for name in names for end in self._ends(where, component, name)]
+        return self._of_causality(where, ends, "output")
+
+    def _connected(
+        self, where: str, sources: list[End], fed: Mapping[str, End], component: str, why: str
+    ) -> list[End]:
+        """Return the inputs of a component that the sources feed."""
+        missing = [source.name for source in sources if source.name not in fed]
+        if missing:
+            self._refuse(where, f"{missing[0]} is connected to no input of {component}", why)
+            return []
+        return [fed[source.name] for source in sources]
+
+    def _check_energy_units(
+        self, where: str, force: list[End], position: list[End], work: list[End]
+    ) -> None:
+        for f, p in zip(force, position, strict=True):
+            if is_joule(f.port.unit, p.port.unit) is False:
+                self._refuse(
+                    where,
+                    f"{f.name} in {f.port.unit_name} times {p.name} in {p.port.unit_name} is no "
+                    "energy in J",
+                    "name forces with positions and torques with angles, in SI units",
+                )
+                return
+        if work and is_joule(work[0].port.unit, Unit("1", {})) is False:
+            self._refuse(
+                where, f"{work[0].name} is in {work[0].port.unit_name}", "name an output in J"
+            )
+
+    def _reference(self) -> float | End | None:
+        alarm = self.system.energy_alarm
+        if alarm is None or isinstance(alarm.reference, float):
+            return None if alarm is None else float(alarm.reference)
+        where = "energy_alarm.reference"
+        ends = self._of_causality(where, self._ends(where, *_split(alarm.reference)), "output")
+        return ends[0] if ends else None
+
+
+def _fed_by(links: _Links, component: str) -> dict[str, End]:
+    """Return the inputs of a component by the outputs that feed them."""
+    return {source.name: target for source, target in links if target.component == component}
+
+
+def _sorted(order: tuple[str, ...], ends: Iterable[End]) -> tuple[End, ...]:
+    """Return every port once, in the order of the buses."""
+    unique = {end.name: end for end in ends}
+    turns = {name: turn for turn, name in enumerate(order)}
+    return tuple(
+        sorted(
+            unique.values(),
+            key=lambda end: (
+                turns[end.component],
+                end.port.kind != REAL,
+                end.port.kind,
+                end.port.reference,
+            ),
+        )
+    )
+
+
+def _bond_places(
+    bond: _Bond, place: Mapping[str, int], place_of_input: Mapping[str, int]
+) -> BondPlaces:
+    def places(table: Mapping[str, int], ends: list[End]) -> NDArray[np.int64]:
+        return np.array([table[end.name] for end in ends], np.int64)
+
+    seen = np.full(len(bond.force), -1, np.int64)
+    if bond.seen:
+        seen = places(place_of_input, bond.seen)
+    return BondPlaces(
+        name=bond.name,
+        given=places(place_of_input, bond.given),
+        seen=seen,
+        force=places(place, bond.force),
+        position=places(place, bond.position),
+        work=bond.work,
+        sign=bond.sign,
+    )
+
+
+def _split(text: str) -> tuple[str, str]:
+    component, _, name = text.partition(".")
+    return component, name
+
+
+def _few(names: Iterable[str]) -> str:
+    """List some names, and say that there are more."""
+    listed = list(names)
+    if len(listed) > 8:
+        listed[8:] = ["..."]
+    return ", ".join(listed) or "none"
