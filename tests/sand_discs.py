@@ -90,7 +90,7 @@ def weight(instance: Instance) -> float:
 
 def sand_stiffness(instance: Instance) -> float:
     """k_n of two equal discs (N/m): eq. (1) of the paper with dD = R_ij0."""
-    return float(instance["stiffness_factor"] * instance["modulus"] * instance["depth"])
+    return float(instance["stiffness_factor"] * instance["modulus"] * instance["thickness"])
 
 
 def run(instance: Instance, duration: float, step: float | None = None) -> None:

@@ -62,12 +62,21 @@ KIND = Kind(*range(6))
 """Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
 Law = namedtuple(
     "Law",
-    "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge softness",
+    "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge compliance",
 )
 LAW = Law(*range(11))
 """Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance,
 unloading stiffness (N/m), part of the overlap that stays, capillary force / distance of centres (N/m), longest bridge / distance
 of centres, 1/k_s."""
+
+Boundary = namedtuple(
+    "Boundary", "geometry sand_contact rock_contact carrier transmits beam_mass side"
+)
+"""A boundary of the sand: its geometry, the kinds of its contacts with sand and with the rock, who
+carries the force on it, whether that force counts as transmitted (1 or 0), whether dashpots of sand
+on it take the mass of a beam disc (1 or 0), and for walls their side (-1 left, 1 right)."""
+BOUNDARY_ROW = len(Boundary._fields)
+"""Numbers per boundary in ``boundary``."""
 
 Column = namedtuple("Column", "x y vx vy spin reach root")
 COLUMN = Column(*range(7))
@@ -167,32 +176,35 @@ LAYOUT = Layout(
             maximum=0.5,
         ),
         param(
-            "depth",
-            "effective depth dL of the cushion, into the picture",
+            "thickness",
+            "effective thickness dL of the cushion, out of the plane",
             10 * cm,
             "m",
             minimum=1e-6,
             source="Sonoda et al. 1993, sec. 3 (2)",
+            formerly=("depth",),
         ),
         param(
-            "unit_weight",
-            "mass density of a disc, or of the layer with its voids (unit_weight_of)",
+            "density",
+            "density of a disc, or of the layer with its voids (density_of)",
             0.0018 * kgf / cm**3 / kgf,
             "kg/m3",
             minimum=1e-6,
             source=_TABLE_3,
+            formerly=("unit_weight",),
         ),
         choice(
-            "unit_weight_of",
-            "what unit_weight is the density of: a disc; or the layer, discs are then heavier by 1 / "
+            "density_of",
+            "body that density belongs to: a disc; or the layer, whose discs are heavier by 1 / "
             "solid_fraction",
             ("disc", "layer"),
             "disc",
+            formerly=("unit_weight_of",),
         ),
         param(
             "solid_fraction",
             "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion "
-            "and unit_weight_of = layer. The default is that of a square lattice",
+            "and density_of = layer. The default is that of a square lattice",
             math.pi / 4.0,
             minimum=0.5,
             maximum=0.9,
@@ -470,10 +482,11 @@ LAYOUT = Layout(
             "m",
         ),
         out(
-            "unrest",
-            "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
-            "that is more; settling ends at 1e-6, or when settling.time is over",
+            "unbalanced_force_ratio",
+            "largest unbalanced force on a disc at the start / its weight, or largest speed in "
+            "sqrt(g r) if that is more; settling ends at 1e-6, or when settling.time is over",
             role=Role.UNBALANCED,
+            formerly=("unrest",),
         ),
         stable_step(),
         out(
@@ -583,6 +596,7 @@ LAYOUT = Layout(
         State("law", lambda n: len(KIND) * len(LAW)),
         State("sums", lambda n: len(SUM)),
         State("boundary_reference", lambda n: 2 * (n["elements"] + 1)),
+        State("boundary", lambda n: BOUNDARY_ROW * (n["elements"] + 1 + PLANES), True),
         State("part", lambda n: _parts(n) + 1, integer=True),
         State("row", lambda n: n["discs"] + 1, integer=True),
         State("row_before", lambda n: n["discs"] + 1, integer=True),

@@ -14,22 +14,13 @@ from ..common.component import HEADER, MAGIC, ComponentError, Instance
 from ..common.kernels import kernel
 from ..common.ports import view
 from . import COMPONENT
-from .contact_search import base_top, beam_count, disc_count, first_of, second_of
-from .declarations import (
-    ANGLE,
-    BEAM_DISCS,
-    FLOOR,
-    KIND,
-    LAW,
-    LAYOUT,
-    ON_BEAM,
-    RADIUS,
-    ROW,
-    UNBOUNDED,
-)
-from .forces import kind_of, touch
+from .bodies import bodies_of
+from .boundaries import boundary_of, contact_kind, touch, touch_disc
+from .contact_search import base_top, first_of, second_of
+from .declarations import ANGLE, FLOOR, KIND, LAYOUT, ON_BEAM, ROW, UNBOUNDED
+from .laws import law_of
 
-V, A = LAYOUT.scalar, LAYOUT.array
+A = LAYOUT.array
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -128,7 +119,8 @@ def _discs(body: Floats, angle: Floats, which: slice) -> Discs:
 
 
 def _box(instance: Instance) -> Box:
-    base, height = float(_base(instance.w, instance.x, instance.k)), instance["box.wall_height"]
+    base = float(base_top(instance.w, instance.x, instance.k))
+    height = instance["box.wall_height"]
     foot = base if instance["walls"] == ON_BEAM else instance["base.y"]
     return Box(
         instance["box.left"],
@@ -147,52 +139,46 @@ def _contacts(instance: Instance) -> Contacts:
 
 
 @kernel
-def _base(w, x, k):
-    """Highest point (m) of whatever carries the sand."""
-    n, m = disc_count(k), beam_count(k)
-    body = view(x, k, A.body)
-    if w[V.base] != BEAM_DISCS:
-        return base_top(w, body, n, m)
-    top = body[ROW * (n + 1) + 1]
-    for b in range(n + 1, n + m + 1):
-        top = max(top, body[ROW * b + 1])
-    return top + w[V.beam_radius]
-
-
-@kernel
 def list_contacts(w, x, k, table):
-    """Write a row of ``table`` for each contact that touches; returns their number. The lists of candidates have room for all."""
-    found, pair, spring = 0, view(k, k, A.pair), view(x, k, A.spring)
-    for p in range(view(k, k, A.across)[disc_count(k)]):
-        if second_of(pair[p]) < disc_count(k):  # else it fills up a block
-            found = _list(found, first_of(pair[p]), second_of(pair[p]), spring[p], w, x, k, table)
-    owner, partner, spring = (
-        view(k, k, A.edge_body),
-        view(k, k, A.edge_partner),
-        view(x, k, A.edge_spring),
-    )
-    for p in range(view(k, k, A.edge_row)[disc_count(k) + 1]):
-        found = _list(found, owner[p], partner[p], spring[p], w, x, k, table)
-    return found
+    """Write a row of ``table`` for each contact that touches; returns their number.
+
+    The lists of candidates have room for all.
+    """
+    bodies, rows = bodies_of(x, k), 0
+    pair, spring = view(k, k, A.pair), view(x, k, A.spring)
+    sand = law_of(KIND.sand, 1.0, view(x, k, A.law))
+    for p in range(view(k, k, A.across)[bodies.rock]):
+        i, j = first_of(pair[p]), second_of(pair[p])
+        if j < bodies.rock:  # else it fills up a block
+            surface = touch_disc(i, j, bodies)
+            rows = _write(
+                (i, j), surface, bodies.radius[j], sand.normal, spring[p], bodies, table, rows
+            )
+    owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
+    spring = view(x, k, A.edge_spring)
+    for p in range(view(k, k, A.edge_row)[bodies.rock + 1]):
+        i, b = owner[p], partner[p]
+        boundary = boundary_of(b, bodies.rock, view(k, k, A.boundary))
+        law = law_of(contact_kind(i, boundary, bodies), 1.0, view(x, k, A.law))
+        surface = touch(i, b, boundary, w, bodies)
+        radius = bodies.radius[b] if b < bodies.end else 0.0
+        rows = _write((i, b), surface, radius, law.normal, spring[p], bodies, table, rows)
+    return rows
 
 
 @kernel
-def _list(found, i, j, tangential, w, x, k, table):
-    """Write a pair behind the rows found before, if it touches. Returns the number of rows."""
-    n, m = disc_count(k), beam_count(k)
-    body, law = view(x, k, A.body), view(x, k, A.law)
-    nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
-    if gap >= 0.0:
-        return found
-    reach = body[ROW * i + RADIUS] + gap
-    if j <= n + m:
-        reach += body[ROW * j + RADIUS]
-    stiffness = law[(KIND.sand if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
-    table[found, 0], table[found, 1] = i, j
-    table[found, 2], table[found, 3] = body[ROW * i], body[ROW * i + 1]
-    table[found, 4], table[found, 5] = body[ROW * i] + nx * reach, body[ROW * i + 1] + ny * reach
-    table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, tangential
-    return found + 1
+def _write(pair, surface, radius, stiffness, tangential, bodies, table, rows):
+    """Write a contact behind the rows that are there, if it touches; returns their number."""
+    if surface.gap >= 0.0:
+        return rows
+    i, j = pair
+    x, y, reach = bodies.x[i], bodies.y[i], bodies.radius[i] + surface.gap + radius
+    table[rows, 0], table[rows, 1] = i, j
+    table[rows, 2], table[rows, 3] = x, y
+    table[rows, 4], table[rows, 5] = x + surface.nx * reach, y + surface.ny * reach
+    table[rows, 6], table[rows, 7] = -surface.gap, -stiffness * surface.gap
+    table[rows, 8] = tangential
+    return rows + 1
 
 
 def sizes_of(content: bytes) -> dict[str, int]:

@@ -45,7 +45,7 @@ _SAND_STEP = 5e-5
 class Impact:
     """An impact at full scale.
 
-    modulus: fictitious modulus E_bar (Pa). width: of the box (m). depth: effective depth dL of the sand (m). span: of the girders
+    modulus: fictitious modulus E_bar (Pa). width: of the box (m). thickness: effective thickness dL of the sand (m). span: of the girders
     (m), 0 on a rigid base. stop_time: end of the run (s), after the rock has turned.
     """
 
@@ -53,7 +53,7 @@ class Impact:
     summary: str
     modulus: float
     width: float
-    depth: float
+    thickness: float
     stop_time: float
     span: float = 0.0
 
@@ -69,9 +69,9 @@ class Impact:
 
 
 RIGID_DEPTH = 2 * ROCK_RADIUS * 10.0 / 9.9
-"""Effective depth on the rigid base (m), which the paper does not give: as in the laboratory, 10 cm for a ball of 9.9 cm."""
+"""Effective thickness on the rigid base (m), which the paper does not give: as in the laboratory, 10 cm for a ball of 9.9 cm."""
 GIRDER_DEPTH = 170 * cm
-"""Distance of the girders, which the paper takes as the effective depth."""
+"""Distance of the girders, which the paper takes as the effective thickness."""
 
 ELEMENT = 20 * cm
 """Beam disc; twice a sand disc, with a stable step of 2e-5 s. The paper does not give its discs."""
@@ -146,7 +146,7 @@ def full_scale_system(
             record_states=True,
             parameters={
                 "modulus": impact.modulus,
-                "depth": impact.depth,
+                "thickness": impact.thickness,
                 "disc.radius": DISC_RADIUS,
                 "base": "beam_discs" if impact.span else "floor",
                 "kinematics": kinematics,
@@ -226,12 +226,12 @@ def cushion_weight(system: System, discs: int) -> float:
         if v.size is None
     }
     sand = {**given, **system.components["sand"].parameters}
-    density = float(sand["unit_weight"]) / (
-        float(sand["solid_fraction"]) if sand.get("unit_weight_of") == "layer" else 1.0
+    density = float(sand["density"]) / (
+        float(sand["solid_fraction"]) if sand.get("density_of") == "layer" else 1.0
     )
     spread = float(sand["disc.spread"]) if sand["packing"] in ("random", "prepared") else 0.0
     area = math.pi * float(sand["disc.radius"]) ** 2 * (1.0 + spread**2 / 3.0)
-    return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
+    return discs * density * area * float(sand["thickness"]) * float(sand["gravity"])
 
 
 def layer(impact: Impact, dropped: bool = True) -> Layer:

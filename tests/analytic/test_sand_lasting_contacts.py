@@ -66,7 +66,7 @@ def test_a_contact_that_was_open_begins_anew():
 
 def pull(sand):
     """Largest attraction between two discs (N): Rumpf with four contacts a disc."""
-    area = math.pi * 2 * RADIUS * sand["depth"]
+    area = math.pi * 2 * RADIUS * sand["thickness"]
     return (
         sand["cohesion"] * area / (4.0 * sand["solid_fraction"] * math.tan(sand["friction_angle"]))
     )

@@ -7,12 +7,15 @@ bits whatever the width of the processor's vectors: the compiler cuts 8 lanes to
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from llvmlite import ir
 
 from ...common.kernels import numba_cgutils as cgutils
 from ...common.kernels import numba_types as types
+from ..declarations import BLOCK, LANES
 
 REAL, INDEX, WORD = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
 
@@ -46,6 +49,11 @@ class Lanes:
 
     __radd__, __rmul__ = __add__, __mul__
 
+    def __truediv__(self, other: Lanes) -> Lanes:
+        if isinstance(other, Divisor):
+            return self * other.reciprocal
+        return self.made(self.builder.fdiv(self.value, other.value))
+
     def __rtruediv__(self, other: float) -> Lanes:
         return self.made(self.builder.fdiv(self.like(other), self.value))
 
@@ -77,21 +85,30 @@ def spread(builder: ir.IRBuilder, number: ir.Value, width: int) -> Lanes:
     return Lanes(builder, builder.insert_element(empty, number, WORD(0))).shuffled([0] * width)
 
 
-def where(mask: Lanes, yes: Lanes | float, no: Lanes | float) -> Lanes:
-    """Lane by lane, one of two."""
+class Divisor(Lanes):
+    """A vector whose reciprocal is known: division by it multiplies with the reciprocal."""
+
+    def __init__(self, lanes: Lanes, reciprocal: Lanes) -> None:
+        super().__init__(lanes.builder, lanes.value)
+        self.reciprocal = reciprocal
+
+
+def divisor(lanes: Lanes) -> Divisor:
+    """Return a vector together with its reciprocal: one division for all quotients."""
+    return Divisor(lanes, 1.0 / lanes)
+
+
+def divisors(one: Lanes, other: Lanes) -> tuple[Divisor, Divisor]:
+    """Return two vectors together with their reciprocals, for the price of one division."""
+    both = 1.0 / (one * other)
+    return Divisor(one, both * other), Divisor(other, both * one)
+
+
+def selected(mask: Lanes, yes: Lanes | float, no: Lanes | float) -> Lanes:
+    """Return one of two vectors, lane by lane."""
     vector = yes if isinstance(yes, Lanes) else no
     assert isinstance(vector, Lanes)
     return vector.made(mask.builder.select(mask.value, vector.like(yes), vector.like(no)))
-
-
-def larger(one: Lanes, other: Lanes | float) -> Lanes:
-    """Lane by lane, the larger of two."""
-    return where(one > other, one, other)
-
-
-def smaller(one: Lanes, other: Lanes | float) -> Lanes:
-    """Lane by lane, the smaller of two."""
-    return where(one > other, other, one)
 
 
 def sqrt(number: Lanes) -> Lanes:
@@ -99,7 +116,7 @@ def sqrt(number: Lanes) -> Lanes:
     return _intrinsic("sqrt", number)
 
 
-def fma(one: Lanes, other: Lanes, added: Lanes) -> Lanes:
+def fused(one: Lanes, other: Lanes, added: Lanes) -> Lanes:
     """one * other + added, rounded once."""
     return _intrinsic("fma", one, other, added)
 
@@ -162,6 +179,13 @@ class Access:
         self.builder.store(
             lanes.value, self.builder.bitcast(address, lanes.value.type.as_pointer()), align=8
         )
+
+    @contextmanager
+    def lanes_of_block(self) -> Iterator[ir.Value]:
+        """Open a loop over a block, as many pairs at a time as a vector has lanes."""
+        bounds = (INDEX(0), INDEX(BLOCK), INDEX(LANES))
+        with cgutils.for_range_slice(self.builder, *bounds) as (lane, _):
+            yield lane
 
     def running(self, argument: int, place: int, width: int) -> Running:
         """A running value that begins with what an array holds; see :meth:`Running.keep`."""

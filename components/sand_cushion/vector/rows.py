@@ -13,8 +13,9 @@ from llvmlite import ir
 from ...common.kernels import intrinsic, kernel
 from ...common.kernels import numba_cgutils as cgutils
 from ...common.kernels import numba_types as types
+from ..arithmetic import larger
 from ..declarations import BLOCK, FORCE_ROW, HALF_ROOT, INVERSE_MASS, LANES, ROW
-from .lanes import INDEX, WORD, Access, Lanes, constant, fma, larger, spread
+from .lanes import INDEX, WORD, Access, Lanes, constant, fused, spread
 
 KINETIC, FASTEST, POTENTIAL = 0, 4, 6
 """Where the numbers of :func:`move_rows` begin: m/4 times old and new velocity to the right, upwards and of the surface (and a
@@ -73,11 +74,6 @@ def _bodies(access: Access, pair: ir.Value) -> tuple[ir.Value, ir.Value]:
     return b.zext(b.load(halves), INDEX), b.zext(b.load(b.gep(halves, [INDEX(1)])), INDEX)
 
 
-def _lanes_of_block(builder: ir.IRBuilder) -> Any:
-    """A loop over a block, eight pairs at a time."""
-    return cgutils.for_range_slice(builder, INDEX(0), INDEX(BLOCK), INDEX(LANES))
-
-
 @intrinsic
 def pairs_to_columns(typing, body, pair, at, block):
     """:func:`plain_pairs_to_columns` as vectors."""
@@ -85,11 +81,11 @@ def pairs_to_columns(typing, body, pair, at, block):
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
         sign = Lanes(builder, constant([-1.0] * 4 + [1.0] * 4))
-        with _lanes_of_block(builder) as (lane, _):
+        with access.lanes_of_block() as lane:
             rows = []
             for q in range(LANES):
                 i, j = _bodies(access, access.place(builder.add(access[2], lane), q))
-                rows.append(fma(access.load(0, i, ROW), sign, access.load(0, j, ROW)))
+                rows.append(fused(access.load(0, i, ROW), sign, access.load(0, j, ROW)))
             columns = _transposed(rows)
             for column, source in enumerate((0, 1, 2, 3, 4, 5, 7)):
                 access.store(columns[source], 3, access.place(lane, column * BLOCK))
@@ -117,7 +113,7 @@ def _columns_to_pairs(turning: bool) -> Any:
             )
             even, odd = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
             width = FORCE_ROW if turning else 2
-            with _lanes_of_block(builder) as (lane, _):
+            with access.lanes_of_block() as lane:
                 x, y, turn = (
                     access.load(3, access.place(lane, column * BLOCK), LANES) for column in range(3)
                 )
@@ -133,7 +129,7 @@ def _columns_to_pairs(turning: bool) -> Any:
                         [two, two + 1, two + 8, two + 9][:width], turns[q % 2]
                     )
                     before = access.loaded(i, width)
-                    access.put(fma(row, sign, before) if turning else before - row, i)
+                    access.put(fused(row, sign, before) if turning else before - row, i)
                     access.put(row + access.loaded(j, width), j)
             return context.get_dummy_value()
 
@@ -172,12 +168,12 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
             inverse = spread(builder, access.number(0, access.place(at, INVERSE_MASS)), 4)
             root = spread(builder, access.number(0, access.place(at, HALF_ROOT)), 4)
             old, position, mass = access.load(0, velocity, 4), access.load(0, at, 2), root * root
-            new = fma(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
+            new = fused(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
             access.store(new, 0, velocity)  # and the radius, to which nothing was added
-            kinetic.become(fma(mass * old, new, kinetic.now))
-            potential.become(fma(mass.shuffled([0, 1]), position, potential.now))
+            kinetic.become(fused(mass * old, new, kinetic.now))
+            potential.become(fused(mass.shuffled([0, 1]), position, potential.now))
             speed = new.shuffled([0, 1])
-            access.store(fma(speed, way, position), 0, at)
+            access.store(fused(speed, way, position), 0, at)
             square = speed * speed
             fastest.become(larger(square + square.shuffled([1, 0]), fastest.now))
             access.store(Lanes(builder, zero), 1, force)
