@@ -9,7 +9,6 @@ from collections import namedtuple
 
 from ..common.kernels import inlined, kernel
 from ..common.ports import view
-from .arithmetic import where
 from .bodies import beam_count, bodies_of
 from .contact_law import (
     Approach,
@@ -26,6 +25,7 @@ from .declarations import (
     FREE,
     INDEX,
     KIND,
+    LAW,
     LAYOUT,
     ON_BEAM,
     PLANES,
@@ -328,45 +328,64 @@ def roll_on(p, i, b, normal, law, dt, is_round, bodies, edges):
 
 
 @inlined
-def press_on(p, dt, rolls, w, bodies, edges):
-    """Compute the contact p of a disc or the rock with a boundary; returns its :class:`Work`."""
-    i, b = edges.owner[p] & INDEX, edges.partner[p] & INDEX
-    boundary = boundary_of(b, bodies.rock, edges.boundary)
-    surface = touch(i, b, boundary, w, bodies)
-    nx, ny, overlap, before = surface.nx, surface.ny, -surface.gap, edges.spring[p]
-    root = dashpot_root(i, boundary, w, bodies)
-    law = law_of(contact_kind(i, boundary, bodies), root, edges.law)
-    grown = permanent_overlap(edges.plastic[p], overlap, law)
-    lost = yield_loss(edges.plastic[p], grown, 0.0, law)
-    edges.plastic[p] = where(overlap > 0.0, grown, 0.0)
-    dvx, dvy = surface.vx - bodies.vx[i], surface.vy - bodies.vy[i]
-    approach = Approach(
-        overlap - edges.plastic[p],
-        dvx * nx + dvy * ny,
-        dvy * nx - dvx * ny - bodies.spin[i],
-        1.0,  # the root of the mass is in the constants
-    )
-    response = respond(approach, before, slip_resistance(1.0, law, dt), law, dt)
-    edges.spring[p] = response.spring
-    if approach.overlap <= 0.0:
-        edges.roll[p] = 0.0
-        return Work(0.0, 0.0, 0.0, 0.5 * before * before * law.compliance, lost)
+def let_go(p, lost, kind, edges):
+    """Forget the spring of a contact that is open: its energy counts as slid, as :class:`Work`."""
+    before, compliance = edges.spring[p], edges.law[kind * len(LAW) + LAW.compliance & INDEX]
+    edges.spring[p] = 0.0
+    edges.roll[p] = 0.0
+    return Work(0.0, 0.0, 0.0, 0.5 * before * before * compliance, lost)
+
+
+@inlined
+def approach_of(i, overlap, surface, bodies):
+    """Return how body i meets a surface, with the elastic overlap (m); no root of mass in it."""
+    nx, ny = surface.nx, surface.ny
+    vx, vy = surface.vx - bodies.vx[i], surface.vy - bodies.vy[i]
+    return Approach(overlap, vx * nx + vy * ny, vy * nx - vx * ny - bodies.spin[i], 1.0)
+
+
+@inlined
+def hand_on(i, b, boundary, response, surface, w, bodies):
+    """Give the contact force to body i and boundary b; returns what counts as transmitted (N)."""
     normal, tangential = response.normal, response.tangential
-    fx, fy = normal * nx + tangential * ny, normal * ny - tangential * nx  # of i on b
+    fx = normal * surface.nx + tangential * surface.ny  # of i on b
+    fy = normal * surface.ny - tangential * surface.nx
     bodies.force_x[i] -= fx
     bodies.force_y[i] -= fy
     bodies.turn[i] += tangential
     foot = face_of(boundary, w) if boundary.geometry == WALL else bodies.x[i]
     carry(b, boundary, foot, (fx, fy), surface, bodies)
-    if boundary.transmits == 1:
-        edges.sums[SUM.transmitted] -= fy
+    return fy if boundary.transmits == 1 else 0.0
+
+
+@inlined
+def press_on(p, dt, rolls, w, bodies, edges):
+    """Compute the contact p of a disc or the rock with a boundary; returns its :class:`Work`."""
+    i, b = edges.owner[p] & INDEX, edges.partner[p] & INDEX
+    boundary = boundary_of(b, bodies.rock, edges.boundary)
+    surface = touch(i, b, boundary, w, bodies)
+    kind = contact_kind(i, boundary, bodies)
+    if surface.gap >= 0.0:
+        edges.plastic[p] = 0.0
+        return let_go(p, 0.0, kind, edges)
+    law = law_of(kind, dashpot_root(i, boundary, w, bodies), edges.law)
+    yielded, spring = edges.plastic[p], edges.spring[p]
+    permanent = permanent_overlap(yielded, -surface.gap, law)
+    lost = yield_loss(yielded, permanent, 0.0, law)
+    edges.plastic[p] = permanent
+    approach = approach_of(i, -surface.gap - permanent, surface, bodies)
+    if approach.overlap <= 0.0:
+        return let_go(p, lost, kind, edges)
+    response = respond(approach, spring, slip_resistance(1.0, law, dt), law, dt)
+    edges.spring[p] = response.spring
+    edges.sums[SUM.transmitted] -= hand_on(i, b, boundary, response, surface, w, bodies)
     if rolls and law.rolling > 0.0:
-        roll_on(p, i, b, normal, law, dt, boundary.geometry == DISC, bodies, edges)
+        roll_on(p, i, b, response.normal, law, dt, boundary.geometry == DISC, bodies, edges)
     return Work(
         response.elastic * approach.overlap + response.spring * response.spring * law.compliance,
-        (response.elastic - normal) * approach.opening,
+        (response.elastic - response.normal) * approach.opening,
         law.tangential_damping * response.creep * response.creep,
-        tangential * (approach.slip - response.creep) * dt,
+        response.tangential * (approach.slip - response.creep) * dt,
         lost,
     )
 

@@ -29,11 +29,13 @@ Rolling = namedtuple("Rolling", "moment dissipated elastic")
 
 
 @formula
-def normal_force(elastic, opening, dashpot):
+def normal_force(touching, elastic, opening, dashpot):
     """Return the force of spring and dashpot side by side, never tension (eq. 1 and fig. 10).
 
     Parameters
     ----------
+    touching : bool or Lanes
+        Whether the bodies overlap; there is no force where they do not.
     elastic : float or Lanes
         Force of the spring, k_n times the overlap (N).
     opening : float or Lanes
@@ -46,7 +48,7 @@ def normal_force(elastic, opening, dashpot):
     float or Lanes
         max(0, k_n d - c_n v_n) (N).
     """
-    return larger(multiply_add(dashpot, -opening, elastic), 0.0)
+    return larger(where(touching, multiply_add(dashpot, -opening, elastic), 0.0), 0.0)
 
 
 @formula
@@ -98,8 +100,7 @@ def respond(approach, before, resistance, law, dt):
     """
     touching = approach.overlap > 0.0
     elastic = law.unloading * larger(approach.overlap, 0.0)
-    pressing = normal_force(elastic, approach.root * approach.opening, law.damping)
-    normal = where(touching, pressing, 0.0)
+    normal = normal_force(touching, elastic, approach.root * approach.opening, law.damping)
     kept = where(touching, before, 0.0)
     trial = multiply_add(resistance, approach.slip, kept)
     tangential = limited(trial, law.friction * normal)

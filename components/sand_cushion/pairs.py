@@ -102,7 +102,7 @@ def press_block(p, model, bodies, pairs):
         roll_block(p, dt, bodies, pairs)
 
 
-@kernel
+@inlined
 def roll_block(begin, dt, bodies, pairs):
     """Let rolling resistance act in a block of pairs, those from ``begin`` on."""
     law = law_of(KIND.sand, 1.0, pairs.law)
