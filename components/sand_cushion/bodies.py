@@ -27,8 +27,9 @@ Bodies = namedtuple(
 )
 """Columns of the bodies, an element a body: position (m), velocity (m/s), surface speed omega r
 (m/s), radius (m), 1/mass (1/kg), sqrt(mass)/2 (kg^0.5), angle (rad; of rock and beam discs, in the
-place of 1/mass), contact force (N), torque / radius (N). ``rock`` is the number of the rock, ``end``
-the one behind the last beam disc; ``rows`` and ``loads`` hold all these numbers body by body."""
+place of 1/mass), contact force (N), torque / radius (N). ``rock`` is the number of the rock,
+``end`` the one behind the last beam disc; ``rows`` and ``loads`` hold all these numbers body by
+body."""
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Where the discs lie before they settle: square and hexagonal lattices, and a loose random heap."""
+"""Places of the discs before they settle: square and hexagonal lattices, a loose random heap."""
 
 import math
 

@@ -251,7 +251,7 @@ def total(energy, tally):
 
 @kernel
 def add_motion(dt, gravity, motion, sums):
-    """Add the way of the fastest disc (m) to the sums; returns energies, see :func:`press_discs`."""
+    """Add the way of the fastest disc (m) to the sums; return energies, see :func:`press_discs`."""
     kinetic, potential, fastest = 0.0, 0.0, 0.0
     for q in range(0, motion.size, MOTION):
         kinetic += motion[q + KINETIC] + motion[q + KINETIC + 1] + 0.5 * motion[q + KINETIC + 2]

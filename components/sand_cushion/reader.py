@@ -1,6 +1,7 @@
-"""What a serialized state of the sand cushion looks like: bodies, box and contacts, for pictures and inspection.
+"""Geometry of a serialized state of the sand cushion: bodies, box and contacts.
 
-Nothing is simulated here: positions are those of the state, and forces follow from them and from the springs it holds.
+Nothing is simulated here: positions are those of the state, and forces follow from them and from
+the springs that it holds.
 """
 
 import math
@@ -26,12 +27,23 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _COLUMNS = 9
-"""Numbers per contact that :func:`list_contacts` writes: bodies, both points, overlap, normal and tangential force."""
+"""Numbers per contact that :func:`list_contacts` writes: bodies, both points (m), overlap (m),
+normal and tangential force (N)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Discs:
-    """Discs of one kind: centres (m), radii (m), angles (rad, counter-clockwise) and velocities (m/s), an array each."""
+    """Discs of one kind, an array each.
+
+    Attributes
+    ----------
+    x, y : ndarray of shape (n,)
+        Centres (m).
+    radius, angle : ndarray of shape (n,)
+        Radii (m) and angles (rad, counter-clockwise).
+    velocity_x, velocity_y : ndarray of shape (n,)
+        Velocities (m/s).
+    """
 
     x: Floats
     y: Floats
@@ -43,8 +55,17 @@ class Discs:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """The box (m): inner face of the left wall, distance of the walls, height of the base's highest point; upper end (infinite if
-    there is none) and thickness of the walls, for the rock."""
+    """The box of the sand (m).
+
+    Attributes
+    ----------
+    left, width : float
+        Inner face of the left wall, and distance of the walls.
+    base : float
+        Height of the base's highest point.
+    wall_top, wall_thickness : float
+        Upper end (infinite if there is none) and thickness of the walls, for the rock.
+    """
 
     left: float
     width: float
@@ -57,12 +78,22 @@ class Box:
 class Contacts:
     """Contacts that touch, an array each.
 
-    first, second: numbers of the bodies: sand discs from 0, then the rock, the beam discs, left wall, right wall, base.
-    x1, y1: centre of the first body (m). x2, y2: centre of the second, or the foot on a plane (m).
-    overlap: in m, positive.
-    normal_force: k_n * overlap (N), the elastic part: the dashpot's depends on the step. Compression is positive.
-    tangential_force: force of the tangential spring (N) at the last internal step; positive when it turns the first body
-        counter-clockwise.
+    Attributes
+    ----------
+    first, second : ndarray of shape (n,)
+        Numbers of the bodies: sand discs from 0, rock, beam discs, left wall, right wall, base.
+    x1, y1 : ndarray of shape (n,)
+        Centre of the first body (m).
+    x2, y2 : ndarray of shape (n,)
+        Centre of the second body, or the foot on a plane (m).
+    overlap : ndarray of shape (n,)
+        Overlap (m), positive.
+    normal_force : ndarray of shape (n,)
+        k_n times the overlap (N), the elastic part: the dashpot's depends on the step. Compression
+        is positive.
+    tangential_force : ndarray of shape (n,)
+        Force of the tangential spring (N) at the last internal step; positive when it turns the
+        first body counter-clockwise.
     """
 
     first: Integers
@@ -78,7 +109,7 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True)
 class SandState:
-    """A sand cushion at one instant. ``rock`` holds one disc."""
+    """A sand cushion at one instant; ``rock`` holds one disc."""
 
     discs: Discs
     rock: Discs
@@ -88,10 +119,24 @@ class SandState:
 
 
 def read(content: bytes, sizes: Mapping[str, int]) -> SandState:
-    """Decode what :meth:`rockshed.components.common.component.Instance.to_bytes` wrote for a cushion of these ``sizes``.
+    """Decode a serialized state of a cushion, see :meth:`..common.component.Instance.to_bytes`.
 
-    Raises:
-        ComponentError: not such a state, of another component or other sizes, or cut short.
+    Parameters
+    ----------
+    content : bytes
+        The state.
+    sizes : mapping of str to int
+        Sizes of the cushion.
+
+    Returns
+    -------
+    SandState
+        Its geometry.
+
+    Raises
+    ------
+    ComponentError
+        Not such a state, of another component or other sizes, or cut short.
     """
     instance = COMPONENT.instance(**sizes)
     instance.from_bytes(content)
@@ -99,7 +144,18 @@ def read(content: bytes, sizes: Mapping[str, int]) -> SandState:
 
 
 def snapshot(instance: Instance) -> SandState:
-    """The present state of a cushion. The arrays are copies."""
+    """Return the present geometry of a cushion, in copies.
+
+    Parameters
+    ----------
+    instance : Instance
+        The cushion.
+
+    Returns
+    -------
+    SandState
+        Its geometry.
+    """
     discs = instance.sizes["discs"]
     body = instance.state("body").reshape(-1, ROW)
     body = body[: discs + 1 + instance.sizes["elements"]]
@@ -182,10 +238,22 @@ def _write(pair, surface, radius, stiffness, tangential, bodies, table, rows):
 
 
 def sizes_of(content: bytes) -> dict[str, int]:
-    """The sizes of the cushion that a state is of, for :func:`read`: the state's table of arrays tells them.
+    """Return the sizes of the cushion that a state belongs to, from its table of arrays.
 
-    Raises:
-        ComponentError: not the state of a component, or cut short.
+    Parameters
+    ----------
+    content : bytes
+        Serialized state.
+
+    Returns
+    -------
+    dict of str to int
+        Sizes for :func:`read`.
+
+    Raises
+    ------
+    ComponentError
+        Not the state of a component, or cut short.
     """
     if len(content) < HEADER.size or len(content) != HEADER.size + 8 * sum(
         HEADER.unpack_from(content)[2:]

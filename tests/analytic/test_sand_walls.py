@@ -39,7 +39,8 @@ def touching(sand, i, b):
 
 
 def nearest_of_block(x, y, inner, outer):
-    """Distance (m) to the nearest of many points on the surface of a block, and the direction to it."""
+    """Distance (m) to the nearest of many points on the surface of a block, and the direction to
+    it."""
     along, down = np.linspace(inner, outer, 4001), np.linspace(TOP, -2.0, 50_001)
     points = np.concatenate(
         (
@@ -93,7 +94,8 @@ def test_the_gap_is_the_distance_to_the_block(sand, out, over, side):
     ],
 )
 def test_a_rock_comes_straight_back_from_faces_and_corners(contact, from_angle):
-    """Without friction and dashpots a rock that comes along the normal leaves along it, as fast as it came."""
+    """Without friction and dashpots a rock that comes along the normal leaves along it, as fast as
+    it came."""
     nx, ny = math.cos(math.radians(from_angle)), math.sin(math.radians(from_angle))
     away, speed = RADIUS + 1e-4, 2.0
     start, velocity = (contact[0] + away * nx, contact[1] + away * ny), (-speed * nx, -speed * ny)
@@ -131,7 +133,8 @@ def test_a_rock_that_grazes_the_edge_is_turned_by_it():
 
 
 def test_a_rock_on_a_wall_that_stands_on_the_beam_weighs_on_the_beam():
-    """The wall counts its height from the beam's top beside it, and hands the force down by the lever rule."""
+    """The wall counts its height from the beam's top beside it, and hands the force down by the
+    lever rule."""
     height = 0.3
     sand = cushion(
         {

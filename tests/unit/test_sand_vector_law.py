@@ -1,4 +1,4 @@
-"""The contact law: as vectors, as single numbers, and against plain formulas, contact by contact."""
+"""The contact law: with vectors, with single numbers, and against plain formulas."""
 
 import math
 
@@ -59,7 +59,8 @@ def answer(overlap, opening, slip, root, spring, law, dt):
 
 
 def contact(column, spring, plastic, law, energies):
-    """One contact by plain formulas: force on the second disc, tangential and normal force, spring and permanent overlap.
+    """One contact by plain formulas: force on the second disc, tangential and normal force, spring
+    and permanent overlap.
 
     The law for single numbers, compiled, says the same.
     """
@@ -170,7 +171,8 @@ def test_a_block_is_as_many_contacts(seed, speed, model):
 
 @pytest.mark.parametrize("turning", [0.0, 2.0])
 def test_discs_move_by_the_second_law(turning):
-    """Force, torque and weight change the velocities, the new velocities the places; energies are those of the mean velocity."""
+    """Force, torque and weight change the velocities, the new velocities the places; energies are
+    those of the mean velocity."""
     random, n, dt, gravity = np.random.default_rng(1), 7, 1e-3, 9.8
     body, load, motion = (
         random.normal(0.0, 1.0, (n, 8)),
