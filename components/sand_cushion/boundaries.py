@@ -1,4 +1,4 @@
-"""What the sand touches beside itself: a table of kinds of boundaries, each with geometry and load.
+"""Boundaries of the sand: a table of kinds, each with geometry and load.
 
 Boundaries are numbered like bodies: the rock, the beam discs, and behind them the left wall, the
 right wall and the base. ``boundary`` holds the :class:`Boundary` of each.
@@ -196,7 +196,9 @@ def touch_base(i, boundary, w, bodies):
 @inlined
 def touch_wall(i, boundary, w, bodies):
     """Return the :class:`Surface` of a wall near body i: a plane for sand, a block for the rock."""
-    xi, ri, face, nx = bodies.x[i], bodies.radius[i], face_of(boundary, w), float(boundary.side)
+    xi, ri = bodies.x[i], bodies.radius[i]
+    face = face_of(boundary, w)
+    nx = float(boundary.side)
     foot, vy = w[V.base_y], 0.0
     if boundary.carrier == BEAM:
         lever = lever_at(face, bodies)
@@ -311,8 +313,9 @@ def dashpot_root(i, boundary, w, bodies):
 
 
 @inlined
-def roll_on(p, i, b, normal, law, dt, is_round, bodies, edges):
-    """Let rolling resistance act between disc i and boundary b. Planes take no moment."""
+def roll_on(p, is_round, normal, law, dt, bodies, edges):
+    """Let rolling resistance act in the contact p with a boundary. Planes take no moment."""
+    i, b = edges.owner[p] & INDEX, edges.partner[p] & INDEX
     radius = bodies.radius[i]
     speed, reduced = -bodies.spin[i] / radius, radius
     if is_round:
@@ -380,7 +383,7 @@ def press_on(p, dt, rolls, w, bodies, edges):
     edges.spring[p] = response.spring
     edges.sums[SUM.transmitted] -= hand_on(i, b, boundary, response, surface, w, bodies)
     if rolls and law.rolling > 0.0:
-        roll_on(p, i, b, response.normal, law, dt, boundary.geometry == DISC, bodies, edges)
+        roll_on(p, boundary.geometry == DISC, response.normal, law, dt, bodies, edges)
     return Work(
         response.elastic * approach.overlap + response.spring * response.spring * law.compliance,
         (response.elastic - response.normal) * approach.opening,

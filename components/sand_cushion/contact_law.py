@@ -20,7 +20,7 @@ Approach = namedtuple("Approach", "overlap opening slip root")
 (m/s), root of the mass in the dashpots (kg^0.5)."""
 
 Response = namedtuple("Response", "normal tangential elastic kept spring creep")
-"""What a contact answers: normal force (N, compression is positive), tangential force (N), normal
+"""Forces of a contact: normal force (N, compression is positive), tangential force (N), normal
 force of the spring alone (N), tangential spring force before the step that was kept (N; zero where
 the contact is open) and after it (N), speed that spring and dashpot take of the slip (m/s)."""
 

@@ -51,7 +51,8 @@ def second_of(pair):
 @kernel
 def part_count(k):
     """Return the number of parts in use; behind them the room is empty."""
-    part, parts = view(k, k, A.part), 1
+    part = view(k, k, A.part)
+    parts = 1
     while part[parts] < disc_count(k):
         parts += 1
     return parts

@@ -123,12 +123,12 @@ def roll_block(begin, dt, bodies, pairs):
 
 
 @kernel
-def press_pairs(begin, end, c, moving, dt, w, x, k):
+def press_pairs(span, c, moving, dt, w, x, k):
     """Compute the forces between the discs of some pairs: eq. (1) of the paper.
 
     Parameters
     ----------
-    begin, end : int
+    span : tuple of int
         First pair and the one behind the last, whole blocks.
     c : int
         Part of the discs whose room is used.
@@ -144,6 +144,7 @@ def press_pairs(begin, end, c, moving, dt, w, x, k):
     """
     bodies, pairs, model = bodies_of(x, k), pairs_of(c, x, k), model_of(dt, w)
     part = view(k, k, A.part)
+    begin, end = span
     done, last = part[c], part[c + 1]
     for p in range(begin, end, BLOCK):
         press_block(p, model, bodies, pairs)
@@ -172,7 +173,7 @@ def move_discs(begin, end, model, bodies, pairs):
 def press_part(c, moving, dt, w, x, k):
     """Do :func:`press_pairs` for the pairs within part c."""
     part, row = view(k, k, A.part), view(k, k, A.row)
-    press_pairs(row[part[c]], row[part[c + 1]], c, moving, dt, w, x, k)
+    press_pairs((row[part[c]], row[part[c + 1]]), c, moving, dt, w, x, k)
 
 
 press_parts = shared_among_threads(press_part)
@@ -203,7 +204,7 @@ def press_discs(dt, moving, w, x, k):
     across, parts = view(k, k, A.across), part_count(k)
     for entry in (A.tally, A.motion, A.rolling):
         set_to_zero(view(x, k, entry))
-    press_pairs(across[0], across[across.size - 1], 0, False, dt, w, x, k)
+    press_pairs((across[0], across[across.size - 1]), 0, False, dt, w, x, k)
     press_parts(int(w[V.threads]), parts, moving, dt, w, x, k)
     law, sums = view(x, k, A.law), view(x, k, A.sums)
     add_energies(dt, law, view(x, k, A.tally)[: parts * LANES * len(TALLY)], sums)

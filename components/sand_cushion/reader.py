@@ -200,16 +200,16 @@ def list_contacts(w, x, k, table):
 
     The lists of candidates have room for all.
     """
-    bodies, rows = bodies_of(x, k), 0
+    bodies = bodies_of(x, k)
     pair, spring = view(k, k, A.pair), view(x, k, A.spring)
     sand = law_of(KIND.sand, 1.0, view(x, k, A.law))
+    rows = 0
     for p in range(view(k, k, A.across)[bodies.rock]):
         i, j = first_of(pair[p]), second_of(pair[p])
         if j < bodies.rock:  # else it fills up a block
             surface = touch_disc(i, j, bodies)
-            rows = _write(
-                (i, j), surface, bodies.radius[j], sand.normal, spring[p], bodies, table, rows
-            )
+            forces = (-sand.normal * surface.gap, spring[p])
+            rows = _write((i, j), surface, bodies.radius[j], forces, bodies, table, rows)
     owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
     spring = view(x, k, A.edge_spring)
     for p in range(view(k, k, A.edge_row)[bodies.rock + 1]):
@@ -218,13 +218,14 @@ def list_contacts(w, x, k, table):
         law = law_of(contact_kind(i, boundary, bodies), 1.0, view(x, k, A.law))
         surface = touch(i, b, boundary, w, bodies)
         radius = bodies.radius[b] if b < bodies.end else 0.0
-        rows = _write((i, b), surface, radius, law.normal, spring[p], bodies, table, rows)
+        forces = (-law.normal * surface.gap, spring[p])
+        rows = _write((i, b), surface, radius, forces, bodies, table, rows)
     return rows
 
 
 @kernel
-def _write(pair, surface, radius, stiffness, tangential, bodies, table, rows):
-    """Write a contact behind the rows that are there, if it touches; returns their number."""
+def _write(pair, surface, radius, forces, bodies, table, rows):
+    """Write a contact behind the rows that are there, if it touches; return their number."""
     if surface.gap >= 0.0:
         return rows
     i, j = pair
@@ -232,8 +233,8 @@ def _write(pair, surface, radius, stiffness, tangential, bodies, table, rows):
     table[rows, 0], table[rows, 1] = i, j
     table[rows, 2], table[rows, 3] = x, y
     table[rows, 4], table[rows, 5] = x + surface.nx * reach, y + surface.ny * reach
-    table[rows, 6], table[rows, 7] = -surface.gap, -stiffness * surface.gap
-    table[rows, 8] = tangential
+    table[rows, 6] = -surface.gap
+    table[rows, 7], table[rows, 8] = forces
     return rows + 1
 
 

@@ -91,18 +91,16 @@ def unbalanced_force_ratio(w, x, k):
         Largest force on a disc / its weight, or largest speed / sqrt(g r) if that is more.
     """
     contact_forces(INSTANT * w[V.stable_step], w, x, k)
-    bodies, gravity = bodies_of(x, k), w[V.gravity]
+    bodies = bodies_of(x, k)
+    gravity = w[V.gravity]
     g = max(gravity, 1e-12)
     largest = 0.0
     for i in range(bodies.rock):
         ax = bodies.force_x[i] * bodies.inverse_mass[i]
         ay = bodies.force_y[i] * bodies.inverse_mass[i] - gravity
         v2 = bodies.vx[i] * bodies.vx[i] + bodies.vy[i] * bodies.vy[i]
-        acceleration, speed = (
-            math.sqrt(ax * ax + ay * ay) / g,
-            math.sqrt(v2 / (g * w[V.disc_radius])),
-        )
-        largest = max(largest, acceleration, speed)
+        unbalanced = math.sqrt(ax * ax + ay * ay) / g
+        largest = max(largest, unbalanced, math.sqrt(v2 / (g * w[V.disc_radius])))
     forget_forces(x, k)
     return largest
 

@@ -217,7 +217,7 @@ class Running:
         return Lanes(self._access.builder, self._access.builder.load(self._cell))
 
     def become(self, lanes: Lanes) -> None:
-        """Change the present value."""
+        """Change the present value to another vector."""
         self._access.builder.store(lanes.value, self._cell)
 
     def keep(self) -> None:

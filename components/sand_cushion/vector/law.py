@@ -39,7 +39,8 @@ def _yielded(
     overlap: Lanes, before: Lanes, reach: Lanes, law: Law, sums: SimpleNamespace
 ) -> tuple[Lanes, Lanes, Lanes]:
     """Return elastic and permanent overlap and the capillary pull of contacts that last."""
-    longest, full = divisor(law.bridge * reach), law.pull * reach
+    longest = divisor(law.bridge * reach)
+    full = law.pull * reach
     grown = permanent_overlap(before, overlap, law)
     sums.plastic.become(sums.plastic.now + yield_loss(before, grown, full, law))
     permanent = selected(overlap > -longest, grown, 0.0)
@@ -88,6 +89,33 @@ def _contact(
     return (x, y, tangential, normal), response.spring, permanent
 
 
+def _block(access: Access, lasting: bool) -> None:
+    """Write the loop over the BLOCK contacts of a block, for the arguments of :func:`_block_law`."""
+    constants = _constants(access)
+    step = spread(access.builder, access[4], LANES)
+    sums = SimpleNamespace(
+        **{name: access.running(6, place * LANES, LANES) for name, place in TALLY._asdict().items()}
+    )
+    with access.lanes_of_block() as lane:
+        pair = SimpleNamespace(
+            **{
+                name: access.load(0, access.place(lane, column * BLOCK), LANES)
+                for name, column in COLUMN._asdict().items()
+            }
+        )
+        contact = access.builder.add(access[5], lane)
+        before = access.load(1, contact, LANES)
+        permanent = access.load(2, contact, LANES) if lasting else None
+        forces, after, permanent = _contact(pair, before, permanent, constants, step, sums)
+        access.store(after, 1, contact)
+        if permanent is not None:
+            access.store(permanent, 2, contact)
+        for column, force in enumerate(forces):
+            access.store(force, 0, access.place(lane, column * BLOCK))
+    for total in vars(sums).values():
+        total.keep()
+
+
 def _block_law(lasting: bool) -> Any:
     """Return the intrinsic for contacts that keep an overlap or stick together, or for others."""
 
@@ -100,32 +128,7 @@ def _block_law(lasting: bool) -> Any:
         """
 
         def generate(context, builder, signature, arguments):
-            access = Access(context, builder, signature, arguments)
-            constants, step = _constants(access), spread(builder, access[4], LANES)
-            sums = SimpleNamespace(
-                **{
-                    name: access.running(6, place * LANES, LANES)
-                    for name, place in TALLY._asdict().items()
-                }
-            )
-            with access.lanes_of_block() as lane:
-                pair = SimpleNamespace(
-                    **{
-                        name: access.load(0, access.place(lane, column * BLOCK), LANES)
-                        for name, column in COLUMN._asdict().items()
-                    }
-                )
-                contact = builder.add(access[5], lane)
-                before = access.load(1, contact, LANES)
-                permanent = access.load(2, contact, LANES) if lasting else None
-                forces, after, permanent = _contact(pair, before, permanent, constants, step, sums)
-                access.store(after, 1, contact)
-                if permanent is not None:
-                    access.store(permanent, 2, contact)
-                for column, force in enumerate(forces):
-                    access.store(force, 0, access.place(lane, column * BLOCK))
-            for total in vars(sums).values():
-                total.keep()
+            _block(Access(context, builder, signature, arguments), lasting)
             return context.get_dummy_value()
 
         return types.void(block, spring, plastic, law, types.float64, types.int64, tally), generate

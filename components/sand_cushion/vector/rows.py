@@ -104,7 +104,7 @@ def _bodies(access: Access, pair: ir.Value) -> tuple[ir.Value, ir.Value]:
 
 @intrinsic
 def pairs_to_columns(typing, body, pair, at, block):
-    """Do :func:`plain_pairs_to_columns` with vectors."""
+    """Do with vectors the same as :func:`plain_pairs_to_columns`."""
 
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
@@ -134,7 +134,7 @@ def _load_row(access: Access, body: ir.Value) -> ir.Value:
 
 def _columns_to_pairs(turning: bool) -> Any:
     def columns_to_pairs(typing, load, pair, at, block):
-        """Do :func:`plain_columns_to_pairs` with vectors."""
+        """Do with vectors the same as :func:`plain_columns_to_pairs`."""
 
         def generate(context, builder, signature, arguments):
             access = Access(context, builder, signature, arguments)
@@ -175,6 +175,18 @@ forces_to_pairs = _columns_to_pairs(turning=False)
 """Intrinsic: the same for discs that do not turn, without tangential forces in the loads."""
 
 
+def _rates(
+    builder: ir.IRBuilder, dt: ir.Value, gravity: ir.Value, turning: ir.Value
+) -> tuple[Lanes, Lanes]:
+    """Return the factors of force / mass in a step (s), and the speed of fall gained (m/s)."""
+    zero = constant([0.0] * 4)
+    gain = zero
+    for lane, rate in enumerate((dt, dt, builder.fmul(turning, dt))):
+        gain = builder.insert_element(gain, rate, WORD(lane))
+    fall = builder.insert_element(zero, builder.fmul(gravity, dt), WORD(1))
+    return Lanes(builder, gain), Lanes(builder, fall)
+
+
 @intrinsic
 def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
     """Move discs by semi-implicit Euler: velocity first, then position with the new velocity.
@@ -195,11 +207,9 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
 
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
-        zero, dt = constant([0.0] * 4), access[4]
-        gain, fall = zero, builder.insert_element(zero, builder.fmul(access[5], dt), WORD(1))
-        for lane, rate in enumerate((dt, dt, builder.fmul(access[6], dt))):
-            gain = builder.insert_element(gain, rate, WORD(lane))
-        gain, fall, way = Lanes(builder, gain), Lanes(builder, fall), spread(builder, dt, 2)
+        zero = constant([0.0] * 4)
+        gain, fall = _rates(builder, access[4], access[5], access[6])
+        way = spread(builder, access[4], 2)
         kinetic, fastest, potential = (
             access.running(7, place, width)
             for place, width in ((KINETIC, 4), (FASTEST, 2), (POTENTIAL, 2))
@@ -209,7 +219,8 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
             velocity, force = access.place(at, 2), builder.lshr(at, INDEX(1))
             inverse = spread(builder, access.number(0, access.place(at, INVERSE_MASS)), 4)
             root = spread(builder, access.number(0, access.place(at, HALF_ROOT)), 4)
-            old, position, mass = access.load(0, velocity, 4), access.load(0, at, 2), root * root
+            old, position = access.load(0, velocity, 4), access.load(0, at, 2)
+            mass = root * root
             new = fused(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
             access.store(new, 0, velocity)  # and the radius, to which nothing was added
             kinetic.become(fused(mass * old, new, kinetic.now))
