@@ -4,12 +4,12 @@ import math
 
 from ..common.component import OK
 from ..common.kernels import kernel
-from ..common.stepping import substep_count, substep_length
+from ..common.substeps import substep_count, substep_length
 from .declarations import DISC, DRIVEN, LAYOUT, SPHERE
+from .faults import DIVERGED
 
 V = LAYOUT.scalar
 
-DIVERGED = 1
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
 

@@ -3,16 +3,15 @@
 import math
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
 from ..common.wave_port import TOGETHER, rigid_mass
 from .cushion import cushion_force, met, steeper
 from .declarations import KINEMATICS, LAYOUT, WAVES
+from .faults import DIVERGED, NO_IMPEDANCE, RIGID_NEEDS_WAVES
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-RIGID_NEEDS_WAVES, NO_IMPEDANCE, DIVERGED = 1, 2, 3
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): the midpoint rule is stable with every step."""
 _ROUNDING = 1e-9

@@ -1,7 +1,6 @@
 """What every scheme keeps account of: soil, head, envelopes."""
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .declarations import LAYOUT, SOIL
 from .soil import Soil, drag, stored, stretched
 

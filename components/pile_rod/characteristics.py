@@ -5,8 +5,7 @@ b that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - 
 so that jumps stay sharp.
 """
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from ..common.wave_port import TOGETHER, rigid_mass
 from .bookkeeping import book_head, book_soil, envelope, shaft_soil, toe_soil
 from .declarations import LAYOUT, MATCHED, PORT, RAM

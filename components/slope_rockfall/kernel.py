@@ -4,18 +4,26 @@ import math
 
 from ..common.component import OK
 from ..common.counter_random import stream
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
 from .declarations import BODY, CLOCK, GROUND, LAYOUT, LEAVE, NEVER, PATH, RECEIVED
 from .events import begin, happen, inertia, losses, plan, world
+from .faults import (
+    DIVERGED,
+    FORCE_OUTSIDE,
+    LEFT_BELOW,
+    NEVER_RECEIVED,
+    RESTLESS,
+    START_BELOW,
+)
 from .flight import move
 from .geometry import build_path, height_above, line_below
-from .refusals import START_BELOW, first_fault
+from .refusals import first_fault, problems
+
+__all__ = ["evaluate", "initialise", "problems", "step"]
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-FORCE_OUTSIDE, LEFT_BELOW, DIVERGED, RESTLESS, NEVER_RECEIVED = range(20, 25)
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
 TOUCHING = 1e-9

@@ -22,8 +22,8 @@ from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
 
+from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import HEADER, Component, Instance, allowed_range
-from rockshed.components.common.kernels import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 from rockshed.files import write_file
 from rockshed.versions import version_of

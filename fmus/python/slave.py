@@ -238,10 +238,7 @@ class ComponentSlave(Fmi2Slave):
                         )
                     )
                 )
-        self._advance, self._compiled = (
-            getattr(self.component.step, "made", self.component.step),
-            True,
-        )
+        self._compiled = True
 
     def _warn_of_unstable_step(self) -> None:
         if {"internal_step", "stable_step"} <= self._instance.references.keys():

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.common.component import Instance
-from rockshed.components.common.kernels import kernel
-from rockshed.components.common.ports import view
+from rockshed.components.common.kernels import kernel, view
 from rockshed.components.falling_rock import COMPONENT as ROCK
 from rockshed.components.falling_rock import kernel as rock_kernel
 from rockshed.components.falling_rock.declarations import LAYOUT as ROCK_LAYOUT
