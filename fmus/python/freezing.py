@@ -86,9 +86,10 @@ def foreign_imports(content: bytes, path: str) -> list[Foreign]:
     own = ".".join(path.split("/")[:2])
     found = []
     for node in _imports(content):
+        is_relative = isinstance(node, ast.ImportFrom) and node.level > 0
         for module in _targets(node, path):
             inside = _is_in(module, own) or _is_in(module, BROUGHT["rockshed.components.common"])
-            if _is_in(module, _OURS) or (getattr(node, "level", 0) and not inside):
+            if _is_in(module, _OURS) or (is_relative and not inside):
                 found.append(Foreign(node.lineno, module))
     return found
 
