@@ -63,7 +63,7 @@ _PYTHONFMU_PARTS = (
     "logmsg.py",
     "variables.py",
 )
-_SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "slave.py")
+_SLAVE_PARTS = ("conduct.py", "foundations.py", "interpreter.py", "isolation.py", "slave.py")
 
 
 def build(

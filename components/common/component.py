@@ -31,6 +31,13 @@ HEADER = struct.Struct("<8s16sqqq")
 MAGIC = b"rockshed"
 """Mark at the beginning of a serialized state."""
 
+NOT_FINITE = "%s = %s: must be a finite number (%s)"
+OUT_OF_RANGE = "%s = %s%s: allowed is %s (%s)"
+UNKNOWN_STATUS = "stopped with the unknown status %d"
+FOREIGN_STATE = "this is no serialized state of this component with these sizes"
+"""Sentences that a native FMU says too, as formats of printf: of a variable's name, value, unit,
+range and description; of a status; of a state."""
+
 
 class ComponentError(Exception):
     """A component refuses what it was given, or cannot go on. ``problems`` lists every reason found."""
@@ -301,7 +308,7 @@ class Instance:
 
     def message(self, status: int) -> str:
         """What a status of a kernel means, with the present values in it."""
-        template = self.component.faults.get(status, f"stopped with the unknown status {status}")
+        template = self.component.faults.get(status, UNKNOWN_STATUS % status)
         return re.sub(r"\{([^}]+)\}", lambda match: f"{self[match.group(1)]:.6g}", template)
 
     @property
@@ -335,7 +342,7 @@ class Instance:
         ):
             raise ComponentError(
                 self.component.name,
-                ["this is no serialized state of this component with these sizes"],
+                [FOREIGN_STATE],
             )
         values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
         self.w[:], self.x[:] = values[: self.w.size], values[self.w.size :]
@@ -354,10 +361,11 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
     low = -np.inf if variable.minimum is None else variable.minimum
     high = np.inf if variable.maximum is None else variable.maximum
     if not np.isfinite(value):
-        return [f"{name} = {value}: must be a finite number ({variable.description})"]
+        return [NOT_FINITE % (name, value, variable.description)]
     if not low <= value <= high:
+        words = allowed_range(variable)
         return [
-            f"{name} = {value:.6g}{_suffix(variable)}: allowed is {allowed_range(variable)} ({variable.description})"
+            OUT_OF_RANGE % (name, f"{value:.6g}", _suffix(variable), words, variable.description)
         ]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
         return [f"{name} = {value}: must be a whole number ({variable.description})"]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rockshed.components.catalogue import NAMES, component
-from rockshed.components.common.component import Component, ComponentError
 from rockshed.components.common.cache import has_kernels
+from rockshed.components.common.component import Component, ComponentError
 from rockshed.fmus.places import Fmi, Runtime, fmu_file, folder_name, native_is_fresh
 
 from ..cases.registry import Case
