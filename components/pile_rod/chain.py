@@ -5,10 +5,10 @@ time, velocities to half a step later. T(v) + 1/2 D(t) K D(t + dt) is then conse
 """
 
 from ..common.kernels import kernel, view
+from ..common.smith_soil import drag, static, stored, stretched
 from .bookkeeping import book_head, envelope, shaft_soil, toe_soil
 from .declarations import LAYOUT, MATCHED, PORT, RAM, SMITH
 from .segments import below_toe
-from .soil import drag, static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

@@ -4,6 +4,7 @@ import math
 
 from ..common.component import OK
 from ..common.kernels import kernel, view
+from ..common.smith_soil import static, stored, stretched
 from ..common.substeps import substep_count
 from .bookkeeping import shaft_soil, toe_soil
 from .chain import spring_energy, spring_force
@@ -27,7 +28,6 @@ from .segments import (
     rod_length,
     stable_limit,
 )
-from .soil import static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
