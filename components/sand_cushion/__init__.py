@@ -4,7 +4,6 @@ from pathlib import Path
 
 from ..common.component import Component
 from ..common.ports import Bond
-from . import kernel
 from .declarations import LAYOUT, SIZES
 from .faults import FAULTS
 
@@ -12,9 +11,7 @@ COMPONENT = Component(
     name="SandCushion",
     title="Sand cushion: 2-D distinct elements",
     layout=LAYOUT,
-    initialise=kernel.initialise,
-    evaluate=kernel.evaluate,
-    step=kernel.step,
+    kernels=f"{__name__}.kernel",
     folder=Path(__file__).parent,
     sizes=SIZES,
     faults=FAULTS,

@@ -6,8 +6,7 @@ body far away for each part of the discs: partner in pairs that fill up a block.
 
 from collections import namedtuple
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
+from ..common.kernels import inlined, kernel, view
 from .declarations import (
     ANGLE,
     FORCE_ROW,

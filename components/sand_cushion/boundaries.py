@@ -7,8 +7,7 @@ right wall and the base. ``boundary`` holds the :class:`Boundary` of each.
 import math
 from collections import namedtuple
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
+from ..common.kernels import inlined, kernel, view
 from .bodies import beam_count, bodies_of
 from .contact_law import (
     Approach,

@@ -12,8 +12,7 @@ skin; the lists are made anew before two bodies can have closed a gap of one ski
 import math
 from collections import namedtuple
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
+from ..common.kernels import inlined, kernel, view
 from .bodies import bodies_of, disc_count
 from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PART, PLANES, ROW, SUM
 

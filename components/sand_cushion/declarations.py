@@ -10,8 +10,10 @@ from ..common.component import Size
 from ..common.ports import Layout, Sizes, State, choice, count, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.threads import MOST
 from ..common.units import cm, deg, kgf
+
+MOST_THREADS = 64
+"""Threads that can share the work of a step."""
 
 SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
 FREE, LOCKED = 1, 2
@@ -417,7 +419,7 @@ LAYOUT = Layout(
             " 50,000 discs on",
             1,
             minimum=1,
-            maximum=MOST,
+            maximum=MOST_THREADS,
         ),
         choice(
             "kinematics",

@@ -1,7 +1,6 @@
 """Contact forces on all bodies, and steps of the discs with them."""
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .bodies import disc_count
 from .boundaries import press_boundaries
 from .declarations import FORCE_ROW, LAYOUT, SUM

@@ -3,9 +3,8 @@
 import math
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
 from .bodies import bodies_of
 from .boundaries import boundary_of, touch
 from .contact_search import rebuild

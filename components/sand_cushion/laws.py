@@ -2,8 +2,7 @@
 
 import math
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
+from ..common.kernels import inlined, kernel, view
 from .contact_law import ROLLING
 from .declarations import (
     BEAM_DISCS,

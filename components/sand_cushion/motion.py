@@ -1,7 +1,6 @@
 """Rock and beam where the inputs say, and the forces on them as outputs."""
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .bodies import bodies_of, disc_count
 from .declarations import LAYOUT, SUM
 

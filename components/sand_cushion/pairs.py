@@ -3,9 +3,7 @@
 import math
 from collections import namedtuple
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
-from ..common.threads import shared_among_threads
+from ..common.kernels import inlined, kernel, view
 from .bodies import bodies_of
 from .contact_law import rolling_response
 from .contact_search import first_of, part_count, second_of
@@ -33,6 +31,7 @@ from .vector.rows import (
     move_rows,
     pairs_to_columns,
 )
+from .vector.threads import shared_among_threads
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

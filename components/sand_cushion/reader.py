@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..common.component import HEADER, MAGIC, ComponentError, Instance
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from . import COMPONENT
 from .bodies import bodies_of
 from .boundaries import boundary_of, contact_kind, touch, touch_disc

@@ -3,8 +3,7 @@
 import math
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .bodies import bodies_of
 from .boundaries import describe_boundaries
 from .contact_search import divide, forget, is_stale, rebuild

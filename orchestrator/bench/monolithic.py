@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.common.component import Instance
-from rockshed.components.common.kernels import kernel
-from rockshed.components.common.ports import view
+from rockshed.components.common.kernels import kernel, view
+from rockshed.components.common.rigid_body import Load
 from rockshed.components.falling_rock import COMPONENT as ROCK
 from rockshed.components.falling_rock import kernel as rock_kernel
 from rockshed.components.falling_rock.declarations import LAYOUT as ROCK_LAYOUT
@@ -129,9 +129,7 @@ def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history
         rock_x, rock_y, rock_angle = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
         history[s, 0], history[s, 1] = sums[SUM.transmitted], rock_fy
         history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
-        rock_kernel.move(
-            rw[RV.mass], inertia, rw[RV.gravity], rock_fx, rock_fy, rock_torque, dt, rw
-        )
+        rock_kernel.move(Load(rock_fx, rock_fy, rock_torque), inertia, dt, rw)
         history[s, 4] = (
             rock_fx * (rw[RV.position_x] - rock_x)
             + rock_fy * (rw[RV.position_y] - rock_y)

@@ -13,9 +13,9 @@ from contextlib import contextmanager
 from typing import Any
 
 from llvmlite import ir
+from numba import types
+from numba.core import cgutils
 
-from ...common.kernels import numba_cgutils as cgutils
-from ...common.kernels import numba_types as types
 from ..declarations import BLOCK, LANES
 
 REAL, INDEX, WORD = ir.DoubleType(), ir.IntType(64), ir.IntType(32)

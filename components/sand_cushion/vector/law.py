@@ -7,8 +7,9 @@ geometry of two discs, and the energies that add up in registers.
 from types import SimpleNamespace
 from typing import Any
 
-from ...common.kernels import intrinsic
-from ...common.kernels import numba_types as types
+from numba import types
+from numba.extending import intrinsic
+
 from ..arithmetic import multiply_add
 from ..contact_law import (
     Approach,
