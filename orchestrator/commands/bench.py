@@ -1,4 +1,4 @@
-"""The command ``rockshed bench``."""
+"""The command ``rockshed bench``: speed and price of the coupling."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
