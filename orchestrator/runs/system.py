@@ -257,7 +257,7 @@ class System:
             fmu = f"{made.name} (in process)"
         spec = {"fmu": fmu, "step": step, "parameters": dict(values or {})}
         entries: dict[str, Any] = {"components": {**self._data()["components"], name: spec}}
-        if self.spec.order:  # a component that is added comes last
+        if self.spec.order and name not in self.spec.order:  # it comes last
             entries["order"] = [*self.spec.order, name]
         made_system = self._detached(entries)
         return System(replace(made_system.job, sources=sources))
