@@ -57,7 +57,7 @@ def test_blocks_of_python_on_a_page_run_one_after_the_other(page, elsewhere):
         exec(compile(block, str(ROOT / page), "exec"), names)
 
 
-@pytest.mark.parametrize("name", modules_with_examples())
+@pytest.mark.parametrize("name", list(modules_with_examples()))
 def test_examples_in_docstrings_give_what_they_show(name, elsewhere):
     failed, tried = doctest.testmod(import_module(name), optionflags=doctest.ELLIPSIS)
     assert tried > 0
