@@ -1,4 +1,4 @@
-"""The ready-made cases by name: which components they need, in which sizes, and how the system is made from their FMUs."""
+"""The ready-made cases by name: their components, sizes, couplings and references."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -19,21 +19,38 @@ from . import static_loading as static_test
 from .sand_models import Changes, Layer, Soil, changes, sand_model
 
 Sizes = Mapping[str, Mapping[str, int]]
-"""Sizes by component of the system: ``{"sand": {"discs": 370}}``. What is not named has its default."""
+"""Sizes by component of the system: ``{"sand": {"discs": 370}}``."""
 
 
 @dataclass(frozen=True)
 class Case:
     """A ready-made system.
 
-    other_names: under which it is found too.
-    models: component of the system -> component of the catalogue that its FMU is built from.
-    sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
-    couplings: schemes of exchange by name, the default first, with a description.
-    make(fmus, sizes, coupling): the system; ``fmus`` are the files of the FMUs by component.
-    layer: the sand, for the models of it.
-    derived(system, sizes): values, by ``component.parameter``, that follow from others where they are not given.
-    references(changed): what others found, for a run with other values or sizes (by ``component.name``).
+    Attributes
+    ----------
+    name, summary : str
+        Name of the case, and its content in a line.
+    models : mapping of str to str
+        Component of the catalogue that the FMU of each component of the system is built from.
+    sizes : mapping of str to mapping of str to int
+        Sizes of the FMUs that differ from the defaults, by component.
+    couplings : mapping of str to str
+        Schemes of exchange by name, the default first, with a description.
+    make : callable
+        ``make(fmus, sizes, coupling)`` returns the system; ``fmus`` are the files of the FMUs by
+        component.
+    one_size : tuple of str
+        Sizes, ``component.size``, that are one number for all of them.
+    derived : callable
+        ``derived(system, sizes)`` returns values, by ``component.parameter``, that follow from
+        others where they are not given.
+    layer : Layer or None
+        The sand, for the models of it.
+    references : callable
+        ``references(changed)`` returns what others found, for a run with other values or sizes by
+        ``component.name``.
+    other_names : tuple of str
+        Further names of the case.
     """
 
     name: str
@@ -51,7 +68,7 @@ class Case:
 
 @cache
 def cases() -> dict[str, Case]:
-    """All cases by name."""
+    """Return all cases by name, ``lab-impact`` first."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
     return {
@@ -68,10 +85,22 @@ def cases() -> dict[str, Case]:
 
 
 def case(name: str) -> Case:
-    """The case of this name.
+    """Return a case by one of its names.
 
-    Raises:
-        InputRefused: there is none.
+    Parameters
+    ----------
+    name : str
+        Name of the case.
+
+    Returns
+    -------
+    Case
+        The case.
+
+    Raises
+    ------
+    InputRefused
+        There is no such case.
     """
     found = next(
         (case for case in cases().values() if name in (case.name, *case.other_names)), None
@@ -82,10 +111,26 @@ def case(name: str) -> Case:
 
 
 def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -> Changes:
-    """What a model of the sand changes in a case; ``values`` by ``component.name`` may ask for another state of the soil.
+    """Return what is other in a case with a model of the sand.
 
-    Raises:
-        InputRefused: there is no such model, or the case has no sand.
+    Parameters
+    ----------
+    chosen : Case
+        The case.
+    name : str or None
+        Name of the model; None for the case as it is.
+    values : mapping of str to Value
+        Values by ``component.parameter`` that are asked for; those of the soil count.
+
+    Returns
+    -------
+    Changes
+        Values, sizes and keys of the system.
+
+    Raises
+    ------
+    InputRefused
+        There is no such model, or the case has no sand.
     """
     if name is None:
         return Changes()
@@ -232,7 +277,8 @@ def _static_test() -> Case:
 
     return Case(
         static_test.NAME,
-        "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, rigid floor",
+        "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, "
+        "rigid floor",
         models={"sand": "SandCushion", "rock": "FallingRock"},
         sizes={"sand": {"discs": static_test.DISCS, "elements": 1}},
         couplings={
@@ -276,8 +322,8 @@ def _shed_on_piles() -> Case:
             **{f"rod_{side}": segments for side in shed_on_piles.SIDES},
         },
         couplings={
-            "impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the toes, exchange every "
-            "0.005 ms"
+            "impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the "
+            "toes, exchange every 0.005 ms"
         },
         make=make,
         one_size=("sand.elements", "beam.elements"),
@@ -304,7 +350,8 @@ def _spt() -> Case:
         sizes={"rod": {"segments": spt.SEGMENTS}},
         couplings={
             "waves": "rod last, waves at head and toe, exchange every 0.1 ms",
-            "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms",
+            "plain": "rod last, waves at the head, motion and held force at the toe, exchange "
+            "every 0.01 ms",
         },
         make=make,
         derived=derived,
@@ -318,7 +365,7 @@ _FULL_SCALE_COUPLINGS = {
 
 
 def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
-    """The weight of the sand, under which a beam starts bent."""
+    """Return the weight of the sand, under which a beam starts bent."""
     with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
         return (
             {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])}

@@ -14,7 +14,18 @@ SYSTEM = "system.toml"
 
 
 def system_text(system: System) -> str:
-    """Return a system as TOML; keys that have their defaults are left out."""
+    """Return a system as TOML; keys that have their defaults are left out.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    str
+        Content of a system file.
+    """
     data = system.model_dump(mode="json", exclude_defaults=True)
     data["connections"] = [_connection(c) for c in system.connections]
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}

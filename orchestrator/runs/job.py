@@ -102,7 +102,7 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
 
 
 def _with_present_names(request: Request) -> tuple[Request, list[str]]:
-    """Return the request for a case with the present names of variables, and warnings of older ones.
+    """Return the request for a case with the present names of variables, and warnings.
 
     The FMUs of a system file are asked when the run is planned.
     """
