@@ -1,1 +1,1 @@
-"""FMUs from components: model description, export, files in fmus/dist/."""
+"""FMUs from components: model description, export, the folder of built FMUs."""

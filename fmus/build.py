@@ -4,7 +4,6 @@ The sources go in under names that contain a hash of their content, so that FMUs
 their modules (see :mod:`rockshed.fmus.python.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`rockshed.fmus.native.fmu`.
 """
 
-import re
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import distribution
@@ -32,6 +31,7 @@ from .parts import (
     picture,
 )
 from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, folder_name, native_is_fresh
+from .python.freezing import foreign_imports, with_imports_moved
 from .python.script import SCRIPT
 
 __all__ = [
@@ -63,7 +63,7 @@ _PYTHONFMU_PARTS = (
     "logmsg.py",
     "variables.py",
 )
-_SLAVE_PARTS = ("foundations.py", "interpreter.py", "isolation.py", "slave.py")
+_SLAVE_PARTS = ("conduct.py", "foundations.py", "interpreter.py", "isolation.py", "slave.py")
 
 
 def build(
@@ -207,14 +207,27 @@ def _library_files(component: Component) -> Files:
     paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {
         name: _HERE / "python" / name for name in _SLAVE_PARTS
     }
-    files = component_sources(component) | {name: path.read_bytes() for name, path in paths.items()}
-    files["foundations.py"] = re.sub(
-        rb"^from (?:rockshed\.)?(components|pythonfmu)\.",
-        rb"from .\1.",
-        files["foundations.py"],
-        flags=re.MULTILINE,
-    )
+    sources = component_sources(component)
+    if problems := _import_problems(sources):
+        raise BuildError(f"{component.name}: {'; '.join(problems)}")
+    files = sources | {name: path.read_bytes() for name, path in paths.items()}
+    files = {
+        name: with_imports_moved(content, name) if name.endswith(".py") else content
+        for name, content in files.items()
+    }
     return files | {"__init__.py": b"", "pythonfmu/__init__.py": b""}
+
+
+def _import_problems(sources: Files) -> list[str]:
+    """Return in words why a component's sources cannot run inside an FMU."""
+    return [
+        f"{path.removeprefix('components/')}, line {found.line}, imports {found.module}, which an FMU "
+        "with Python does not hold: a component imports rockshed.components.common and, relatively, "
+        "the modules of its own folder"
+        for path, content in sources.items()
+        if path.endswith(".py") and not path.startswith("components/common/")
+        for found in foreign_imports(content, path)
+    ]
 
 
 def _binaries(component: Component) -> Iterator[tuple[str, bytes]]:

@@ -11,6 +11,7 @@ from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Sizes
 
 COMPONENTS = Path(components.__file__).parent
+SHARED = COMPONENTS / "common"
 DESCRIPTION = "modelDescription.xml"
 _NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
 
@@ -38,6 +39,11 @@ class BuildError(Exception):
 
 def component_sources(component: Component) -> Files:
     """The component with what the components share: everything that its kernels and declarations follow from."""
+    if component.folder.name == SHARED.name:
+        raise BuildError(
+            f"{component.name}: its folder has the name {SHARED.name}, which is taken by the modules "
+            "that all components share: give it another one"
+        )
     paths = {
         f"components/{path.relative_to(COMPONENTS).as_posix()}": path
         for path in (COMPONENTS / "__init__.py", *COMPONENTS.glob("common/**/*.py"))

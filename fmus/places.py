@@ -6,6 +6,8 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from platformdirs import user_data_path
+
 from rockshed.components.common.component import Component
 
 from .native.fmu import own_binary, stamp
@@ -23,15 +25,28 @@ __all__ = [
 ]
 
 FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
-"""Environment variable that moves the folder of built FMUs, by default ``fmus/dist``; in it are ``python``, ``native`` and
-``native-fmi3``."""
-
-_HERE = Path(__file__).parent
+"""Environment variable that names the folder of built FMUs; by default it is ``fmus`` in the
+user's data folder. In it are ``python``, ``native`` and ``native-fmi3``."""
 
 
 def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
-    """Folder of built FMUs of a runtime and version of FMI."""
-    return Path(os.environ.get(FOLDER_VARIABLE) or _HERE / "dist") / folder_name(runtime, fmi)
+    """Return the folder of built FMUs of a runtime and version of FMI.
+
+    Parameters
+    ----------
+    runtime : Runtime
+        With Python or native.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    Path
+        The folder, there or not.
+    """
+    chosen = os.environ.get(FOLDER_VARIABLE)
+    folder = Path(chosen) if chosen else user_data_path("rockshed", appauthor=False) / "fmus"
+    return folder / folder_name(runtime, fmi)
 
 
 def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:

@@ -11,7 +11,9 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -21,13 +23,20 @@ from .ports import Bond, Causality, Kind, Layout, NextEvent, Variable
 from .shown import Picture
 
 OK = 0
-"""Status of a kernel that did what it was asked for. Every other value is a key of :attr:`Component.faults`."""
+"""Status of a kernel that did its work. Every other value is a key of :attr:`Component.faults`."""
 
 Buffer = NDArray[np.float64]
 HEADER = struct.Struct("<8s16sqqq")
 """Of a serialized state: mark, kind, and the lengths of ``w``, ``x`` and ``k``, which follow."""
 MAGIC = b"rockshed"
 """Mark at the beginning of a serialized state."""
+
+NOT_FINITE = "%s = %s: must be a finite number (%s)"
+OUT_OF_RANGE = "%s = %s%s: allowed is %s (%s)"
+UNKNOWN_STATUS = "stopped with the unknown status %d"
+FOREIGN_STATE = "this is no serialized state of this component with these sizes"
+"""Sentences that a native FMU says too, as formats of printf: of a variable's name, value, unit,
+range and description; of a status; of a state."""
 
 
 class ComponentError(Exception):
@@ -50,30 +59,51 @@ class Size:
 
 @dataclass(frozen=True)
 class Component:
-    """A subsystem of the rock shed.
+    """A subsystem of the rock shed: its declarations, and where its kernels are.
 
-    initialise(w, x, k) -> status: state at the start, from the parameters.
-    evaluate(w, x, k) -> status: outputs at the start, from state and inputs; checks that they fit together.
-    step(t, h, w, x, k) -> status: advance by ``h`` from time ``t`` (s) with the inputs in ``w``.
-    faults: message of each status other than OK; ``{name}`` stands for the value of the scalar variable ``name``.
-    check: everything that is wrong with parameters which are in range one by one, in words.
-    bonds: mechanical power bonds to other components.
-    next_event: where the component tells when it meets its next event, if it does.
-    contents: what a serialized state holds, for readers that know how to draw or measure it, ``granular.discs``; empty where
-        none does.
-    pictures: pictures of its outputs, as data.
+    Parameters
+    ----------
+    name : str
+        Name of its FMU.
+    title : str
+        One line for people.
+    layout : Layout
+        Its variables and hidden arrays.
+    kernels : str
+        Module of its kernels, imported when the first of them is called:
+        ``initialise(w, x, k)`` computes the state at the start from the parameters,
+        ``evaluate(w, x, k)`` the outputs at the start from state and inputs and checks that they
+        fit together, ``step(t, h, w, x, k)`` advances by ``h`` (s) from time ``t`` (s) with the
+        inputs in ``w``. Each returns a status. If the module has a function
+        ``problems(instance)``, it returns in words everything that is wrong with parameters which
+        are in range one by one.
+    folder : Path
+        Its sources, with README.md and icon.png.
+    sizes : mapping of str to Size
+        The sizes it can be built with.
+    faults : mapping of int to str
+        Message of each status other than OK; ``{name}`` stands for the value of the scalar
+        variable ``name``.
+    default_step, default_stop_time : float
+        Proposal for a simulation (s).
+    bonds : tuple of Bond
+        Mechanical power bonds to other components.
+    next_event : NextEvent or None
+        Where the component tells when it meets its next event, if it does.
+    contents : str
+        What a serialized state holds, for readers that know how to draw or measure it:
+        ``granular.discs``; empty where none does.
+    pictures : tuple of Picture
+        Pictures of its outputs, as data.
     """
 
     name: str
     title: str
     layout: Layout
-    initialise: Callable[..., int]
-    evaluate: Callable[..., int]
-    step: Callable[..., int]
+    kernels: str
     folder: Path
     sizes: Mapping[str, Size] = field(default_factory=dict)
     faults: Mapping[int, str] = field(default_factory=dict)
-    check: Callable[["Instance"], list[str]] | None = None
     default_step: float = 1e-4
     default_stop_time: float = 0.02
     bonds: tuple[Bond, ...] = ()
@@ -87,6 +117,45 @@ class Component:
                 raise ValueError(
                     f"{self.name}: bond {bond.name!r} needs motion and force, one of them an input, one an output"
                 )
+
+    @cached_property
+    def _module(self) -> ModuleType:
+        return import_module(self.kernels)
+
+    @cached_property
+    def initialise(self) -> Callable[..., int]:
+        """Kernel that computes the state at the start."""
+        return self._kernel("initialise")
+
+    @cached_property
+    def evaluate(self) -> Callable[..., int]:
+        """Kernel that computes the outputs at the start."""
+        return self._kernel("evaluate")
+
+    @cached_property
+    def step(self) -> Callable[..., int]:
+        """Kernel that advances in time."""
+        return self._kernel("step")
+
+    def _kernel(self, name: str) -> Callable[..., int]:
+        kernel: Callable[..., int] = getattr(self._module, name)
+        return kernel
+
+    def refusals(self, instance: "Instance") -> list[str]:
+        """Return what is wrong with parameters that are in range one by one.
+
+        Parameters
+        ----------
+        instance : Instance
+            Of this component, not yet initialised.
+
+        Returns
+        -------
+        list of str
+            Every reason, in words.
+        """
+        problems = getattr(self._module, "problems", None)
+        return [] if problems is None else list(problems(instance))
 
     def with_sizes(self, sizes: Mapping[str, int] | None = None) -> dict[str, int]:
         """The sizes to build with: the defaults, overridden by ``sizes``.
@@ -203,7 +272,7 @@ class Instance:
         for index, (variable, _) in enumerate(self._elements()):
             if variable.causality is not Causality.OUTPUT:
                 found += value_problems(variable, names[index], float(self.w[index]))
-        return found or (self.component.check(self) if self.component.check else [])
+        return found or self.component.refusals(self)
 
     def initialise(self) -> None:
         """Check the parameters, compute the state and the outputs at the start.
@@ -239,7 +308,7 @@ class Instance:
 
     def message(self, status: int) -> str:
         """What a status of a kernel means, with the present values in it."""
-        template = self.component.faults.get(status, f"stopped with the unknown status {status}")
+        template = self.component.faults.get(status, UNKNOWN_STATUS % status)
         return re.sub(r"\{([^}]+)\}", lambda match: f"{self[match.group(1)]:.6g}", template)
 
     @property
@@ -273,7 +342,7 @@ class Instance:
         ):
             raise ComponentError(
                 self.component.name,
-                ["this is no serialized state of this component with these sizes"],
+                [FOREIGN_STATE],
             )
         values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
         self.w[:], self.x[:] = values[: self.w.size], values[self.w.size :]
@@ -292,10 +361,11 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
     low = -np.inf if variable.minimum is None else variable.minimum
     high = np.inf if variable.maximum is None else variable.maximum
     if not np.isfinite(value):
-        return [f"{name} = {value}: must be a finite number ({variable.description})"]
+        return [NOT_FINITE % (name, value, variable.description)]
     if not low <= value <= high:
+        words = allowed_range(variable)
         return [
-            f"{name} = {value:.6g}{_suffix(variable)}: allowed is {allowed_range(variable)} ({variable.description})"
+            OUT_OF_RANGE % (name, f"{value:.6g}", _suffix(variable), words, variable.description)
         ]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
         return [f"{name} = {value}: must be a whole number ({variable.description})"]

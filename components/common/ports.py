@@ -10,7 +10,7 @@ A component keeps three flat buffers:
 ``k``  int64, hidden integers, beginning with a table of the arrays: two entries an array, its offset and its length.
 
 Scalars stand first in ``w``, in the order of their declaration, so their index is a constant that a kernel may use. The place
-of an array depends on the sizes the component was built with; kernels find it with :func:`view`.
+of an array depends on the sizes the component was built with; kernels find it with :func:`.kernels.view`.
 """
 
 from collections import namedtuple
@@ -19,7 +19,6 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from .kernels import inlined
 from .roles import Role
 from .shown import Reported
 from .units import UNITS
@@ -292,9 +291,3 @@ class Layout:
 def _constants(title: str, names: list[str], stride: int) -> Any:
     fields = [name.replace(".", "_") for name in names]
     return namedtuple(title, fields)(*range(0, stride * len(fields), stride))
-
-
-@inlined
-def view(buffer, k, entry):
-    """The array that the table entry ``entry`` of ``k`` describes, as a slice of ``buffer`` (no copy)."""
-    return buffer[k[entry] : k[entry] + k[entry + 1]]

@@ -1,17 +1,22 @@
-"""What every component that integrates in time has in common: its internal step and the declaration of it."""
+"""Declarations of what every component that integrates in time has: its step and the stable one."""
 
-import math
-
-from .kernels import kernel
 from .ports import Variable, out, param
 from .roles import Role
 
-_ROUNDING = 1e-9
-"""A quotient of two steps that exceeds a whole number by less than this is that number."""
-
 
 def internal_step(start: float) -> Variable:
-    """Declare the component's own time step."""
+    """Declare the component's own time step.
+
+    Parameters
+    ----------
+    start : float
+        Start value (s).
+
+    Returns
+    -------
+    Variable
+        The parameter ``internal_step``.
+    """
     return param(
         "internal_step",
         "largest time step inside the component; a communication step is divided into equal parts not "
@@ -24,25 +29,16 @@ def internal_step(start: float) -> Variable:
 
 
 def stable_step() -> Variable:
-    """Declare the output that tells the largest stable internal step."""
+    """Declare the output that tells the largest stable internal step.
+
+    Returns
+    -------
+    Variable
+        The output ``stable_step``.
+    """
     return out(
         "stable_step",
         "largest internal step with which the integration is stable, computed from the parameters",
         "s",
         initial_dependencies=None,
     )
-
-
-@kernel
-def substep_count(step, longest):
-    """Number of equal parts of ``step`` (s) that are not longer than ``longest`` (s); at least 1."""
-    return max(1, math.ceil(step / longest - _ROUNDING))
-
-
-@kernel
-def substep_length(step, count, longest):
-    """Length (s) of each of ``count`` equal parts of ``step`` (s): ``longest`` (s) itself if nothing but rounding is between them.
-
-    Some tools compute a step as the difference of two times. What is in its last digits then does not reach the results.
-    """
-    return longest if abs(step / longest - count) <= _ROUNDING else step / count

@@ -1,15 +1,16 @@
-"""Motion of a rigid body in the plane under gravity and outside forces, semi-implicit Euler; or driven with given velocities."""
+"""The rock in time: free under gravity and outside forces, or driven with constant velocities."""
 
 import math
 
 from ..common.component import OK
 from ..common.kernels import kernel
-from ..common.stepping import substep_count, substep_length
+from ..common.rigid_body import Load, Motion, moved
+from ..common.substeps import substep_count, substep_length
 from .declarations import DISC, DRIVEN, LAYOUT, SPHERE
+from .faults import DIVERGED
 
 V = LAYOUT.scalar
 
-DIVERGED = 1
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
 
@@ -25,27 +26,38 @@ def inertia(w):
 
 
 @kernel
-def move(mass, moment_of_inertia, gravity, force_x, force_y, torque, dt, w):
-    """One step dt (s): velocity first, then position with the new velocity. Returns the work of force and torque (J).
+def move(load, moment_of_inertia, dt, w):
+    """Move the rock freely for a step.
 
-    A constant force does exactly the work force * mean velocity * dt on the kinetic energy.
+    Parameters
+    ----------
+    load : Load
+        Force without the weight (N) and torque (N m).
+    moment_of_inertia : float
+        Of :func:`inertia` (kg m2).
+    dt : float
+        Length of the step (s).
+    w : ndarray
+        Variables of the rock.
+
+    Returns
+    -------
+    float
+        Work of the load (J).
     """
-    vx, vy, omega = w[V.velocity_x], w[V.velocity_y], w[V.angular_velocity]
-    w[V.velocity_x] = vx + force_x / mass * dt
-    w[V.velocity_y] = vy + (force_y / mass - gravity) * dt
-    w[V.angular_velocity] = omega + torque / moment_of_inertia * dt
-    w[V.position_x] += w[V.velocity_x] * dt
-    w[V.position_y] += w[V.velocity_y] * dt
-    w[V.angle] += w[V.angular_velocity] * dt
-    return (
-        0.5
-        * dt
-        * (
-            force_x * (vx + w[V.velocity_x])
-            + force_y * (vy + w[V.velocity_y])
-            + torque * (omega + w[V.angular_velocity])
-        )
+    motion = Motion(
+        w[V.position_x],
+        w[V.position_y],
+        w[V.angle],
+        w[V.velocity_x],
+        w[V.velocity_y],
+        w[V.angular_velocity],
     )
+    motion, work = moved(motion, load, w[V.mass], moment_of_inertia, w[V.gravity], dt)
+    w[V.position_x], w[V.position_y], w[V.angle] = motion.x, motion.y, motion.angle
+    w[V.velocity_x], w[V.velocity_y] = motion.velocity_x, motion.velocity_y
+    w[V.angular_velocity] = motion.angular_velocity
+    return work
 
 
 @kernel
@@ -101,20 +113,12 @@ def step(t, h, w, x, k):
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     moment_of_inertia = inertia(w)
+    load = Load(w[V.force_x], w[V.force_y], w[V.torque])
     for _ in range(n):
         if w[V.motion] == DRIVEN:
             drive(dt, w)
-            continue
-        w[V.energy_work_contact] += move(
-            w[V.mass],
-            moment_of_inertia,
-            w[V.gravity],
-            w[V.force_x],
-            w[V.force_y],
-            w[V.torque],
-            dt,
-            w,
-        )
+        else:
+            w[V.energy_work_contact] += move(load, moment_of_inertia, dt, w)
     energies(w)
     return (
         OK

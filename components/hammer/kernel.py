@@ -3,16 +3,15 @@
 import math
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
-from ..common.wave_port import TOGETHER, rigid_mass
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
+from ..common.wave_port import End, Ram, struck
 from .cushion import cushion_force, met, steeper
 from .declarations import KINEMATICS, LAYOUT, WAVES
+from .faults import DIVERGED, NO_IMPEDANCE, RIGID_NEEDS_WAVES
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-RIGID_NEEDS_WAVES, NO_IMPEDANCE, DIVERGED = 1, 2, 3
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): the midpoint rule is stable with every step."""
 _ROUNDING = 1e-9
@@ -133,25 +132,17 @@ def _mechanical(w, x, k):
 
 @kernel
 def _rigid(now, dt, w):
-    """A step of a rigid ram on the wave. Returns the mean force on the head (N)."""
-    drive, before, force = w[V.mass] * w[V.gravity] * w[V.weight], w[V.velocity], 0.0
-    if w[V.touching] > 0.0:
-        contact = rigid_mass(w[V.mass], before, drive, w[V.head_impedance], w[V.head_wave], dt)
-        w[V.velocity], force = contact.velocity, contact.mean_force
-        if contact.separation < TOGETHER:
-            w[V.touching], w[V.separation] = 0.0, now + contact.separation * dt
-    else:
-        w[V.velocity] += drive / w[V.mass] * dt
-    mean, head = 0.5 * (before + w[V.velocity]), (force + w[V.head_wave]) / w[V.head_impedance]
-    w[V.position] += mean * dt
-    w[V.head_reached] += head * dt
-    if w[V.touching] == 0.0 and w[V.position] >= w[V.head_reached]:
-        w[V.touching] = 1.0
-    if w[V.touching] > 0.0:
-        w[V.position] = w[V.head_reached]
-    w[V.energy_work_head] -= force * head * dt
-    w[V.energy_contact] += force * (mean - head) * dt
-    return force
+    """Return the mean force on the head (N) in a step of a rigid ram on the wave."""
+    ram = Ram(w[V.position], w[V.velocity], w[V.touching], w[V.separation])
+    end = End(w[V.head_impedance], w[V.head_wave], w[V.head_reached])
+    drive = w[V.mass] * w[V.gravity] * w[V.weight]
+    ram, stroke = struck(ram, w[V.mass], drive, end, now, dt)
+    w[V.position], w[V.velocity] = ram.position, ram.velocity
+    w[V.touching], w[V.separation] = ram.touching, ram.separation
+    w[V.head_reached] += stroke.end_velocity * dt
+    w[V.energy_work_head] -= stroke.force * stroke.end_velocity * dt
+    w[V.energy_contact] += stroke.force * (stroke.mass_velocity - stroke.end_velocity) * dt
+    return stroke.force
 
 
 @kernel

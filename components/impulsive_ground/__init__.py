@@ -4,23 +4,16 @@ from pathlib import Path
 
 from ..common.component import Component
 from ..common.shown import Curve, Panel, Picture
-from . import kernel
 from .declarations import LAYOUT
+from .faults import FAULTS
 
 COMPONENT = Component(
     name="ImpulsiveGround",
     title="Ground under an impulsive load: settling plate (Mogami), soil at a toe (Smith)",
     layout=LAYOUT,
-    initialise=kernel.initialise,
-    evaluate=kernel.evaluate,
-    step=kernel.step,
+    kernels=f"{__name__}.kernel",
     folder=Path(__file__).parent,
-    check=kernel.problems,
-    faults={
-        **kernel.FAULTS,
-        kernel.DIVERGED: "settlement or work is no longer a finite number (force.y = {force.y} N, toe.velocity = {toe.velocity} "
-        "m/s, toe.wave = {toe.wave} N): reduce the exchange step or the step of the component that computes them",
-    },
+    faults=FAULTS,
     default_step=1e-5,
     pictures=(
         Picture(

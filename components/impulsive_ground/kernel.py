@@ -4,10 +4,19 @@ import math
 from typing import TYPE_CHECKING
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
 from .declarations import BODY, KINEMATICS, LAYOUT, MOGAMI, SETTLEMENT, SMITH, WAVE
+from .faults import (
+    DIVERGED,
+    MOVING_AT_START,
+    NO_IMPEDANCE,
+    NO_MASS,
+    NO_RESISTANCE,
+    OVERLOADED,
+    PLATE_OUTSIDE,
+    REFUSALS,
+)
 from .motion import (
     Ground,
     contact_force,
@@ -26,22 +35,6 @@ if TYPE_CHECKING:
     from ..common.component import Instance
 
 V, A = LAYOUT.scalar, LAYOUT.array
-
-PLATE_OUTSIDE, NO_MASS, NO_RESISTANCE, OVERLOADED, NO_IMPEDANCE, MOVING_AT_START = range(1, 7)
-DIVERGED = 20
-FAULTS = {
-    PLATE_OUTSIDE: "the plate of plate.radius = {plate.radius} m does not fit into the box of box.width = {box.width} m: reduce "
-    "its radius, or set box.width = 0 for open ground",
-    NO_MASS: "nothing moves: plate.mass = {plate.mass} kg and the sand (soil.depth = {soil.depth} m, soil.density = {soil.density}"
-    " kg/m3) together have no mass: give one of them",
-    NO_RESISTANCE: "resistance.start and resistance.end are both 0, and nothing stops the plate: give one of them",
-    OVERLOADED: "preload = {preload} N is more than the ground bears at rest: raise ultimate_resistance = {ultimate_resistance} N "
-    "(law smith) or resistance.start = {resistance.start} N (law mogami)",
-    NO_IMPEDANCE: "toe.impedance = {toe.impedance} N s/m: the wave port needs the positive impedance of its rod: connect it, or "
-    "set it",
-    MOVING_AT_START: "impulse0 = {impulse0} N s needs a plate with mass: law mogami, or the port settlement",
-}
-"""Messages of the refusals, by number."""
 
 UNBOUNDED_STEP = 1e6
 """Published as a step (s) where every step is stable."""
@@ -70,7 +63,7 @@ def problems(instance: "Instance") -> list[str]:
     """Every fault of the parameters, in words. The impedance may still come from a rod: the initialisation sees to that."""
     return [
         instance.message(fault)
-        for fault in FAULTS
+        for fault in REFUSALS
         if fault != NO_IMPEDANCE and has_fault(fault, instance.w)
     ]
 

@@ -7,9 +7,9 @@ and its work (J), preload included.
 from collections import namedtuple
 
 from ..common.kernels import kernel
+from ..common.smith_soil import Spring, mean_resistance, press, relax
 from .declarations import BODY, LAYOUT
 from .plate import slide, stop, work_of_load
-from .spring import mean_force, press, relax
 
 V = LAYOUT.scalar
 
@@ -152,11 +152,15 @@ def contact_force(g, b):
 
 
 @kernel
+def spring_under(g, b):
+    """Return the static part of the soil under the toe."""
+    return Spring(b[BODY.spring], b[BODY.slack], g.stiffness, g.ultimate)
+
+
+@kernel
 def move_toe(g, way, w, b):
     """Take the toe a stretch (m) into the soil or out of it; returns the area under the spring force (J)."""
-    before = b[BODY.spring]
-    spring, slack, slid, area = press(way, before, b[BODY.slack], g.stiffness, g.ultimate)
-    b[BODY.spring], b[BODY.slack] = spring, slack
+    b[BODY.spring], b[BODY.slack], slid, area = press(way, spring_under(g, b))
     b[BODY.settlement] += way
     w[V.energy_plastic] += g.ultimate * slid
     return area
@@ -184,13 +188,11 @@ def strike_soil(g, load, impedance, dt, w, b):
     for _ in range(_PIECES):
         spring, slack = b[BODY.spring], b[BODY.slack]
         torn = spring > 0.0 and g.damping * load < -impedance
-        damping = 0.0 if torn else g.damping * mean_spring(g, left, load, impedance, spring, slack)
+        damping = 0.0 if torn else g.damping * mean_spring(g, left, load, impedance, b)
         if torn:
             time, way, square = leave(g, load / impedance, left, spring)
         else:
-            time, way, square = relax(
-                left, load, impedance, damping, spring, slack, g.stiffness, g.ultimate
-            )
+            time, way, square = relax(left, load, impedance, damping, spring_under(g, b))
         area = move_toe(g, way, w, b)
         w[V.energy_damping] += -area if torn else damping * square
         impulse += load * time - impedance * way
@@ -205,14 +207,16 @@ def strike_soil(g, load, impedance, dt, w, b):
 
 
 @kernel
-def mean_spring(g, left, load, impedance, spring, slack):
-    """Mean force (N) of the spring over the way of the next piece, found with the damping of its beginning."""
+def mean_spring(g, left, load, impedance, b):
+    """Return the mean resistance (N) over the way of the next piece.
+
+    It is found with the damping at the piece's beginning.
+    """
     if g.damping == 0.0:
         return 0.0
-    _, way, _ = relax(
-        left, load, impedance, g.damping * spring, spring, slack, g.stiffness, g.ultimate
-    )
-    return mean_force(way, spring, slack, g.stiffness, g.ultimate)
+    spring = spring_under(g, b)
+    _, way, _ = relax(left, load, impedance, g.damping * spring.resistance, spring)
+    return mean_resistance(way, spring)
 
 
 @kernel
@@ -240,8 +244,7 @@ def load_plate_on_soil(g, load, dt, w, b):
     inertia = 2.0 * g.mass / dt
     free = b[BODY.velocity] + load / inertia
     u = mean_velocity(g, free, inertia, dt, b)
-    spring, slack = b[BODY.spring], b[BODY.slack]
-    mean = mean_force(u * dt, spring, slack, g.stiffness, g.ultimate)
+    mean = mean_resistance(u * dt, spring_under(g, b))
     move_toe(g, u * dt, w, b)
     w[V.energy_damping] += (max(0.0, 1.0 + g.damping * u) - 1.0) * mean * u * dt
     b[BODY.velocity] = 2.0 * u - b[BODY.velocity]
@@ -275,5 +278,5 @@ def mean_velocity(g, free, inertia, dt, b):
 @kernel
 def excess(g, u, free, inertia, dt, b):
     """inertia (u - free) + force of the soil over the way u dt (N)."""
-    mean = mean_force(u * dt, b[BODY.spring], b[BODY.slack], g.stiffness, g.ultimate)
+    mean = mean_resistance(u * dt, spring_under(g, b))
     return inertia * (u - free) + mean * max(0.0, 1.0 + g.damping * u)

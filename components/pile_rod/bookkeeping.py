@@ -1,9 +1,8 @@
 """What every scheme keeps account of: soil, head, envelopes."""
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
+from ..common.smith_soil import Soil, drag, stored, stretched
 from .declarations import LAYOUT, SOIL
-from .soil import Soil, drag, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -39,7 +38,7 @@ def book_soil(i, shaft, toe, grip, dt, w, x, k):
     resting = stored(shaft, shaft.stretch, shaft.stretch) + stored(toe, toe.stretch, toe.stretch)
     on_shaft, under_toe = stretched(shaft, way), stretched(toe, way)
     view(x, k, A.soil)[i] = on_shaft
-    if toe.resistance > 0.0:
+    if toe.ultimate > 0.0:
         view(x, k, A.toe_soil)[0] = under_toe
         w[V.toe_contact_force] = grip.toe + drag(toe, grip.toe) * grip.velocity
     kept = stored(shaft, on_shaft, on_shaft) + stored(toe, under_toe, under_toe)

@@ -4,12 +4,11 @@ Eqs (2)-(5) of Uto et al. with the sign of (5) corrected: V = v + (F[m-1] - F[m]
 time, velocities to half a step later. T(v) + 1/2 D(t) K D(t + dt) is then conserved exactly.
 """
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
+from ..common.smith_soil import drag, static, stored, stretched
 from .bookkeeping import book_head, envelope, shaft_soil, toe_soil
 from .declarations import LAYOUT, MATCHED, PORT, RAM, SMITH
 from .segments import below_toe
-from .soil import drag, static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

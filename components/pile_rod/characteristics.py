@@ -5,13 +5,12 @@ b that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - 
 so that jumps stay sharp.
 """
 
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.wave_port import TOGETHER, rigid_mass
+from ..common.kernels import kernel, view
+from ..common.smith_soil import gripped
+from ..common.wave_port import End, Ram, struck
 from .bookkeeping import book_head, book_soil, envelope, shaft_soil, toe_soil
 from .declarations import LAYOUT, MATCHED, PORT, RAM
 from .segments import below_toe, toe_is_fixed
-from .soil import gripped
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -66,26 +65,18 @@ def _head(time, dt, force, w, x, k):
 
 @kernel
 def _ram(time, dt, force, wave, w, x, k):
-    """Move the ram. Returns the mean force between it and the head (N)."""
-    ram, impedance, place = view(x, k, A.ram_state), view(x, k, A.impedance), view(x, k, A.place)
-    before, drive, acting = ram[RAM.velocity], force + w[V.ram_mass] * w[V.gravity], 0.0
-    if ram[RAM.touching] > 0.0:
-        contact = rigid_mass(w[V.ram_mass], before, drive, impedance[0], wave, dt)
-        ram[RAM.velocity], acting = contact.velocity, contact.mean_force
-        if contact.separation < TOGETHER:
-            ram[RAM.touching], w[V.ram_separation] = 0.0, time + contact.separation * dt
-    else:
-        ram[RAM.velocity] += drive / w[V.ram_mass] * dt
-    mean, head = 0.5 * (before + ram[RAM.velocity]), (acting + wave) / impedance[0]
-    ram[RAM.position] += mean * dt
-    if ram[RAM.touching] == 0.0 and ram[RAM.position] >= place[0] + head * dt:
-        ram[RAM.touching] = 1.0
-    if ram[RAM.touching] > 0.0:
-        ram[RAM.position] = place[0] + head * dt
-    w[V.energy_contact] += acting * (mean - head) * dt
-    w[V.energy_work_head] += force * mean * dt
-    w[V.energy_work_gravity] += w[V.ram_mass] * w[V.gravity] * mean * dt
-    return acting
+    """Move the ram and return the mean force between it and the head (N)."""
+    state, head = view(x, k, A.ram_state), view(x, k, A.place)[0]
+    drive = force + w[V.ram_mass] * w[V.gravity]
+    ram = Ram(state[RAM.position], state[RAM.velocity], state[RAM.touching], w[V.ram_separation])
+    end = End(view(x, k, A.impedance)[0], wave, head)
+    ram, stroke = struck(ram, w[V.ram_mass], drive, end, time, dt)
+    state[RAM.position], state[RAM.velocity] = ram.position, ram.velocity
+    state[RAM.touching], w[V.ram_separation] = ram.touching, ram.separation
+    w[V.energy_contact] += stroke.force * (stroke.mass_velocity - stroke.end_velocity) * dt
+    w[V.energy_work_head] += force * stroke.mass_velocity * dt
+    w[V.energy_work_gravity] += w[V.ram_mass] * w[V.gravity] * stroke.mass_velocity * dt
+    return stroke.force
 
 
 @kernel
@@ -93,7 +84,7 @@ def _node(i, impedance, drive, dt, w, x, k):
     """Velocity (m/s) of a node inside the rod, mean over the step."""
     shaft = shaft_soil(i, w, x, k)
     velocity = drive / impedance
-    if shaft.resistance > 0.0:
+    if shaft.ultimate > 0.0:
         grip = gripped(impedance, drive, shaft, toe_soil(False, w, x, k), dt)
         velocity = grip.velocity
         book_soil(i, shaft, toe_soil(False, w, x, k), grip, dt, w, x, k)
@@ -116,7 +107,7 @@ def _toe(arriving, dt, force, w, x, k):
         drive -= force
     velocity = drive / (leaving + standing)
     w[V.toe_contact_force] = force if what == PORT else standing * velocity
-    if shaft.resistance + toe.resistance > 0.0:
+    if shaft.ultimate + toe.ultimate > 0.0:
         grip = gripped(leaving + standing, drive, shaft, toe, dt)
         velocity = grip.velocity
         book_soil(n, shaft, toe, grip, dt, w, x, k)

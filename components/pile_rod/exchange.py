@@ -1,7 +1,6 @@
 """Ports and clock: forces from outside over whole internal steps, and the waves that come out of the rod next."""
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from . import chain, characteristics
 from .declarations import CHARACTERISTICS, CLOCK, LAYOUT, PARALLEL, PORT, WAVES
 from .segments import head_sign

@@ -3,13 +3,21 @@
 import math
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count
+from ..common.kernels import kernel, view
+from ..common.smith_soil import static, stored, stretched
+from ..common.substeps import substep_count
 from .bookkeeping import shaft_soil, toe_soil
 from .chain import spring_energy, spring_force
 from .declarations import CHARACTERISTICS, LAYOUT, RAM, SOIL, WAVES
 from .exchange import gives_waves, publish_waves, run, waves_known
+from .faults import (
+    DIVERGED,
+    GAUGE_BELOW_TOE,
+    STEP_TOO_LONG,
+    WAVES_AND_RAM,
+    WAVES_NEED_CHARACTERISTICS,
+    WAVES_UNKNOWN,
+)
 from .segments import (
     divide,
     find_free_stretches,
@@ -20,18 +28,8 @@ from .segments import (
     rod_length,
     stable_limit,
 )
-from .soil import static, stored, stretched
 
 V, A = LAYOUT.scalar, LAYOUT.array
-
-(
-    WAVES_NEED_CHARACTERISTICS,
-    WAVES_AND_RAM,
-    GAUGE_BELOW_TOE,
-    STEP_TOO_LONG,
-    WAVES_UNKNOWN,
-    DIVERGED,
-) = 1, 2, 3, 4, 5, 6
 
 
 @kernel

@@ -2,8 +2,7 @@
 
 import math
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .declarations import (
     CHARACTERISTICS,
     DOWN,

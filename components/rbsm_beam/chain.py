@@ -9,8 +9,7 @@ what follows from it, ``mass`` of the discs (kg) and ``kick``, their change of r
 
 from collections import namedtuple
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .declarations import FIXED, LAYOUT
 
 V, A = LAYOUT.scalar, LAYOUT.array

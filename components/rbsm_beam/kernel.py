@@ -1,9 +1,8 @@
 """Life of the beam: start at rest, advance with held forces, publish."""
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
 from .chain import (
     axial_energy,
     bending_energy,
@@ -20,11 +19,10 @@ from .chain import (
     set_kicks,
 )
 from .declarations import LAYOUT
+from .faults import BOX_OFF_BEAM, DIVERGED
 from .statics import rest, stable_step
 
 V, A = LAYOUT.scalar, LAYOUT.array
-
-DIVERGED, BOX_OFF_BEAM = 1, 2
 
 
 @kernel

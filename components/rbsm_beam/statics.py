@@ -2,8 +2,7 @@
 
 import math
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .chain import END_HINGE, WALL_HINGE, A, V, box_share, deform
 
 POWER_ITERATIONS = 80

@@ -11,8 +11,7 @@ two bodies can have closed a gap of one skin.
 
 import math
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
+from ..common.kernels import inlined, kernel, view
 from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PART, PLANES, RADIUS, ROW, SUM
 
 V, A = LAYOUT.scalar, LAYOUT.array

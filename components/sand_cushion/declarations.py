@@ -7,8 +7,10 @@ from ..common.component import Size
 from ..common.ports import Layout, Sizes, State, choice, count, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.threads import MOST
 from ..common.units import cm, deg, kgf
+
+MOST_THREADS = 64
+"""Threads that can share the work of a step."""
 
 SQUARE, HEXAGONAL, RANDOM, PREPARED = 1, 2, 3, 4
 FREE, LOCKED = 1, 2
@@ -377,7 +379,7 @@ LAYOUT = Layout(
             "threads that share the work of a step; their number changes no bit. Of use from some 50,000 discs on",
             1,
             minimum=1,
-            maximum=MOST,
+            maximum=MOST_THREADS,
         ),
         choice(
             "kinematics",

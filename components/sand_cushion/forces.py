@@ -2,9 +2,7 @@
 
 import math
 
-from ..common.kernels import inlined, kernel
-from ..common.ports import view
-from ..common.threads import shared_among_threads
+from ..common.kernels import inlined, kernel, view
 from .contact_law import (
     normal_force,
     permanent_overlap,
@@ -45,6 +43,7 @@ from .vector.rows import (
     move_rows,
     pairs_to_columns,
 )
+from .vector.threads import shared_among_threads
 
 V, A = LAYOUT.scalar, LAYOUT.array
 

@@ -3,9 +3,8 @@
 import math
 
 from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.substeps import substep_count, substep_length
 from .contact_search import beam_count, disc_count, divide, forget, is_stale, rebuild
 from .declarations import (
     ANGLE,
@@ -28,24 +27,24 @@ from .declarations import (
     SPIN,
     SUM,
 )
+from .faults import (
+    BEAM_GAPS,
+    BEAM_TOO_NARROW,
+    BEAM_UNORDERED,
+    DISC_TOO_WIDE,
+    DIVERGED,
+    LIST_FULL,
+    ROCK_BESIDE,
+    ROCK_INSIDE,
+    SMOOTH_BUT_COHESIVE,
+    TOO_DENSE,
+    TOO_LOOSE,
+)
 from .forces import ROLLING, advance_discs, contact_forces, forget_forces, touch
 from .packing import disc_mass, mean_base, pack
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-(
-    LIST_FULL,
-    DIVERGED,
-    ROCK_INSIDE,
-    BEAM_TOO_NARROW,
-    BEAM_UNORDERED,
-    BEAM_GAPS,
-    ROCK_BESIDE,
-    DISC_TOO_WIDE,
-    TOO_LOOSE,
-    TOO_DENSE,
-    SMOOTH_BUT_COHESIVE,
-) = range(1, 12)
 
 _FAR = 1e6
 """Height (m) at which the rock waits while the sand settles."""

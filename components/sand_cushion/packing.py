@@ -3,8 +3,7 @@
 import math
 
 from ..common.counter_random import uniform
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .contact_search import base_top, beam_count, disc_count
 from .declarations import (
     BEAM_DISCS,

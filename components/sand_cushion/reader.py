@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..common.component import HEADER, MAGIC, ComponentError, Instance
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from . import COMPONENT
 from .contact_search import base_top, beam_count, disc_count, first_of, second_of
 from .declarations import (

@@ -10,8 +10,7 @@ from collections import namedtuple
 import numpy as np
 
 from ..common.counter_random import draw, mix, shuffled, stream
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .declarations import (
     ABSOLUTE,
     BODY,

@@ -8,8 +8,7 @@ rock never cuts into the slope, and all its motion is that of a point on straigh
 
 import math
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .declarations import LAYOUT, NEVER, PATH, STEEPEST_JOINT
 
 V, A = LAYOUT.scalar, LAYOUT.array

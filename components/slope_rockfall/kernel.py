@@ -4,18 +4,27 @@ import math
 
 from ..common.component import OK
 from ..common.counter_random import stream
-from ..common.kernels import kernel
-from ..common.ports import view
-from ..common.stepping import substep_count, substep_length
+from ..common.kernels import kernel, view
+from ..common.rigid_body import Load, Motion, moved
+from ..common.substeps import substep_count, substep_length
 from .declarations import BODY, CLOCK, GROUND, LAYOUT, LEAVE, NEVER, PATH, RECEIVED
 from .events import begin, happen, inertia, losses, plan, world
+from .faults import (
+    DIVERGED,
+    FORCE_OUTSIDE,
+    LEFT_BELOW,
+    NEVER_RECEIVED,
+    RESTLESS,
+    START_BELOW,
+)
 from .flight import move
 from .geometry import build_path, height_above, line_below
-from .refusals import START_BELOW, first_fault
+from .refusals import first_fault, problems
+
+__all__ = ["evaluate", "initialise", "problems", "step"]
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-FORCE_OUTSIDE, LEFT_BELOW, DIVERGED, RESTLESS, NEVER_RECEIVED = range(20, 25)
 UNBOUNDED_STEP = 1e6
 """Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
 TOUCHING = 1e-9
@@ -172,28 +181,18 @@ def advance(world, source, end, b):
 
 @kernel
 def push(world, now, end, h, w, b):
-    """A step h (s) in the receiver under constant force and torque: semi-implicit Euler, the same as FallingRock's to the bit."""
+    """Move the rock for h (s) in the receiver, as FallingRock does, and return the status."""
     move(b, now)
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
-    mass, moment_of_inertia = w[V.mass], inertia(w)
+    load = Load(w[V.force_x], w[V.force_y], w[V.torque])
+    motion = Motion(b[BODY.x], b[BODY.y], b[BODY.angle], b[BODY.vx], b[BODY.vy], b[BODY.omega])
     for _ in range(n):
-        vx, vy, omega = b[BODY.vx], b[BODY.vy], b[BODY.omega]
-        b[BODY.vx] = vx + w[V.force_x] / mass * dt
-        b[BODY.vy] = vy + (w[V.force_y] / mass - world.gravity) * dt
-        b[BODY.omega] = omega + w[V.torque] / moment_of_inertia * dt
-        b[BODY.x] += b[BODY.vx] * dt
-        b[BODY.y] += b[BODY.vy] * dt
-        b[BODY.angle] += b[BODY.omega] * dt
-        b[BODY.work] += (
-            0.5
-            * dt
-            * (
-                w[V.force_x] * (vx + b[BODY.vx])
-                + w[V.force_y] * (vy + b[BODY.vy])
-                + w[V.torque] * (omega + b[BODY.omega])
-            )
-        )
+        motion, work = moved(motion, load, w[V.mass], inertia(w), world.gravity, dt)
+        b[BODY.work] += work
+    b[BODY.x], b[BODY.y], b[BODY.angle] = motion.x, motion.y, motion.angle
+    b[BODY.vx], b[BODY.vy] = motion.velocity_x, motion.velocity_y
+    b[BODY.omega] = motion.angular_velocity
     b[BODY.time] = end
     plan(world, b)
     return OK if math.isfinite(b[BODY.x] + b[BODY.y] + b[BODY.angle]) else DIVERGED

@@ -3,9 +3,19 @@
 import math
 from typing import TYPE_CHECKING
 
-from ..common.kernels import kernel
-from ..common.ports import view
+from ..common.kernels import kernel, view
 from .declarations import LAYOUT, LOGNORMAL
+from .faults import (
+    FOLDED,
+    LIMIT_SIGN,
+    LOCKED,
+    RECEIVER_EMPTY,
+    ROUGH,
+    ROUGHNESS_SIGN,
+    RULES,
+    STEEP,
+    TILT_SIGN,
+)
 from .geometry import node
 from .sampling import widest
 
@@ -15,43 +25,6 @@ if TYPE_CHECKING:
     from ..common.component import Instance
 
 V, A = LAYOUT.scalar, LAYOUT.array
-
-FOLDED, STEEP, ROUGH, LOCKED, ROUGHNESS_SIGN, TILT_SIGN = range(1, 7)
-"""Faults of a cell, by number."""
-LIMIT_SIGN, RECEIVER_EMPTY, START_BELOW = range(7, 10)
-
-RULES = {
-    FOLDED: "its right node must lie to the right of its left node, a profile runs from left to right without folding back: order "
-    "the nodes by x and remove repeated ones",
-    STEEP: "it is steeper than 89 degrees; a vertical face needs some horizontal length: move one of its nodes",
-    ROUGH: "roughness with its deviation reaches 2, the whole rock: reduce one of them",
-    LOCKED: "mu tan(phi) with the largest roughness is 1 or more, and a sliding rock has no equation of motion: reduce friction, "
-    "roughness or its deviation",
-    ROUGHNESS_SIGN: "only a positive roughness has a lognormal distribution: choose another roughness.distribution",
-    TILT_SIGN: "only a positive tilt has a lognormal distribution: choose another tilt.distribution",
-}
-"""What is wrong with a cell that has a fault, and what to do."""
-_FACTS = {
-    FOLDED: "end.x[{fault.cell}] = {fault.value} m",
-    STEEP: "end.x[{fault.cell}] = {fault.value} m",
-    TILT_SIGN: "tilt[{fault.cell}] = {fault.value}",
-    ROUGHNESS_SIGN: "roughness[{fault.cell}] = {fault.value}",
-    ROUGH: "roughness[{fault.cell}] = {fault.value}, largest {fault.roughness}",
-    LOCKED: "friction[{fault.cell}] = {fault.value}, roughness[{fault.cell}] up to {fault.roughness}, "
-    "mu tan(phi) = {fault.locking}",
-}
-
-FAULTS = {
-    fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()
-} | {
-    LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal distribution: choose another "
-    "limit_speed.distribution",
-    RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than receiver.right = {receiver.right} "
-    "m, and receiver.bottom = {receiver.bottom} m less than receiver.top = {receiver.top} m",
-    START_BELOW: "the rock starts below the surface: its lowest point is at {height} m along the normal of cell {cell}; raise "
-    "position0.y = {position0.y} m or set on_slope",
-}
-"""Messages of the kernel's statuses."""
 
 _STEEPEST = math.tan(math.radians(1.0))
 _ROUGHEST = 1.999

@@ -13,7 +13,7 @@ from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 from rockshed.components.common.units import UNITS
 
 from ..parts import Runtime
-from ..python.slave import LOG_CATEGORIES
+from ..python.conduct import LOG_CATEGORIES
 from . import annotations
 
 _CAPABILITIES = {

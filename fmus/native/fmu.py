@@ -8,23 +8,21 @@ an instance. The model description of FMI 2.0 differs from that of the FMU with 
 import json
 import os
 import platform as machine
-import re
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 import uuid
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
-from itertools import chain
 from pathlib import Path
 
-from rockshed.components.common.component import HEADER, Component, Instance, allowed_range
-from rockshed.components.common.kernels import CACHE_VARIABLE, cache_directory
-from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
+from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
+from rockshed.components.common.component import Component
+from rockshed.components.common.ports import Sizes
 from rockshed.files import write_file
 from rockshed.versions import version_of
 
@@ -39,26 +37,14 @@ from ..parts import (
     documentation,
     picture,
 )
+from .header import Baseline, model_header
 from .subset import UNKNOWN_PLACE
 
 _HERE = Path(__file__).parent
 _SLAVE = _HERE / "slave.h"
 _SHIMS = {Fmi.TWO: _HERE / "shim_fmi2.c", Fmi.THREE: _HERE / "shim_fmi3.c"}
+_CONDUCT = _HERE.parent / "python" / "conduct.py"
 _KERNELS = (_HERE / "kernels.py", _HERE / "subset.py")
-
-
-@dataclass(frozen=True)
-class Baseline:
-    """The processor that kernels are compiled for.
-
-    name: as LLVM knows it. The rest: bits that the instruction CPUID must report in ecx of leaf 1, ebx of leaf 7 and ecx of leaf
-    80000001h.
-    """
-
-    name: str
-    leaf_1: int
-    leaf_7: int
-    leaf_81: int
 
 
 def _bits(*numbers: int) -> int:
@@ -138,7 +124,7 @@ def native_files(
     guid = stamp(component, sizes, fmi)
     files = _described(component, sizes, guid, fmi)
     objects = _objects(component, sizes, platforms)
-    header = model_header(component, sizes, guid)
+    header = model_header(component, sizes, guid, CPU)
     for name in platforms:
         path = _library(component, name, fmi)
         sources = {
@@ -173,6 +159,8 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
     beside = [path for path in component.folder.iterdir() if path.suffix in (".md", ".png")]
     ours = (
         *_HERE.glob("*.py"),
+        *_HERE.glob("*.j2"),
+        _CONDUCT,
         *_HERE.parent.glob("*.py"),
         *_HERE.parent.glob("description/*.py"),
         _SLAVE,
@@ -277,120 +265,6 @@ def _compile(
     problems = json.loads(done.stdout)
     assert isinstance(problems, list)
     return problems
-
-
-# --- tables for the shim
-
-
-def model_header(component: Component, sizes: Sizes, guid: str) -> bytes:
-    """``model.h``: what the shim has to know of a component."""
-    from ..description.fmi3 import TIME
-
-    instance = Instance(component, sizes)
-    entries = component.layout.table(sizes)[0]
-    header = instance.to_bytes()[: HEADER.size]
-    lengths = [len(variable.element_names(sizes)) for variable in component.layout.ordered]
-    owners = [number for number, length in enumerate(lengths) for _ in range(length)]
-    event = component.next_event
-    waits = [instance.references[name] for name in event.while_zero] if event else []
-    traits = [
-        _traits(variable)
-        for variable, length in zip(component.layout.ordered, lengths)
-        for _ in range(length)
-    ]
-    lines = [
-        f"#define NAME {_text(component.name)}",
-        f"#define GUID {_text(guid)}",
-        f"#define CPU {_text(CPU.name)}",
-        f"enum {{ NW = {len(instance.w)}, NX = {len(instance.x)}, NK = {len(instance.k)}, NC = {len(sizes)},",
-        f"       INTERNAL_STEP = {instance.references.get('internal_step', -1)}, "
-        f"STABLE_STEP = {instance.references.get('stable_step', -1)},",
-        f"       EVENT_TIME = {instance.references[event.time] if event else -1} }};",
-        f"#define CPU_1C 0x{CPU.leaf_1:x}u",
-        f"#define CPU_7B 0x{CPU.leaf_7:x}u",
-        f"#define CPU_81C 0x{CPU.leaf_81:x}u",
-        f"#define MARK 0x{instance.kind[:8].hex()}u",
-        _array("double", "START", map(_real, instance.w.tolist())),
-        _array("int64_t", "TABLE", map(str, entries or [0])),
-        _array("int", "SIZES", map(str, [*sizes.values(), 0])),
-        _array("Text", "READ_ONLY", map(_text, [*sizes, TIME])),
-        _array("int", "ZERO_UNTIL_EVENT", map(str, [*waits, -1])),
-        _array("unsigned char", "HEADER", map(str, header)),
-        _array("Variable", "VARIABLES", _variables(component, sizes)),
-        _array("unsigned short", "VARIABLE_OF", map(str, owners)),
-        _array("unsigned char", "TRAITS", traits),
-        _array("unsigned short", "ALIKE", map(str, _alike(traits))),
-        _array("Fault", "FAULTS", chain(_faults(component, instance), ["{ 0, 0 }"])),
-    ]
-    return "\n".join(lines).encode() + b"\n"
-
-
-def _variables(component: Component, sizes: Sizes) -> Iterator[str]:
-    first = 0
-    for variable in component.layout.ordered:
-        low = -sys.float_info.max if variable.minimum is None else variable.minimum
-        high = sys.float_info.max if variable.maximum is None else variable.maximum
-        length = 0 if variable.size is None else sizes[variable.size]
-        unit = "" if variable.unit == "1" else f" {variable.unit}"
-        fields = [
-            _text(variable.name),
-            str(first),
-            str(length),
-            variable.kind.name,
-            variable.causality.name,
-            _real(low),
-            _real(high),
-            _text(unit),
-            _text(allowed_range(variable)),
-            _text(variable.description),
-        ]
-        yield "{ " + ", ".join(fields) + " }"
-        first += len(variable.element_names(sizes))
-
-
-def _traits(variable: Variable) -> str:
-    is_free = (
-        variable.causality is Causality.INPUT
-        and variable.minimum is None
-        and variable.maximum is None
-    )
-    return " | ".join(["IS_REAL", *["IS_FREE"] * is_free]) if variable.kind is Kind.REAL else "0"
-
-
-def _alike(items: Sequence[str]) -> list[int]:
-    """For each item the number of equal ones from it on."""
-    counts: list[int] = []
-    for item, following in zip(reversed(items), [None, *reversed(items)]):
-        counts.append(counts[-1] + 1 if item == following else 1)
-    return counts[::-1]
-
-
-def _faults(component: Component, instance: Instance) -> Iterator[str]:
-    for status, text in component.faults.items():
-        numbered = re.sub(
-            r"\{([^}]+)\}", lambda match: f"{{{instance.references[match.group(1)]}}}", text
-        )
-        yield f"{{ {status}, {_text(numbered)} }}"
-
-
-def _array(kind: str, name: str, items: Iterable[str]) -> str:
-    return f"static const {kind} {name}[] = {{ " + ",\n  ".join(items) + " };"
-
-
-def _real(value: float) -> str:
-    return float(value).hex()
-
-
-def _text(text: str) -> str:
-    """A C literal. Messages are taken for printf formats by some hosts and not by others: they have no percent sign."""
-    encoded = text.replace("%", "percent").encode()
-    return (
-        '"'
-        + "".join(
-            chr(b) if 32 <= b < 127 and chr(b) not in '"\\?' else f"\\{b:03o}" for b in encoded
-        )
-        + '"'
-    )
 
 
 # --- the C compiler

@@ -8,7 +8,6 @@ Numba's own calling convention is wrapped, so no function of Python is needed; w
 of functions that every C library has.
 """
 
-import importlib
 import json
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -22,6 +21,7 @@ from numba import njit, typeof, types
 from numba.core.errors import NumbaError
 
 from rockshed import components
+from rockshed.components.catalogue import load
 from rockshed.components.common.component import Component, Instance
 
 from .subset import error_problem, symbol_problems
@@ -41,7 +41,7 @@ def main() -> None:
     """Carry out the order on standard input."""
     order = json.load(sys.stdin)
     folder = Path(order["folder"])
-    component = load(folder)
+    component = load(folder, f"{components.__name__}.{folder.name}")
     instance = component.instance(**order["sizes"])
     problems = compile_problems(component, signatures(instance), folder)
     if not problems:
@@ -53,14 +53,6 @@ def main() -> None:
         for platform in order["platforms"]:
             Path(f"{platform}.o").write_bytes(emitted(module, TRIPLES[platform], order["cpu"]))
     json.dump(problems, sys.stdout)
-
-
-def load(folder: Path) -> Component:
-    """The component of a folder, imported as if it lay among the others."""
-    components.__path__.insert(0, str(folder.parent))
-    component = importlib.import_module(f"{components.__name__}.{folder.name}").COMPONENT
-    assert isinstance(component, Component)
-    return component
 
 
 def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:

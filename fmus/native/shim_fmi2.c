@@ -1,6 +1,6 @@
 /* FMI 2.0 for co-simulation: its functions around the slave in slave.h. */
 #define TOKEN "GUID"
-#define TO_INITIALISE "set up the experiment, then enter and exit the initialization mode"
+#define TO_INITIALISE TO_INITIALISE_2
 #define CALL_OF(type) ((type) == ENUMERATION ? INTEGER : (type))
 #define HAS_TIME 0
 #define TYPE_NAMES { "Real", "Integer", "Boolean", "String", "Enumeration" }

@@ -3,7 +3,7 @@
 #include <stdbool.h>
 
 #define TOKEN "instantiation token"
-#define TO_INITIALISE "enter and exit the initialization mode"
+#define TO_INITIALISE TO_INITIALISE_3
 #define CALL_OF(type) (type)
 #define HAS_TIME 1
 #define TYPE_NAMES { "Float64", "Int32", "Boolean", "String", "Enumeration (Int64)" }
@@ -69,7 +69,7 @@ EXPORT Status fmi3SetDebugLogging(void *c, bool on, size_t n, const Text categor
 
 EXPORT Status fmi3EnterInitializationMode(void *c, bool with_tolerance, double tolerance, double start, bool with_stop, double stop) {
   SLAVE;
-  if (m->s.phase != INSTANTIATED) return not_now(m, "enter the initialization mode");
+  if (!is_legal(m, CALL_ENTER)) return not_now(m, CALL_ENTER);
   Status status = set_up(m, start, with_stop, stop);
   return status ? status : enter_initialisation(m);
 }
@@ -188,7 +188,7 @@ MOVES(Boolean, bool, BOOLEAN, BYTES)
 
 static Status none_of(Slave *m, const Reference r[], size_t n, Text type) {
   for (size_t i = 0; i < n; i++)
-    if (r[i] < NW) because(m, "%s is of type %s, not %s: use the call of its type", VARIABLES[VARIABLE_OF[r[i]]].name,
+    if (r[i] < NW) because(m, SAYS_OTHER_TYPE, VARIABLES[VARIABLE_OF[r[i]]].name,
                            TYPES[VARIABLES[VARIABLE_OF[r[i]]].type], type);
     else because(m, "value reference %u: this FMU has no variable of type %s", r[i], type);
   return n ? refused(m) : OK;

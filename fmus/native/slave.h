@@ -1,7 +1,8 @@
 /* The slave of native FMUs around the kernels of one component, for every version of FMI. model.h, generated from the component's
-   declarations, has the tables of its variables. It behaves as python_fmu.py does, and takes and gives the same serialized states;
-   but a call that is refused returns an error itself. Compiled for every x86-64 processor: it looks whether the kernels can run on
-   this one. The file that includes it has the functions of one version of FMI, and defines the words of that version before:
+   declarations and from the rules of conduct of both runtimes (python/conduct.py), has the tables of its variables, when a call is
+   legal, and the sentences in which it refuses one. It takes and gives the serialized states of the slave in Python; but a call that
+   is refused returns an error itself. Compiled for every x86-64 processor: it looks whether the kernels can run on this one. The file
+   that includes it has the functions of one version of FMI, and defines the words of that version before:
    TOKEN, TYPE_NAMES, TO_INITIALISE, CALL_OF(type of a variable): the type whose call moves it, HAS_TIME: whether that can be read. */
 #include <cpuid.h>
 #include <math.h>
@@ -15,11 +16,9 @@
 typedef const char *Text;
 typedef uint32_t Reference;
 typedef enum { OK, WARNING, DISCARD, ERROR } Status;
-typedef enum { INSTANTIATED = 1, INITIALISING, RUNNING, TERMINATED, FAILED } Phase;
 enum { REAL, INTEGER, BOOLEAN, STRING, ENUMERATION };
 enum { PARAMETER, INPUT, OUTPUT };
 enum { IS_REAL = 1, IS_FREE = 2 }; /* traits of a reference; free: a real input without bounds */
-enum { NOTHING, OUTPUTS, STATE }; /* what has to be computed before an output is read in initialization mode */
 
 /* length: 0 for a scalar. low, high: largest finite numbers where there is no bound. range: both in words. */
 typedef struct { Text name; int first, length, type, causality; double low, high; Text unit, range, description; } Variable;
@@ -52,16 +51,8 @@ int pthread_join(uint64_t thread, void **result) { return 1; }
 
 static void deliver(Slave *m, Status status, Text category); /* the message m->text to the importer */
 
-static const Text REMEDIES[] = { "",
-  "the slave is not initialised: " TO_INITIALISE,
-  "the initialization mode is not finished: exit it first",
-  "the slave is initialised already: reset it first",
-  "the slave is terminated: reset it first",
-  "an earlier call was refused or has failed, see the log: reset the slave or restore an earlier state" };
 static const Text TYPES[] = TYPE_NAMES;
 static const Text CATEGORIES[] = { "", "logStatusWarning", "", "logStatusError" };
-static const Text DAMAGED = "this is no serialized state of a rockshed FMU, or it is damaged: restore another one";
-static const Text FOREIGN = "this is no serialized state of this component with these sizes";
 
 /* --- messages: the reasons of one call are collected in m->text and told together */
 
@@ -96,9 +87,11 @@ static void tell(Slave *m, Status status) {
 
 static Status refused(Slave *m) { m->s.phase = FAILED; tell(m, ERROR); return ERROR; }
 static Status refuse(Slave *m, Text reason) { because(m, "%s", reason); return refused(m); }
-static Status not_now(Slave *m, Text what) { because(m, "cannot %s: %s", what, REMEDIES[m->s.phase]); return refused(m); }
+static int is_legal(const Slave *m, Call call) { return CALLS[call].phases >> m->s.phase & 1; }
+static Status not_now(Slave *m, Call call) { because(m, SAYS_NOT_NOW, CALLS[call].name, REMEDIES[m->s.phase]); return refused(m); }
 
 typedef struct { char text[256]; } Short;
+typedef struct { char text[4096]; } Long;
 static Short number(double value) { /* as Python writes it */
   Short s;
   if (isnan(value)) strcpy(s.text, "nan"); else snprintf(s.text, sizeof s.text, "%.6g", value);
@@ -117,21 +110,23 @@ static Short name_of(Reference r) {
 
 static int in_range(const Variable *v, double value) { return v->low <= value && value <= v->high; } /* false for NaN and inf */
 
-static void add_problem(Slave *m, Reference r, double value) {
+static Long problem(Reference r, double value) {
   const Variable *v = &VARIABLES[VARIABLE_OF[r]];
-  add(m, "%s = %s", name_of(r).text, number(value).text);
-  if (isfinite(value)) add(m, "%s: allowed is %s (%s)", v->unit, v->range, v->description);
-  else add(m, ": must be a finite number (%s)", v->description);
+  Long s;
+  if (isfinite(value))
+    snprintf(s.text, sizeof s.text, SAYS_OUT_OF_RANGE, name_of(r).text, number(value).text, v->unit, v->range, v->description);
+  else snprintf(s.text, sizeof s.text, SAYS_NOT_FINITE, name_of(r).text, number(value).text, v->description);
+  return s;
 }
 
 static int is_known(Slave *m, Reference r, int type) {
   if (r >= NW) {
-    because(m, "value reference %u is unknown: allowed is 0 to %d; take it from this FMU's modelDescription.xml", r, NW - 1);
+    because(m, SAYS_NO_REFERENCE, r, NW - 1);
     return 0;
   }
   int its = VARIABLES[VARIABLE_OF[r]].type;
   if (type == CALL_OF(its)) return 1;
-  because(m, "%s is of type %s, not %s: use the call of its type", name_of(r).text, TYPES[its], TYPES[type]);
+  because(m, SAYS_OTHER_TYPE, name_of(r).text, TYPES[its], TYPES[type]);
   return 0;
 }
 
@@ -139,38 +134,39 @@ static void check_set(Slave *m, Reference r, int type, double value) {
   if (!is_known(m, r, type)) return;
   const Variable *v = &VARIABLES[VARIABLE_OF[r]];
   if (v->causality == OUTPUT)
-    because(m, "%s = %s is refused: it is an output, which the component computes; set parameters or inputs", name_of(r).text,
-            number(value).text);
+    because(m, SAYS_OUTPUT_SET, name_of(r).text, number(value).text);
   else if (m->s.phase != RUNNING)
     return; /* checked all together when the initialization mode ends */
   else if (v->causality == PARAMETER)
-    because(m, "%s = %s is refused: a parameter is fixed after the initialisation; reset the slave to change it", name_of(r).text,
-            number(value).text);
-  else if (!in_range(v, value)) {
-    because(m, "at t = %.9g s: ", m->s.time);
-    add_problem(m, r, value);
-    add(m, "; correct what sends this value");
-  }
+    because(m, SAYS_FIXED, name_of(r).text, number(value).text);
+  else if (!in_range(v, value))
+    because(m, SAYS_BAD_INPUT, m->s.time, problem(r, value).text);
 }
 
 static int values_are_wrong(Slave *m) {
   for (Reference r = 0; r < NW; r++) {
     const Variable *v = &VARIABLES[VARIABLE_OF[r]];
-    if (v->causality != OUTPUT && !in_range(v, m->s.w[r])) { because(m, "%s", ""); add_problem(m, r, m->s.w[r]); }
+    if (v->causality != OUTPUT && !in_range(v, m->s.w[r])) because(m, "%s", problem(r, m->s.w[r]).text);
   }
   return m->length > 0;
 }
 
-static int has_failed(Slave *m, int64_t status, Text when) {
-  if (!status) return 0;
-  because(m, "%s", when);
+static Long fault(const Slave *m, int64_t status) { /* the message of a kernel's status, with the present values in it */
+  Long s;
+  size_t n = 0;
   Text text = NULL;
   for (size_t i = 0; i < sizeof FAULTS / sizeof *FAULTS; i++) if (FAULTS[i].text && FAULTS[i].status == status) text = FAULTS[i].text;
-  if (!text) add(m, "stopped with the unknown status %lld", (long long)status);
-  for (; text && *text; text++)
-    if (*text == '{') add(m, "%s", number(m->s.w[strtol(text + 1, (char **)&text, 10)]).text); /* goes on behind the brace */
-    else add(m, "%c", *text);
-  return 1;
+  if (!text) snprintf(s.text, sizeof s.text, SAYS_UNKNOWN_STATUS, (int)status);
+  for (; text && *text && n + sizeof(Short) < sizeof s.text; text++)
+    if (*text != '{') s.text[n++] = *text;
+    else n += (size_t)snprintf(s.text + n, sizeof(Short), "%s", number(m->s.w[strtol(text + 1, (char **)&text, 10)]).text); /* to the } */
+  if (text) s.text[n] = 0;
+  return s;
+}
+
+static int has_failed(Slave *m, int64_t status) {
+  if (status) because(m, "%s", fault(m, status).text);
+  return status != 0;
 }
 
 /* --- life cycle */
@@ -198,8 +194,8 @@ static void start_anew(Slave *m) {
 
 static int compute(Slave *m) { /* outputs at the start; the state, which may be expensive, only if a parameter has changed */
   if (m->stale != NOTHING && values_are_wrong(m)) return 0;
-  if (m->stale == STATE && has_failed(m, rockshed_initialise(m->s.w, m->s.x, m->s.k), "")) return 0;
-  if (m->stale != NOTHING && has_failed(m, rockshed_evaluate(m->s.w, m->s.x, m->s.k), "")) return 0;
+  if (m->stale == STATE && has_failed(m, rockshed_initialise(m->s.w, m->s.x, m->s.k))) return 0;
+  if (m->stale != NOTHING && has_failed(m, rockshed_evaluate(m->s.w, m->s.x, m->s.k))) return 0;
   m->stale = NOTHING;
   return 1;
 }
@@ -229,10 +225,9 @@ static Slave *checked(Slave *m, Text token, int logging) { /* NULL if there is a
 }
 
 static Status set_up(Slave *m, double start, int with_stop, double stop) {
-  if (m->s.phase != INSTANTIATED) return not_now(m, "set up the experiment");
+  if (!is_legal(m, CALL_SET_UP)) return not_now(m, CALL_SET_UP);
   if (!isfinite(start) || (with_stop && !(stop >= start))) {
-    because(m, "start time = %s s, stop time = %s s: the start must be a finite number, and the stop not before it",
-            number(start).text, with_stop ? number(stop).text : "none");
+    because(m, SAYS_TIMES, number(start).text, with_stop ? number(stop).text : "none");
     return refused(m);
   }
   m->s.start = m->s.time = start;
@@ -241,48 +236,53 @@ static Status set_up(Slave *m, double start, int with_stop, double stop) {
 }
 
 static Status enter_initialisation(Slave *m) {
-  if (m->s.phase != INSTANTIATED) return not_now(m, "enter the initialization mode");
-  if (isnan(m->s.time)) return refuse(m, "the start time is unknown: set up the experiment before entering the initialization mode");
+  if (!is_legal(m, CALL_ENTER)) return not_now(m, CALL_ENTER);
+  if (isnan(m->s.time)) return refuse(m, SAYS_NO_START);
   m->s.phase = INITIALISING;
   return OK;
 }
 
 static Status exit_initialisation(Slave *m) {
-  if (m->s.phase != INITIALISING) return not_now(m, "exit the initialization mode");
+  if (!is_legal(m, CALL_EXIT)) return not_now(m, CALL_EXIT);
   if (!compute(m)) return refused(m);
   m->s.phase = RUNNING;
   if (INTERNAL_STEP < 0 || STABLE_STEP < 0 || !(m->s.w[INTERNAL_STEP] > m->s.w[STABLE_STEP])) return OK;
-  because(m, "internal_step = %.6g s exceeds stable_step = %.6g s: the integration will be unstable; reduce internal_step to %.6g s "
-          "or less", m->s.w[INTERNAL_STEP], m->s.w[STABLE_STEP], m->s.w[STABLE_STEP]);
+  Short stable = number(m->s.w[STABLE_STEP]);
+  because(m, SAYS_UNSTABLE, number(m->s.w[INTERNAL_STEP]).text, stable.text, stable.text);
   tell(m, WARNING);
   return WARNING;
 }
 
 static Status terminate(Slave *m) {
   if (m->s.phase == FAILED) return OK;
-  if (m->s.phase != RUNNING) return not_now(m, "terminate");
+  if (!is_legal(m, CALL_TERMINATE)) return not_now(m, CALL_TERMINATE);
   m->s.phase = TERMINATED;
   return OK;
 }
 
-static int may_step(Slave *m, double time, double step) {
+static Long against_step(const Slave *m, double time, double step) { /* why a step is refused, or nothing */
   double tolerance = 1e-6 * step + 4.0 * (nextafter(fabs(m->s.time), INFINITY) - fabs(m->s.time));
-  Text reason = m->s.phase != RUNNING ? REMEDIES[m->s.phase] : !(step > 0.0 && isfinite(step)) ? "its length must be a positive number" : NULL;
-  if (!reason && fabs(time - m->s.time) <= tolerance && time + step <= m->stop + tolerance) return 1;
-  because(m, "the step of %s s from t = %.9g s is refused: ", number(step).text, time);
-  if (reason) add(m, "%s", reason);
-  else if (!(fabs(time - m->s.time) <= tolerance))
-    add(m, "the slave is at t = %.9g s; steps follow one another, and only a restored state leads elsewhere", m->s.time);
-  else add(m, "it passes the stop time %.9g s that the experiment was set up with", m->stop);
+  Long s = { "" };
+  if (!is_legal(m, CALL_STEP)) strcpy(s.text, REMEDIES[m->s.phase]);
+  else if (!(step > 0.0 && isfinite(step))) strcpy(s.text, SAYS_NO_LENGTH);
+  else if (!(fabs(time - m->s.time) <= tolerance)) snprintf(s.text, sizeof s.text, SAYS_ELSEWHERE, m->s.time);
+  else if (time + step > m->stop + tolerance) snprintf(s.text, sizeof s.text, SAYS_BEYOND_STOP, m->stop);
+  return s;
+}
+
+static int may_step(Slave *m, double time, double step) {
+  double tolerance = 1e-6 * step;
+  if (is_legal(m, CALL_STEP) && step > 0.0 && isfinite(step) && fabs(time - m->s.time) <= tolerance && time + step <= m->stop) return 1;
+  Long reason = against_step(m, time, step);
+  if (!*reason.text) return 1;
+  because(m, SAYS_STEP_REFUSED, number(step).text, time, reason.text);
   return 0;
 }
 
 static Status advance(Slave *m, double time, double step, double end, Status failure) {
   int64_t status = rockshed_step(time, step, m->s.w, m->s.x, m->s.k);
   if (!status) { m->s.time = end; return OK; }
-  Short when;
-  snprintf(when.text, sizeof when.text, "at t = %.9g s ", time);
-  has_failed(m, status, when.text);
+  because(m, SAYS_STEP_FAILED, time, fault(m, status).text);
   refused(m);
   return failure;
 }
@@ -295,7 +295,7 @@ static void preview(Slave *m) { /* what is wrong with the inputs may still be pu
     Text behind_name = m->text + strlen(m->name) + strlen(" (" NAME "): ");
     strcpy(reasons, behind_name);
     m->length = 0;
-    because(m, "the outputs are not valid yet: %s", reasons);
+    because(m, SAYS_NOT_VALID_YET, reasons);
     tell(m, WARNING);
   }
   m->previewed = 1;
@@ -339,7 +339,7 @@ static Status get(Slave *m, int type, const Reference r[], size_t n, void *v, Fo
 
 static Status set(Slave *m, int type, const Reference r[], size_t n, const void *v, Form form) {
   int stale = NOTHING;
-  if (m->s.phase >= TERMINATED) return not_now(m, "set a variable");
+  if (!is_legal(m, CALL_SET)) return not_now(m, CALL_SET);
   for (size_t i = 0; i < n; i++) check_set(m, r[i], type, taken(v, form, i));
   if (m->length) return refused(m);
   for (size_t i = 0; i < n; i++) {
@@ -402,7 +402,7 @@ static Status get_state(Slave *m, void **state) {
 }
 
 static Status set_state(Slave *m, void *state) {
-  if (!as_state(state)) return refuse(m, DAMAGED);
+  if (!as_state(state)) return refuse(m, SAYS_DAMAGED);
   memcpy(&m->s, state, sizeof(State));
   m->stale = m->s.phase <= INITIALISING ? STATE : NOTHING;
   m->previewed = 0;
@@ -412,7 +412,7 @@ static Status set_state(Slave *m, void *state) {
 static void free_state(void **state) { if (state) { free(*state); *state = NULL; } }
 
 static Status serialize(Slave *m, void *state, char bytes[], size_t n) {
-  if (!as_state(state)) return refuse(m, DAMAGED);
+  if (!as_state(state)) return refuse(m, SAYS_DAMAGED);
   if (n < SERIALIZED) { because(m, "a serialized state has %d bytes; there is room for %zu", (int)SERIALIZED, n); return refused(m); }
   carry_fields(state, bytes + SEAL, 1);
   uint32_t sum = checksum((unsigned char *)bytes + SEAL, SERIALIZED - SEAL);
@@ -423,8 +423,8 @@ static Status serialize(Slave *m, void *state, char bytes[], size_t n) {
 
 static Status deserialize(Slave *m, const char bytes[], size_t n, void **state) {
   uint32_t sum = n < SEAL + CLOCK ? 0 : checksum((unsigned char *)bytes + SEAL, n - SEAL);
-  if (n < SEAL + CLOCK || memcmp(bytes, "rockslav", 8) || memcmp(bytes + 8, &sum, 4)) return refuse(m, DAMAGED);
-  if (n != SERIALIZED || memcmp(bytes + SEAL + CLOCK, HEADER, sizeof HEADER)) return refuse(m, FOREIGN);
+  if (n < SEAL + CLOCK || memcmp(bytes, "rockslav", 8) || memcmp(bytes + 8, &sum, 4)) return refuse(m, SAYS_DAMAGED);
+  if (n != SERIALIZED || memcmp(bytes + SEAL + CLOCK, HEADER, sizeof HEADER)) return refuse(m, SAYS_FOREIGN);
   if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
   ((State *)*state)->mark = MARK;
   ((State *)*state)->start = 0.0;

@@ -1,7 +1,4 @@
-"""What the slave stands on. When it is frozen into an FMU, these imports become relative: it then brings its own copies.
-
-PackageCache is imported for its module, which is needed later and may be gone then with the folder that an FMU was unpacked to.
-"""
+"""Modules of others that the slave is made from. An FMU brings its own copies of them."""
 
 from pythonfmu.enums import Fmi2Status
 from pythonfmu.fmi2slave import Fmi2Slave
@@ -13,7 +10,6 @@ from rockshed.components.common.component import (
     Instance,
     value_problems,
 )
-from rockshed.components.common.numba_bridge import PackageCache
 from rockshed.components.common.ports import Causality, Kind, Variable
 
 __all__ = [
@@ -25,7 +21,6 @@ __all__ = [
     "Fmi2Status",
     "Instance",
     "Kind",
-    "PackageCache",
     "Variable",
     "value_problems",
 ]

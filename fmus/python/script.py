@@ -18,9 +18,12 @@ if locals() is globals():
         require_libraries("$name")
         with ForeignFoldersHidden():
             import ctypes
+            from importlib import import_module
 
             from $library.components.$package import COMPONENT
             from $library.slave import ComponentSlave
+
+            import_module(COMPONENT.kernels)  # now: this folder may be gone when they are needed
     finally:
         sys.path[:] = [folder for folder in sys.path if not isfile(join(folder, __name__ + ".py"))]
 

@@ -10,12 +10,26 @@ import math
 import struct
 import zlib
 from collections.abc import Callable, Mapping
-from enum import IntEnum
 from functools import wraps
 from typing import Any, ClassVar
 
 import numpy as np
 
+from .conduct import (
+    ENTER,
+    EXIT,
+    LOG_CATEGORIES,
+    REMEDIES,
+    SET,
+    SET_UP,
+    STEP,
+    TERMINATE,
+    Call,
+    Phase,
+    Stale,
+    number,
+    say,
+)
 from .foundations import (
     OK,
     Causality,
@@ -31,12 +45,6 @@ from .foundations import (
 from .interpreter import let_go_of_interpreter
 from .isolation import ForeignFoldersHidden
 
-LOG_CATEGORIES = {
-    "logStatusWarning": "something that deserves attention; the simulation can go on",
-    "logStatusError": "a call was refused or has failed; the message names the variable, its value and a remedy",
-}
-"""Categories of the messages that a slave logs. pythonfmu's binary compares names only, so ``logAll`` would select nothing."""
-
 _SEAL = struct.Struct("<8sI")
 """Begins a serialized state: a mark and the checksum of what follows, :data:`_CLOCK` and the state of the component."""
 _CLOCK = struct.Struct("<Id")
@@ -45,31 +53,7 @@ _ROUNDING = 1e-6
 """A communication point may differ from the end of the last step by this part of the step."""
 
 
-class _Phase(IntEnum):
-    INSTANTIATED = 1
-    INITIALISING = 2
-    RUNNING = 3
-    TERMINATED = 4
-    FAILED = 5
-
-
-_RUNNING = _Phase.RUNNING
-
-_REMEDIES = {
-    _Phase.INSTANTIATED: "the slave is not initialised: set up the experiment, then enter and exit the initialization mode",
-    _Phase.INITIALISING: "the initialization mode is not finished: exit it first",
-    _Phase.RUNNING: "the slave is initialised already: reset it first",
-    _Phase.TERMINATED: "the slave is terminated: reset it first",
-    _Phase.FAILED: "an earlier call was refused or has failed, see the log: reset the slave or restore an earlier state",
-}
-
-
-class _Stale(IntEnum):
-    """What has to be computed before an output is read in initialization mode."""
-
-    NOTHING = 0
-    OUTPUTS = 1
-    STATE = 2
+_RUNNING = Phase.RUNNING
 
 
 class _RefusedError(Exception):
@@ -113,7 +97,7 @@ class ComponentSlave(Fmi2Slave):
         if self.resources is not None:
             let_go_of_interpreter(self.resources)
         self._instance = instance = Instance(self.component, self.sizes)
-        self._phase, self._stale, self._previewed = _Phase.INSTANTIATED, _Stale.STATE, False
+        self._phase, self._stale, self._previewed = Phase.INSTANTIATED, Stale.STATE, False
         self._time, self._stop_time, self._compiled = math.nan, math.inf, False
         self._advance: Callable[..., int] = self.component.step
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
@@ -135,39 +119,35 @@ class ComponentSlave(Fmi2Slave):
         self, start_time: float, stop_time: float | None, tolerance: float | None
     ) -> None:
         """Set the time (s) of the initialisation, and the end that no step may exceed."""
-        self._expect(_Phase.INSTANTIATED, "set up the experiment")
+        self._expect(SET_UP)
         if not math.isfinite(start_time) or (stop_time is not None and not stop_time >= start_time):
-            raise _RefusedError(
-                f"start time = {start_time} s, stop time = {stop_time} s: the start must be a finite number, and "
-                "the stop not before it"
-            )
+            stop = "none" if stop_time is None else number(stop_time)
+            raise _RefusedError(say("TIMES", number(start_time), stop))
         self._time, self._stop_time = start_time, math.inf if stop_time is None else stop_time
 
     @_nothing
     def enter_initialization_mode(self) -> None:
         """From now on outputs can be read: they follow from the parameters and inputs set so far."""
-        self._expect(_Phase.INSTANTIATED, "enter the initialization mode")
+        self._expect(ENTER)
         if math.isnan(self._time):
-            raise _RefusedError(
-                "the start time is unknown: set up the experiment before entering the initialization mode"
-            )
-        self._phase = _Phase.INITIALISING
+            raise _RefusedError(say("NO_START"))
+        self._phase = Phase.INITIALISING
 
     @_nothing
     def exit_initialization_mode(self) -> None:
         """Fix the parameters and be ready to step."""
-        self._expect(_Phase.INITIALISING, "exit the initialization mode")
+        self._expect(EXIT)
         self._compute()
         self._compile_step()
-        self._phase = _Phase.RUNNING
+        self._phase = Phase.RUNNING
         self._warn_of_unstable_step()
 
     @_nothing
     def terminate(self) -> None:
         """End the simulation; values can still be read."""
-        if self._phase is not _Phase.FAILED:
-            self._expect(_Phase.RUNNING, "terminate")
-            self._phase = _Phase.TERMINATED
+        if self._phase is not Phase.FAILED:
+            self._expect(TERMINATE)
+            self._phase = Phase.TERMINATED
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Advance by ``step_size`` (s) with the present inputs. False if that is refused or fails; the log tells why."""
@@ -179,15 +159,15 @@ class ComponentSlave(Fmi2Slave):
             )
             if not due and (reason := self._why_not(current_time, step_size)):
                 self._log(
-                    f"the step of {step_size:.6g} s from t = {current_time:.9g} s is refused: {reason}",
-                    Fmi2Status.error,
+                    say("STEP_REFUSED", number(step_size), current_time, reason), Fmi2Status.error
                 )
                 return False
             instance = self._instance
             status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
             if status != OK:
                 raise ComponentError(
-                    self.component.name, [f"at t = {current_time:.9g} s {instance.message(status)}"]
+                    self.component.name,
+                    [say("STEP_FAILED", current_time, instance.message(status))],
                 )
             self._time = current_time + step_size
             return True
@@ -196,31 +176,31 @@ class ComponentSlave(Fmi2Slave):
             return False
 
     def _why_not(self, time: float, step: float) -> str:
-        if self._phase is not _Phase.RUNNING:
-            return _REMEDIES[self._phase]
+        if self._phase not in STEP.phases:
+            return REMEDIES[self._phase]
         if not (step > 0.0 and math.isfinite(step)):
-            return "its length must be a positive number"
+            return say("NO_LENGTH")
         tolerance = _ROUNDING * step + 4.0 * math.ulp(self._time)
         if not abs(time - self._time) <= tolerance:
-            return f"the slave is at t = {self._time:.9g} s; steps follow one another, and only a restored state leads elsewhere"
+            return say("ELSEWHERE", self._time)
         if time + step > self._stop_time + tolerance:
-            return f"it passes the stop time {self._stop_time:.9g} s that the experiment was set up with"
+            return say("BEYOND_STOP", self._stop_time)
         return ""
 
-    def _expect(self, phase: _Phase, what: str) -> None:
-        if self._phase is not phase:
-            raise _RefusedError(f"cannot {what}: {_REMEDIES[self._phase]}")
+    def _expect(self, call: Call) -> None:
+        if self._phase not in call.phases:
+            raise _RefusedError(say("NOT_NOW", call.name, REMEDIES[self._phase]))
 
     def _compute(self) -> None:
         """Bring outputs at the start up to date; the state, which may be expensive, only if a parameter has changed."""
         with ForeignFoldersHidden():
-            if self._stale is _Stale.STATE:
+            if self._stale is Stale.STATE:
                 self._instance.initialise()
-            elif self._stale is _Stale.OUTPUTS:
+            elif self._stale is Stale.OUTPUTS:
                 if problems := self._instance.problems():
                     raise ComponentError(self.component.name, problems)
                 self._instance.evaluate()
-        self._stale = _Stale.NOTHING
+        self._stale = Stale.NOTHING
 
     def _compile_step(self) -> None:
         """Compile the step now or load it from the cache, so that the first step takes no longer than the others."""
@@ -238,18 +218,14 @@ class ComponentSlave(Fmi2Slave):
                         )
                     )
                 )
-        self._advance, self._compiled = (
-            getattr(self.component.step, "made", self.component.step),
-            True,
-        )
+        self._compiled = True
 
     def _warn_of_unstable_step(self) -> None:
         if {"internal_step", "stable_step"} <= self._instance.references.keys():
             step, stable = self._instance["internal_step"], self._instance["stable_step"]
             if step > stable:
                 self._log(
-                    f"internal_step = {step:.6g} s exceeds stable_step = {stable:.6g} s: the integration will be unstable; "
-                    f"reduce internal_step to {stable:.6g} s or less",
+                    say("UNSTABLE", number(step), number(stable), number(stable)),
                     Fmi2Status.warning,
                 )
 
@@ -258,7 +234,7 @@ class ComponentSlave(Fmi2Slave):
     def get_real(self, vrs: list[int]) -> list[float]:
         """Values of real variables; a block of consecutive references is one slice of the buffer."""
         try:
-            if vrs and self._stale is _Stale.NOTHING:
+            if vrs and self._stale is Stale.NOTHING:
                 known = self._readers.get((vrs[0], len(vrs)))
                 if known and known[0] == vrs:
                     return known[1]()
@@ -270,7 +246,7 @@ class ComponentSlave(Fmi2Slave):
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         """Set real variables; a block of consecutive references is one slice of the buffer."""
         try:
-            if vrs and self._phase is _Phase.RUNNING:
+            if vrs and self._phase is Phase.RUNNING:
                 known = self._writers.get((vrs[0], len(vrs)))
                 if known and known[0] == vrs and math.isfinite(sum(values)):
                     known[1](values)
@@ -312,20 +288,15 @@ class ComponentSlave(Fmi2Slave):
 
     def _variable(self, reference: int, kind: Kind) -> tuple[str, Variable]:
         if not 0 <= reference < len(self._table):
-            raise _RefusedError(
-                f"value reference {reference} is unknown: allowed is 0 to {len(self._table) - 1}; "
-                "take it from this FMU's modelDescription.xml"
-            )
+            raise _RefusedError(say("NO_REFERENCE", reference, len(self._table) - 1))
         name, variable = self._table[reference]
         if kind is not (Kind.INTEGER if variable.kind is Kind.ENUMERATION else variable.kind):
-            raise _RefusedError(
-                f"{name} is of type {variable.kind}, not {kind}: use the call of its type"
-            )
+            raise _RefusedError(say("OTHER_TYPE", name, variable.kind, kind))
         return name, variable
 
     def _get(self, kind: Kind, vrs: list[int]) -> list[float]:
         variables = [self._variable(reference, kind)[1] for reference in vrs]
-        if self._phase is _Phase.INITIALISING and any(
+        if self._phase is Phase.INITIALISING and any(
             variable.causality is Causality.OUTPUT for variable in variables
         ):
             self._preview()
@@ -339,14 +310,11 @@ class ComponentSlave(Fmi2Slave):
             if not self._previewed:
                 self._compute()
         except ComponentError as error:
-            self._log(
-                f"the outputs are not valid yet: {'; '.join(error.problems)}", Fmi2Status.warning
-            )
+            self._log(say("NOT_VALID_YET", "; ".join(error.problems)), Fmi2Status.warning)
         self._previewed = True
 
     def _set(self, kind: Kind, vrs: list[int], values: list[Any]) -> None:
-        if self._phase in (_Phase.TERMINATED, _Phase.FAILED):
-            raise _RefusedError(f"cannot set a variable: {_REMEDIES[self._phase]}")
+        self._expect(SET)
         variables = [self._variable(reference, kind) for reference in vrs]
         if refused := [
             reason
@@ -361,13 +329,13 @@ class ComponentSlave(Fmi2Slave):
         ]
         for reference, value in zip(vrs, values):
             self._values[reference] = value
-        if self._phase is not _Phase.RUNNING:
+        if self._phase is not Phase.RUNNING:
             stale = (
-                _Stale.STATE
+                Stale.STATE
                 if Causality.PARAMETER in changed
-                else _Stale.OUTPUTS
+                else Stale.OUTPUTS
                 if changed
-                else _Stale.NOTHING
+                else Stale.NOTHING
             )
             self._stale, self._previewed = max(self._stale, stale), self._previewed and not changed
         elif vrs and all(
@@ -377,17 +345,13 @@ class ComponentSlave(Fmi2Slave):
 
     def _why_not_set(self, name: str, variable: Variable, value: float) -> list[str]:
         if variable.causality is Causality.OUTPUT:
-            return [
-                f"{name} = {value:.6g} is refused: it is an output, which the component computes; set parameters or inputs"
-            ]
-        if self._phase is not _Phase.RUNNING:
+            return [say("OUTPUT_SET", name, number(value))]
+        if self._phase is not Phase.RUNNING:
             return []  # checked all together when the initialization mode ends
         if variable.causality is Causality.PARAMETER:
-            return [
-                f"{name} = {value:.6g} is refused: a parameter is fixed after the initialisation; reset the slave to change it"
-            ]
+            return [say("FIXED", name, number(value))]
         return [
-            f"at t = {self._time:.9g} s: {problem}; correct what sends this value"
+            say("BAD_INPUT", self._time, problem)
             for problem in value_problems(variable, name, value)
         ]
 
@@ -407,11 +371,11 @@ class ComponentSlave(Fmi2Slave):
         """Go back to a state, also one of another process. Refused if it is damaged or of another component or size."""
         self._instance.from_bytes(component_state(state))
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
-        self._phase, self._time, self._previewed = _Phase(phase), time, False
+        self._phase, self._time, self._previewed = Phase(phase), time, False
         self._stale = (
-            _Stale.STATE if phase in (_Phase.INSTANTIATED, _Phase.INITIALISING) else _Stale.NOTHING
+            Stale.STATE if phase in (Phase.INSTANTIATED, Phase.INITIALISING) else Stale.NOTHING
         )
-        if self._phase is _Phase.RUNNING:
+        if self._phase is Phase.RUNNING:
             self._compile_step()
 
     @staticmethod
@@ -425,7 +389,7 @@ class ComponentSlave(Fmi2Slave):
     # --- log
 
     def _fail(self, error: BaseException) -> None:
-        self._phase = _Phase.FAILED
+        self._phase = Phase.FAILED
         if isinstance(error, ComponentError):
             text = "; ".join(error.problems)
         elif isinstance(error, _RefusedError):
@@ -453,12 +417,7 @@ def component_state(state: bytes) -> bytes:
         _MARK,
         zlib.crc32(state[_SEAL.size :]),
     ):
-        raise ComponentError(
-            "FMU state",
-            [
-                "this is no serialized state of a rockshed FMU, or it is damaged: restore another one"
-            ],
-        )
+        raise ComponentError("FMU state", [say("DAMAGED")])
     return state[_SEAL.size + _CLOCK.size :]
 
 

@@ -3,7 +3,6 @@
 Two relays have 50 inputs and 150 outputs each.
 """
 
-import importlib
 import subprocess
 import sys
 import tempfile
@@ -12,8 +11,6 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
-from rockshed import components
-from rockshed.components.common.component import Component
 from rockshed.fmus.build import Runtime, build_component
 
 from ..core.loop.buses import Buses
@@ -25,6 +22,7 @@ from ..core.system.system import System, system_from
 from ..versions import version_of
 from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
+from .pair import COMPONENT as RELAY
 
 OURS = "our loop"
 BARE = "ctypes"
@@ -41,18 +39,6 @@ _STEPS = {Runtime.NATIVE: 10_000, Runtime.PYTHON: 1000}
 _AT_ONCE = 1000
 _SETTLED = 2.0
 """Outputs of both relays in the end if they are connected: half of it and one is the same again."""
-
-
-def relay() -> Component:
-    """Import the component of the folder ``pair`` as if it lay among the others."""
-    here = str(Path(__file__).parent)
-    components.__path__.append(here)
-    try:
-        found = importlib.import_module("rockshed.components.pair").COMPONENT
-    finally:
-        components.__path__.remove(here)
-    assert isinstance(found, Component)
-    return found
 
 
 class Pair:
@@ -84,7 +70,7 @@ class Pair:
         self._stack = ExitStack()
         folder = self._stack.enter_context(tempfile.TemporaryDirectory(prefix="rockshed_"))
         self.steps = _STEPS[runtime]
-        self._file = build_component(relay(), destination=Path(folder), runtime=runtime)
+        self._file = build_component(RELAY, destination=Path(folder), runtime=runtime)
         self.contestants: dict[str, Contestant] = {OURS: self._own_loop(measurements)}
         self.missing: dict[str, str] = {}
         for tool, package in PEERS.items():

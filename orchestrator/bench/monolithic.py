@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.common.component import Instance
-from rockshed.components.common.kernels import kernel
-from rockshed.components.common.ports import view
+from rockshed.components.common.kernels import kernel, view
+from rockshed.components.common.rigid_body import Load
 from rockshed.components.falling_rock import COMPONENT as ROCK
 from rockshed.components.falling_rock import kernel as rock_kernel
 from rockshed.components.falling_rock.declarations import LAYOUT as ROCK_LAYOUT
@@ -130,9 +130,7 @@ def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history
         history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
         rock_x, rock_angle = rw[RV.position_x], rw[RV.angle]
         rock_torque = load[at + 2] * sw[SV.rock_radius]
-        rock_kernel.move(
-            rw[RV.mass], inertia, rw[RV.gravity], load[at], load[at + 1], rock_torque, dt, rw
-        )
+        rock_kernel.move(Load(load[at], load[at + 1], rock_torque), inertia, dt, rw)
         history[s, 4] = (
             load[at] * (rw[RV.position_x] - rock_x)
             + load[at + 1] * (rw[RV.position_y] - rock_y)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rockshed.components.catalogue import NAMES, component
+from rockshed.components.common.cache import has_kernels
 from rockshed.components.common.component import Component, ComponentError
-from rockshed.components.common.kernels import has_kernels
 from rockshed.fmus.places import Fmi, Runtime, fmu_file, folder_name, native_is_fresh
 
 from ..cases.registry import Case
@@ -471,4 +471,4 @@ def is_cold(names: Iterable[str]) -> bool:
     bool
         Whether those of any of them have not.
     """
-    return not all(has_kernels(component(name).folder.name) for name in names)
+    return not all(has_kernels(component(name).folder) for name in names)

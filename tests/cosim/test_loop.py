@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from rockshed.bench.exchange import relay
+from rockshed.bench.pair import COMPONENT as RELAY
 from rockshed.core.loop import compiled as loop
 from rockshed.core.loop.buses import Buses
 from rockshed.core.loop.exchange import ExchangeLoop
@@ -158,7 +158,7 @@ def test_native_fmus_give_the_same_bits(tmp_path):
         compiler(own_platform())
     except BuildError as error:
         pytest.skip(str(error))
-    file = build_component(relay(), destination=tmp_path, runtime=Runtime.NATIVE)
+    file = build_component(RELAY, destination=tmp_path, runtime=Runtime.NATIVE)
     system = system_from(
         {
             "name": "pair",

@@ -1,6 +1,5 @@
 """FMUs for the tests, each built once in a session."""
 
-import importlib
 import os
 import subprocess
 import sys
@@ -8,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rockshed import components
-from rockshed.components.catalogue import NAMES
+from rockshed.components.catalogue import NAMES, component_in
 from rockshed.fmus.build import BuildError, Fmi, Runtime, build, build_component
 from rockshed.fmus.native.fmu import compiler, own_platform
 
@@ -19,10 +17,8 @@ ROOT = HERE.parent.parent
 
 @pytest.fixture(scope="session")
 def probe():
-    """The component that has one of everything, imported as if it lay among the others."""
-    components.__path__.append(str(HERE / "extra"))
-    yield importlib.import_module("rockshed.components.probe").COMPONENT
-    components.__path__.remove(str(HERE / "extra"))
+    """The component that has one of everything, from a folder of its own."""
+    return component_in(HERE / "extra" / "probe")
 
 
 def built(runtime, probe, folder, fmi=Fmi.TWO):

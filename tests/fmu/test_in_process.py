@@ -77,7 +77,7 @@ from rockshed.fmus.in_process import InProcess, slave_class
 slave = InProcess(component("FallingRock")).instantiate("rock")
 statuses = slave.setup_experiment(0.0, 1.0), slave.enter_initialisation(), slave.exit_initialisation(), slave.step(0.0, 1e-5)
 assert statuses == (0, 0, 0, 0)
-print(type(component("FallingRock").step.made).__name__)
+print(type(component("FallingRock").step).__name__)
 """
 
 

@@ -231,7 +231,7 @@ def test_zig_builds_what_runs_here(monkeypatch, probe, tmp_path):
 
 @pytest.mark.parametrize("shim", ["shim_fmi2.c", "shim_fmi3.c"])
 def test_the_shim_compiles_without_a_warning(native_fmus, probe, tmp_path, shim):
-    (tmp_path / "model.h").write_bytes(model_header(probe, probe.with_sizes(), "{0}"))
+    (tmp_path / "model.h").write_bytes(model_header(probe, probe.with_sizes(), "{0}", CPU))
     command = [
         *compiler("linux64"),
         "-std=gnu11",

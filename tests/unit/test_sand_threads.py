@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from rockshed.components.common.kernels import kernel
-from rockshed.components.common.threads import shared_among_threads
 from rockshed.components.sand_cushion import COMPONENT, forces
 from rockshed.components.sand_cushion.contact_search import forget
 from rockshed.components.sand_cushion.declarations import PART
+from rockshed.components.sand_cushion.vector.threads import shared_among_threads
 from tests.sand_discs import SMALL_BOX, cushion, force_rebuild, rows, run, stirred
 
 MODELS = [

@@ -10,9 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 from llvmlite import ir
-
-from ...common.kernels import numba_cgutils as cgutils
-from ...common.kernels import numba_types as types
+from numba import types
+from numba.core import cgutils
 
 REAL, INDEX, WORD = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
 

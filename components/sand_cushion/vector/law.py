@@ -7,9 +7,10 @@ functions of contact_law.py are the reference in the tests.
 from types import SimpleNamespace
 from typing import Any
 
-from ...common.kernels import intrinsic
-from ...common.kernels import numba_cgutils as cgutils
-from ...common.kernels import numba_types as types
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
 from ..declarations import BLOCK, COLUMN, LANES, LAW, TALLY
 from .lanes import INDEX, Access, Lanes, Running, fma, larger, smaller, spread, sqrt, where
 

@@ -9,10 +9,11 @@ same bits.
 from typing import Any
 
 from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
 
-from ...common.kernels import intrinsic, kernel
-from ...common.kernels import numba_cgutils as cgutils
-from ...common.kernels import numba_types as types
+from ...common.kernels import kernel
 from ..declarations import BLOCK, FORCE_ROW, HALF_ROOT, INVERSE_MASS, LANES, ROW
 from .lanes import INDEX, WORD, Access, Lanes, constant, fma, larger, spread
 

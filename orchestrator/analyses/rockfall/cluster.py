@@ -14,7 +14,8 @@ from multiprocessing import resource_tracker
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from rockshed.components.common.kernels import source_stamp
+from rockshed.components.catalogue import component
+from rockshed.components.common.cache import source_stamp
 
 from ...core.errors import InputRefused, Problem
 from ..frame import Count
@@ -43,7 +44,7 @@ RETRIES = 2
 """Times that a block is computed again after an error; the death of a worker does not count."""
 CONNECT_TIMEOUT = 5.0
 """Time (s) after which a scheduler counts as unreachable, and one without workers as useless."""
-_COMPONENT = "slope_rockfall"
+_COMPONENT = "SlopeRockfall"
 
 
 @contextmanager
@@ -170,7 +171,7 @@ def _run(client: "Client", campaign: Campaign, count: Count) -> TrialRecords:
     # it is made again
     common = client.submit(_itself, campaign, pure=False)
     size = _block_size(campaign, sum(client.nthreads().values()))
-    stamp = source_stamp(_COMPONENT)
+    stamp = source_stamp(component(_COMPONENT).folder)
     first = {}
     for start in range(0, campaign.trials, size):
         number = min(size, campaign.trials - start)
@@ -196,7 +197,7 @@ def _itself(campaign: Campaign) -> Campaign:
 
 def _block(campaign: Campaign, first: int, count: int, stamp: str) -> TrialRecords:
     """Compute consecutive trials, by the same program as the client's."""
-    if source_stamp(_COMPONENT) != stamp:
+    if source_stamp(component(_COMPONENT).folder) != stamp:
         raise RuntimeError("it has another version of rockshed: install the same one")
     return compute(campaign, first, count)
 

@@ -1,22 +1,16 @@
-"""A component for the benchmark of the exchange: many ports, and hardly anything to compute.
-
-It is imported as if it lay among the components, whose modules it uses: see
-:mod:`rockshed.bench.exchange`.
-"""
+"""A component for the benchmark of the exchange: many variables, and hardly anything to compute."""
 
 from pathlib import Path
 
-from ..common.component import Component, Size
-from . import kernel
+from rockshed.components.common.component import Component, Size
+
 from .declarations import LAYOUT
 
 COMPONENT = Component(
     name="Relay",
     title="Relay: shows what it is given",
     layout=LAYOUT,
-    initialise=kernel.initialise,
-    evaluate=kernel.evaluate,
-    step=kernel.step,
+    kernels=f"{__name__}.kernel",
     folder=Path(__file__).parent,
     sizes={
         "inputs": Size(50, 1, 1000, "number of inputs"),

@@ -1,6 +1,6 @@
 """Variables of the relay."""
 
-from ..common.ports import Layout, inp, out
+from rockshed.components.common.ports import Layout, inp, out
 
 LAYOUT = Layout(
     (

@@ -1,8 +1,8 @@
 """Each output is half of one of the inputs and one."""
 
-from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
+from rockshed.components.common.component import OK
+from rockshed.components.common.kernels import kernel, view
+
 from .declarations import LAYOUT
 
 A = LAYOUT.array

@@ -13,13 +13,15 @@ from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
+from platformdirs import user_cache_path
 
 from ...files import write_file
 from ...versions import version_of
 from .tables import ENTRY, Integers
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
-"""Environment variable with the folder of machine code, by default ``~/.cache/rockshed``."""
+"""Environment variable that names the folder in which machine code is kept; by default it is
+``rockshed`` in the user's cache folder, as for compiled kernels."""
 
 Advance = Callable[[Integers, int, int], tuple[int, int, int]]
 """The function :func:`rockshed.core.loop.compiled.advance`, with the :func:`~.tables.head` of the
@@ -93,9 +95,9 @@ def is_kept() -> bool:
 
 
 def _file() -> Path:
-    caches = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
-    folder = os.environ.get(CACHE_VARIABLE) or os.path.join(caches, "rockshed")
-    return Path(os.path.expanduser(folder)) / f"loop-{_stamp()}.o"
+    chosen = os.environ.get(CACHE_VARIABLE)
+    folder = Path(chosen).expanduser() if chosen else user_cache_path("rockshed", appauthor=False)
+    return folder / f"loop-{_stamp()}.o"
 
 
 @cache

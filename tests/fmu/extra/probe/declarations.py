@@ -1,7 +1,9 @@
 """Variables of the probe."""
 
-from ..common.ports import Layout, State, choice, count, inp, out, param, switch
-from ..common.stepping import internal_step, stable_step
+from rockshed.components.common.ports import Layout, State, choice, count, inp, out, param, switch
+from rockshed.components.common.stepping import internal_step, stable_step
+
+OVERFLOW, INFLOW_AT_START = 1, 2
 
 LAYOUT = Layout(
     variables=(

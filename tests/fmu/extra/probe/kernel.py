@@ -1,13 +1,11 @@
 """Levels that rise with the inflow and leak: the state is hidden, the outputs are copies of it."""
 
-from ..common.component import OK
-from ..common.kernels import kernel
-from ..common.ports import view
-from .declarations import LAYOUT
+from rockshed.components.common.component import OK
+from rockshed.components.common.kernels import kernel, view
+
+from .declarations import INFLOW_AT_START, LAYOUT, OVERFLOW
 
 V, A = LAYOUT.scalar, LAYOUT.array
-
-OVERFLOW, INFLOW_AT_START = 1, 2
 
 
 @kernel

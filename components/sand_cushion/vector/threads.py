@@ -8,13 +8,11 @@ import sys
 from typing import Any
 
 from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
 
-from .kernels import intrinsic
-from .kernels import numba_cgutils as cgutils
-from .kernels import numba_types as types
-
-MOST = 64
-"""Threads that can be used at once."""
+from ..declarations import MOST_THREADS
 
 _NUMBER, _BYTES = ir.IntType(64), ir.IntType(8).as_pointer()
 _HAS_THREADS = sys.platform != "win32"
@@ -81,9 +79,9 @@ def _share(
     arguments: ir.Value,
 ) -> None:
     """Start all threads but one, be the last one, and wait for the others."""
-    shares = cgutils.alloca_once(builder, _share_type(arguments.type), size=_NUMBER(MOST))
-    handles = cgutils.alloca_once(builder, _NUMBER, size=_NUMBER(MOST))
-    used = _least(builder, threads, parts, _NUMBER(MOST))
+    shares = cgutils.alloca_once(builder, _share_type(arguments.type), size=_NUMBER(MOST_THREADS))
+    handles = cgutils.alloca_once(builder, _NUMBER, size=_NUMBER(MOST_THREADS))
+    used = _least(builder, threads, parts, _NUMBER(MOST_THREADS))
     last = builder.sub(used, _NUMBER(1))
 
     def told(thread: ir.Value) -> ir.Value:
