@@ -30,7 +30,8 @@ from .style import BEAM, GREY, INK, captioned
 FRAMES = 6
 _READ_AS = (
     "lines: forces in the contacts, by width and colour; deep: the rock's lowest point below "
-    "the surface that the sand had at the start; transmitted: vertical force of the sand on its base"
+    "the surface that the sand had at the start; transmitted: vertical force of the sand on its "
+    "base"
 )
 _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
@@ -88,7 +89,7 @@ def _evenly(run: Run, cushion: str) -> list[float]:
 
 
 def _moments(run: Run, cushion: str) -> list[float]:
-    """Return the times (s) of half the peak of the force, of the peak, and of the greatest depth."""
+    """Return the times (s) of half the peak force, of the peak, and of the greatest depth."""
     transmitted = str(column(run, cushion, Role.TRANSMITTED))
     force = run.series[transmitted]
     half = float(run.series["time"][np.flatnonzero(force >= 0.5 * force.max())[0]])
