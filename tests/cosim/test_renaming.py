@@ -9,7 +9,7 @@ from rockshed.core.fmu.fmu_slave import read_description
 from rockshed.core.run import simulate
 from rockshed.core.system.planning import make_plan
 from rockshed.core.system.renaming import with_present_names
-from rockshed.core.system.system import System
+from rockshed.core.system.system import SystemSpec
 from rockshed.fmus.description import fmi2, fmi3
 from tests.cosim.mocks import Mock, inp, out, par
 
@@ -25,7 +25,7 @@ SAID = "sand.unit_weight is called sand.density now: use the new name, the old o
 
 
 def system(**parameters):
-    return System(
+    return SystemSpec(
         name="renamed",
         components={"sand": {"fmu": "sand.fmu", "parameters": parameters}},
         stop_time=0.1,
