@@ -1,5 +1,7 @@
 """A value under a name that a variable had before is taken, and the user is told the new name."""
 
+from pathlib import Path
+
 import pytest
 
 from rockshed.components.common.component import Component
@@ -88,7 +90,12 @@ def component():
     from rockshed.components.common.component import Size
 
     return Component(
-        "Sand", "sand", LAYOUT, None, None, None, None, {"elements": Size(2, 1, 9, "elements")}
+        name="Sand",
+        title="sand",
+        layout=LAYOUT,
+        kernels="",
+        folder=Path(),
+        sizes={"elements": Size(2, 1, 9, "elements")},
     )
 
 
