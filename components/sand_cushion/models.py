@@ -1,4 +1,4 @@
-"""Models of the sand: sets of parameters of the sand cushion that were calibrated together."""
+"""Models of the sand by name: sets of parameters that were calibrated together."""
 
 import math
 from collections.abc import Mapping

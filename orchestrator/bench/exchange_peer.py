@@ -20,7 +20,7 @@ OUTPUTS = 150
 STEP = 1e-3
 """Macro step (s)."""
 
-Run = Callable[[int], float]
+Exchange = Callable[[int], float]
 """Carries out so many macro steps, and returns an output."""
 
 
@@ -43,7 +43,7 @@ def _slaves(file: str) -> Iterator[Any]:
         yield slave
 
 
-def with_fmpy(file: str, _stack: ExitStack) -> Run:
+def with_fmpy(file: str, _stack: ExitStack) -> Exchange:
     """Exchange with fmpy as in its documentation."""
     a, b = _slaves(file)
     times = count()
@@ -63,7 +63,7 @@ def with_fmpy(file: str, _stack: ExitStack) -> Run:
     return run
 
 
-def with_ctypes(file: str, _stack: ExitStack) -> Run:
+def with_ctypes(file: str, _stack: ExitStack) -> Exchange:
     """Exchange in a bare loop that calls the C functions with arrays made before."""
     a, b = _slaves(file)
     times = count()
@@ -108,7 +108,7 @@ def _connections() -> Iterator[tuple[str, str, int]]:
             yield one, other, i
 
 
-def with_libcosim(file: str, _stack: ExitStack) -> Run:
+def with_libcosim(file: str, _stack: ExitStack) -> Exchange:
     """Exchange with libcosim by its fixed-step algorithm."""
     from libcosimpy.CosimEnums import CosimVariableType
     from libcosimpy.CosimExecution import CosimExecution
@@ -133,7 +133,7 @@ def with_libcosim(file: str, _stack: ExitStack) -> Run:
     return run
 
 
-def with_ecos(file: str, stack: ExitStack) -> Run:
+def with_ecos(file: str, stack: ExitStack) -> Exchange:
     """Exchange with ecos by its fixed-step algorithm."""
     for part in files("tbb") or []:
         if part.name == "libtbb.so.12":
@@ -156,7 +156,7 @@ def with_ecos(file: str, stack: ExitStack) -> Run:
     return run
 
 
-TOOLS: Mapping[str, Callable[[str, ExitStack], Run]] = {
+TOOLS: Mapping[str, Callable[[str, ExitStack], Exchange]] = {
     "ctypes": with_ctypes,
     "fmpy": with_fmpy,
     "libcosim": with_libcosim,

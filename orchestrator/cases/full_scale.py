@@ -1,32 +1,32 @@
-"""Full scale in Sonoda et al. (1993), sec. 4 (3): a rock of 1 tf on 90 cm of sand, on a rigid base (figs 20 to 22) and on two
-girders (figs 23 and 24, table 6).
+"""Full scale in Sonoda et al. (1993), sec. 4 (3): a rock of 1 tf on 90 cm of sand.
 
-What the paper leaves open is chosen here and said where the numbers stand.
+On a rigid base (figs 20 to 22) and on two girders (figs 23 and 24, table 6). Whatever the paper
+leaves open is chosen here and said where the numbers stand.
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, cm2, cm4, kgf, kN
 
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..references import Known, Reference, References
-from .sand_models import FULL_SCALE_SOIL, Layer
+from .sand_models import FULL_SCALE_SOIL, SandLayer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
-
-Coupling = Literal["paper", "impulse"]
-"""paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first, kinematics extrapolated, mean
-forces, exchange every 0.2 ms."""
 
 _COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "paper": ("sequential", 5e-5, "held", "last"),
     "impulse": ("sequential", 2e-4, "linear", "mean"),
 }
+"""Master, exchange step (s), kinematics and forces of the sand by scheme of exchange.
+
+paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first,
+kinematics extrapolated, mean forces, exchange every 0.2 ms.
+"""
 
 ROCK_MASS = 1000.0
 ROCK_RADIUS = 45.6 * cm
@@ -38,15 +38,31 @@ DISC_RADIUS = 5 * cm
 _GAP = 5e-3
 """Distance (m) between rock and sand at the start."""
 _SAND_STEP = 5e-5
-"""Discs ten times as large as in the laboratory; the stable step is longer than 4e-4 s for all these sands."""
+"""Internal step of sand and rock (s).
+
+Discs are ten times as large as in the laboratory; the stable step is longer than 4e-4 s for all
+these sands.
+"""
 
 
 @dataclass(frozen=True)
 class Impact:
     """An impact at full scale.
 
-    modulus: fictitious modulus E_bar (Pa). width: of the box (m). thickness: effective thickness dL of the sand (m). span: of the girders
-    (m), 0 on a rigid base. stop_time: end of the run (s), after the rock has turned.
+    Attributes
+    ----------
+    name, summary : str
+        Name of the case, and its content in a line.
+    modulus : float
+        Fictitious modulus E_bar (Pa).
+    width : float
+        Of the box (m).
+    thickness : float
+        Effective thickness dL of the sand out of the plane (m).
+    stop_time : float
+        End of the run (s), after the rock has turned.
+    span : float
+        Of the girders (m), 0 on a rigid base.
     """
 
     name: str
@@ -64,25 +80,40 @@ class Impact:
 
     @property
     def elements(self) -> int:
-        """Number of beam discs, or 1 (the least that the sand can be built with, never touched) on a rigid base."""
+        """Number of beam discs.
+
+        On a rigid base 1, the least that the sand can be built with, which is never touched.
+        """
         return round(self.span / ELEMENT) if self.span else 1
 
 
-RIGID_DEPTH = 2 * ROCK_RADIUS * 10.0 / 9.9
-"""Effective thickness on the rigid base (m), which the paper does not give: as in the laboratory, 10 cm for a ball of 9.9 cm."""
-GIRDER_DEPTH = 170 * cm
+RIGID_THICKNESS = 2 * ROCK_RADIUS * 10.0 / 9.9
+"""Effective thickness on the rigid base (m), which the paper does not give.
+
+As in the laboratory, 10 cm for a ball of 9.9 cm.
+"""
+GIRDER_THICKNESS = 170 * cm
 """Distance of the girders, which the paper takes as the effective thickness."""
 
 ELEMENT = 20 * cm
-"""Beam disc; twice a sand disc, with a stable step of 2e-5 s. The paper does not give its discs."""
+"""Length of a beam element (m): a disc twice a sand disc, with a stable step of 2e-5 s.
+
+The paper does not give its discs.
+"""
 GIRDERS = 2
 GIRDER_AREA, GIRDER_SECOND_MOMENT, GIRDER_HEIGHT = 136.0 * cm2, 38_700 * cm4, 39 * cm
-"""Of one girder. The paper says H-300x400 only: read as the rolled section of the series 400 x 300, H-390x300x10x16 of JIS G 3192
-as it stood in 1993, bent about the strong axis."""
+"""Section area (m2), second moment (m4) and height (m) of one girder.
+
+The paper says H-300x400 only: read as the rolled section of the series 400 x 300, H-390x300x10x16
+of JIS G 3192 as it stood in 1993, bent about the strong axis.
+"""
 _BEAM_STEP = 1e-5
 
 DECK_MASS, BOX_MASS = 0.0, 0.0
-"""Mass per length of a deck (kg/m) and of the box (kg) on the girders. The paper gives none: none is assumed."""
+"""Mass of a deck by length (kg/m), and of the box (kg), on the girders.
+
+The paper gives none: none is assumed.
+"""
 GRAVITY = 9.80665
 
 _SANDS = (
@@ -96,14 +127,14 @@ _GIRDER_SAND, _GIRDER_STOP = 100.0, 0.2
 
 @cache
 def impacts() -> dict[str, Impact]:
-    """The impacts at full scale by the name of their case."""
+    """Return the impacts at full scale by the name of their case."""
     rigid = [
         Impact(
             f"rigid-base-{name}",
             f"1 tf from 10 m on 90 cm of {words} on a rigid base, E_bar {modulus:g} kgf/cm²",
             modulus * kgf / cm2,
             4.0,
-            RIGID_DEPTH,
+            RIGID_THICKNESS,
             stop,
         )
         for name, words, modulus, stop in _SANDS
@@ -115,7 +146,7 @@ def impacts() -> dict[str, Impact]:
             f"1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders of {span:g} m",
             _GIRDER_SAND * kgf / cm2,
             3.0,
-            GIRDER_DEPTH,
+            GIRDER_THICKNESS,
             _GIRDER_STOP,
             span,
         )
@@ -127,76 +158,48 @@ def impacts() -> dict[str, Impact]:
 def full_scale_system(
     fmus: Mapping[str, str],
     impact: Impact,
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int | None = None,
-) -> System:
-    """An impact at full scale as a co-simulation of FMUs: ``rock`` and ``sand``, and ``beam`` with girders.
+) -> SystemSpec:
+    """Return an impact at full scale as a co-simulation of rock, sand and, on girders, beam.
 
-    The origin is the left support on the girders, the left wall on the rigid base. discs, elements: sizes that ``sand`` and
-    ``beam`` were built with, by default those of the impact; the rock starts above the layer that so many discs make.
+    The origin is the left support on the girders, the left wall on the rigid base.
+
+    Parameters
+    ----------
+    fmus : mapping of str to str
+        Files of the FMUs by component.
+    impact : Impact
+        The impact.
+    coupling : str
+        ``paper`` or ``impulse``.
+    discs, elements : int, optional
+        Sizes that ``sand`` and ``beam`` were built with, by default those of the impact; the rock
+        starts above the layer that so many discs make.
+
+    Returns
+    -------
+    SystemSpec
+        The co-simulation.
     """
     master, exchange, kinematics, forces = _COUPLINGS[coupling]
-    middle = 0.5 * (impact.span or impact.width)
-    rows = math.ceil((discs or impact.discs) / round(impact.width / (2 * DISC_RADIUS)))
     partners = ("rock", "beam") if impact.span else ("rock",)
     components = {
-        "sand": ComponentSpec(
-            fmu=fmus["sand"],
-            record_states=True,
-            parameters={
-                "modulus": impact.modulus,
-                "thickness": impact.thickness,
-                "disc.radius": DISC_RADIUS,
-                "base": "beam_discs" if impact.span else "floor",
-                "kinematics": kinematics,
-                "forces": forces,
-                "internal_step": _SAND_STEP,
-            },
-        ),
-        "rock": ComponentSpec(
-            fmu=fmus["rock"],
-            parameters={
-                "position0.x": middle,
-                "position0.y": rows * 2 * DISC_RADIUS + ROCK_RADIUS + _GAP,
-                "velocity0.y": -ROCK_SPEED,
-                "internal_step": _SAND_STEP,
-            },
-        ),
+        "sand": _sand(fmus["sand"], impact, kinematics, forces),
+        "rock": _rock(fmus["rock"], impact, discs or impact.discs),
     }
-    boxed = ["sand", "beam"] if impact.span else ["sand"]
-    shared = {
-        "box_left": SharedValue(
-            value=middle - 0.5 * impact.width, targets=[f"{name}.box.left" for name in boxed]
-        ),
-        "box_width": SharedValue(
-            value=impact.width, targets=[f"{name}.box.width" for name in boxed]
-        ),
-        "rock_radius": SharedValue(value=ROCK_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
-        "rock_mass": SharedValue(value=ROCK_MASS, targets=["rock.mass", "sand.rock.mass"]),
-    }
+    watch = ["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"]
+    spacing = 0.0
     if impact.span:
         spacing = impact.span / (elements or impact.elements)
-        components["beam"] = ComponentSpec(
-            fmu=fmus["beam"],
-            parameters={
-                "span": impact.span,
-                "axis.y": -0.5 * spacing,
-                "section.area": GIRDERS * GIRDER_AREA,
-                "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT,
-                "section.height": GIRDER_HEIGHT,
-                "gravity": GRAVITY,
-                "deck.mass": DECK_MASS,
-                "box.mass": BOX_MASS,
-                "internal_step": _BEAM_STEP,
-            },
-        )
-        shared["beam_radius"] = SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"])
-    return System(
+        components["beam"] = _girders(fmus["beam"], impact, spacing)
+        watch += ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"]
+    return SystemSpec(
         name=impact.name,
         description=f"Sonoda et al. 1993, full scale: {impact.summary}",
         components=components,
-        shared=shared,
+        shared=_shared(impact, spacing),
         connections=impact_connections(partners),
         bonds=impact_bonds(partners),
         energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
@@ -206,19 +209,90 @@ def full_scale_system(
         exchange_step=exchange,
         output_interval=4e-4,
         state_interval=4e-3,
-        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"]
-        + (
-            ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"]
-            if impact.span
-            else []
-        ),
+        watch=watch,
     )
 
 
-def cushion_weight(system: System, discs: int) -> float:
-    """Weight (N) of the sand in a system of girders, for so many discs: under it the girders start bent, at rest.
+def _sand(fmu: str, impact: Impact, kinematics: str, forces: str) -> ComponentSpec:
+    parameters: dict[str, Value] = {
+        "modulus": impact.modulus,
+        "thickness": impact.thickness,
+        "disc.radius": DISC_RADIUS,
+        "base": "beam_discs" if impact.span else "floor",
+        "kinematics": kinematics,
+        "forces": forces,
+        "internal_step": _SAND_STEP,
+    }
+    return ComponentSpec(fmu=fmu, record_states=True, parameters=parameters)
 
-    Radii that differ are uniform within radius (1 - spread, 1 + spread): on average discs are heavier by spread^2 / 3.
+
+def _rock(fmu: str, impact: Impact, discs: int) -> ComponentSpec:
+    """Return the rock above the layer that so many discs make on a square lattice."""
+    rows = math.ceil(discs / round(impact.width / (2 * DISC_RADIUS)))
+    parameters: dict[str, Value] = {
+        "position0.x": _middle(impact),
+        "position0.y": rows * 2 * DISC_RADIUS + ROCK_RADIUS + _GAP,
+        "velocity0.y": -ROCK_SPEED,
+        "internal_step": _SAND_STEP,
+    }
+    return ComponentSpec(fmu=fmu, parameters=parameters)
+
+
+def _girders(fmu: str, impact: Impact, spacing: float) -> ComponentSpec:
+    """Return the girders as one beam; spacing: length of an element (m)."""
+    parameters: dict[str, Value] = {
+        "span": impact.span,
+        "axis.y": -0.5 * spacing,
+        "section.area": GIRDERS * GIRDER_AREA,
+        "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT,
+        "section.height": GIRDER_HEIGHT,
+        "gravity": GRAVITY,
+        "deck.mass": DECK_MASS,
+        "box.mass": BOX_MASS,
+        "internal_step": _BEAM_STEP,
+    }
+    return ComponentSpec(fmu=fmu, parameters=parameters)
+
+
+def _shared(impact: Impact, spacing: float) -> dict[str, SharedValue]:
+    """Return the values that several components take; spacing: length of an element (m), or 0."""
+    boxed = ["sand", "beam"] if impact.span else ["sand"]
+    left = _middle(impact) - 0.5 * impact.width
+    shared = {
+        "box_left": SharedValue(value=left, targets=[f"{name}.box.left" for name in boxed]),
+        "box_width": SharedValue(
+            value=impact.width, targets=[f"{name}.box.width" for name in boxed]
+        ),
+        "rock_radius": SharedValue(value=ROCK_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
+        "rock_mass": SharedValue(value=ROCK_MASS, targets=["rock.mass", "sand.rock.mass"]),
+    }
+    if spacing:
+        shared["beam_radius"] = SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"])
+    return shared
+
+
+def _middle(impact: Impact) -> float:
+    """Return the middle of girders or box, from the origin (m)."""
+    return 0.5 * (impact.span or impact.width)
+
+
+def cushion_weight(system: SystemSpec, discs: int) -> float:
+    """Return the weight of the sand on girders, under which they start bent, at rest.
+
+    Radii that differ are uniform within radius (1 - spread, 1 + spread): on average discs are
+    heavier by spread^2 / 3.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        With the parameters of the sand.
+    discs : int
+        Number of discs.
+
+    Returns
+    -------
+    float
+        Weight (N).
     """
     given = {
         v.name: v.start_at(0, {})
@@ -234,9 +308,22 @@ def cushion_weight(system: System, discs: int) -> float:
     return discs * density * area * float(sand["thickness"]) * float(sand["gravity"])
 
 
-def layer(impact: Impact, dropped: bool = True) -> Layer:
-    """The sand of an impact, for the models of it. dropped: whether the rock starts above it."""
-    return Layer(
+def layer(impact: Impact, dropped: bool = True) -> SandLayer:
+    """Return the sand of an impact, for the models of it.
+
+    Parameters
+    ----------
+    impact : Impact
+        The impact.
+    dropped : bool
+        Whether the rock starts above the sand.
+
+    Returns
+    -------
+    SandLayer
+        The layer.
+    """
+    return SandLayer(
         impact.width,
         LAYER,
         DISC_RADIUS,
@@ -254,10 +341,24 @@ HANDBOOK_LAME = 1e6
 
 
 def handbook_force(mass: float, height: float, lame: float = HANDBOOK_LAME) -> float:
-    """Impact force (N) on a rock of ``mass`` (kg) after a fall of ``height`` (m) by the Japanese rockfall handbook.
+    """Return the impact force on a rock by the Japanese rockfall handbook.
 
-    P = 2.108 (m g)^(2/3) lambda^(2/5) H^(3/5), weight and force in kN, ``lame`` in Pa. It is Hertz's solution for a sphere on a
-    half-space with Poisson's ratio 0.25.
+    P = 2.108 (m g)^(2/3) lambda^(2/5) H^(3/5), with weight and force in kN and lambda in kN/m2.
+    It is Hertz's solution for a sphere on a half-space with Poisson's ratio 0.25.
+
+    Parameters
+    ----------
+    mass : float
+        Of the rock (kg).
+    height : float
+        Of its fall (m).
+    lame : float
+        Lame constant lambda of the sand (Pa).
+
+    Returns
+    -------
+    float
+        Force (N).
     """
     return 2.108 * (mass * kgf / kN) ** (2 / 3) * (lame / kN) ** 0.4 * height**0.6 * kN
 
@@ -265,9 +366,24 @@ def handbook_force(mass: float, height: float, lame: float = HANDBOOK_LAME) -> f
 def hertz_force(
     mass: float, radius: float, speed: float, lame: float = HANDBOOK_LAME, poisson: float = 0.25
 ) -> float:
-    """Largest force (N) on a rigid sphere that strikes an elastic half-space (Hertz): P = K^(2/5) (5/4 m v^2)^(3/5),
-    K = 4/3 E / (1 - nu^2) sqrt(R), from P = K d^(3/2) and 2/5 K d^(5/2) = m v^2 / 2. ``lame`` (Pa) gives
-    E = lame (1 + nu)(1 - 2 nu) / nu.
+    """Return the largest force on a rigid sphere that strikes an elastic half-space (Hertz).
+
+    P = K^(2/5) (5/4 m v^2)^(3/5), K = 4/3 E / (1 - nu^2) sqrt(R), from P = K d^(3/2) and
+    2/5 K d^(5/2) = m v^2 / 2, with E = lambda (1 + nu)(1 - 2 nu) / nu.
+
+    Parameters
+    ----------
+    mass, radius, speed : float
+        Of the sphere (kg, m, m/s).
+    lame : float
+        Lame constant lambda (Pa).
+    poisson : float
+        Poisson's ratio nu.
+
+    Returns
+    -------
+    float
+        Force (N).
     """
     modulus = lame * (1.0 + poisson) * (1.0 - 2.0 * poisson) / poisson
     stiffness = 4.0 / 3.0 * modulus / (1.0 - poisson**2) * math.sqrt(radius)
@@ -275,12 +391,27 @@ def hertz_force(
 
 
 ASSUMED = ("beam.deck.mass", "beam.box.mass", "beam.cushion.weight")
-"""What of the girders' load the paper does not give."""
+"""Values of the girders' load that the paper does not give."""
 
 
 def references(impact: Impact, changed: Mapping[str, Value]) -> References:
-    """What is known of an impact that is computed with other values or sizes, by ``component.name``: nothing, if more than steps,
-    choices of the sand's model and what the paper does not give of deck and box are others."""
+    """Return what is known of an impact with other values or sizes.
+
+    Steps, choices of the sand's model and what the paper does not give of deck and box leave it
+    that impact; with anything else nothing is known.
+
+    Parameters
+    ----------
+    impact : Impact
+        The impact.
+    changed : mapping of str to Value
+        Values and sizes that differ, by ``component.name``.
+
+    Returns
+    -------
+    References
+        What is known, and why something is not compared.
+    """
     if others := [
         name for name in changed if name not in ASSUMED and (name in SAND or of_the_test(name))
     ]:
@@ -292,10 +423,20 @@ _SETTLED_RATIO = "settled transmitted force / settled force on the rock"
 
 
 def known_of(impact: Impact) -> dict[str, Known]:
-    """What the paper and the handbook give to compare with an impact, by the name of the figure.
+    """Return what paper and handbook give to compare with an impact.
 
-    The energy of table 6 was measured by the strain at midspan, gauges at zero before the test: eq. (7). The paper's analysis sums
-    up the springs: eqs (5), (6).
+    The energy of table 6 was measured by the strain at midspan, gauges at zero before the test: eq.
+    (7). The paper's analysis sums up the springs: eqs (5), (6).
+
+    Parameters
+    ----------
+    impact : Impact
+        The impact.
+
+    Returns
+    -------
+    dict of str to Known
+        By the name of the metric.
     """
     if not impact.span:
         force = Reference(

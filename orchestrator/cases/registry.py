@@ -1,4 +1,4 @@
-"""The ready-made cases by name: which components they need, in which sizes, and how the system is made from their FMUs."""
+"""The ready-made cases by name: their components, sizes, couplings and references."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -12,46 +12,63 @@ from rockshed.components.common.component import Component
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
-from ..core.system.system import System, Value
+from ..core.system.system import SystemSpec, Value
 from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test
-from .sand_models import Changes, Layer, Soil, changes, sand_model
+from .sand_models import Changes, SandLayer, Soil, changes, sand_model
 
-Sizes = Mapping[str, Mapping[str, int]]
-"""Sizes by component of the system: ``{"sand": {"discs": 370}}``. What is not named has its default."""
+ComponentSizes = Mapping[str, Mapping[str, int]]
+"""Sizes by component of the system: ``{"sand": {"discs": 370}}``."""
 
 
 @dataclass(frozen=True)
 class Case:
     """A ready-made system.
 
-    other_names: under which it is found too.
-    models: component of the system -> component of the catalogue that its FMU is built from.
-    sizes: what the FMUs are built with. one_size: sizes, ``component.size``, that are one number for all of them.
-    couplings: schemes of exchange by name, the default first, with a description.
-    make(fmus, sizes, coupling): the system; ``fmus`` are the files of the FMUs by component.
-    layer: the sand, for the models of it.
-    derived(system, sizes): values, by ``component.parameter``, that follow from others where they are not given.
-    references(changed): what others found, for a run with other values or sizes (by ``component.name``).
+    Attributes
+    ----------
+    name, summary : str
+        Name of the case, and its content in a line.
+    models : mapping of str to str
+        Component of the catalogue that the FMU of each component of the system is built from.
+    sizes : mapping of str to mapping of str to int
+        Sizes of the FMUs that differ from the defaults, by component.
+    couplings : mapping of str to str
+        Schemes of exchange by name, the default first, with a description.
+    make : callable
+        ``make(fmus, sizes, coupling)`` returns the system; ``fmus`` are the files of the FMUs by
+        component.
+    one_size : tuple of str
+        Sizes, ``component.size``, that are one number for all of them.
+    derived : callable
+        ``derived(system, sizes)`` returns values, by ``component.parameter``, that follow from
+        others where they are not given.
+    layer : SandLayer or None
+        The sand, for the models of it.
+    references : callable
+        ``references(changed)`` returns what others found, for a run with other values or sizes by
+        ``component.name``.
+    other_names : tuple of str
+        Further names of the case.
     """
 
     name: str
     summary: str
     models: Mapping[str, str]
-    sizes: Sizes
+    sizes: ComponentSizes
     couplings: Mapping[str, str]
-    make: Callable[[Mapping[str, str], Sizes, str], System]
+    make: Callable[[Mapping[str, str], ComponentSizes, str], SystemSpec]
     one_size: tuple[str, ...] = ()
-    derived: Callable[[System, Sizes], Mapping[str, Value]] = lambda system, sizes: {}
-    layer: Layer | None = None
+    derived: Callable[[SystemSpec, ComponentSizes], Mapping[str, Value]] = lambda system, sizes: {}
+    layer: SandLayer | None = None
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     other_names: tuple[str, ...] = ()
 
 
 @cache
 def cases() -> dict[str, Case]:
-    """All cases by name."""
+    """Return all cases by name, ``lab-impact`` first."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
     return {
@@ -68,10 +85,22 @@ def cases() -> dict[str, Case]:
 
 
 def case(name: str) -> Case:
-    """The case of this name.
+    """Return a case by one of its names.
 
-    Raises:
-        InputRefused: there is none.
+    Parameters
+    ----------
+    name : str
+        Name of the case.
+
+    Returns
+    -------
+    Case
+        The case.
+
+    Raises
+    ------
+    InputRefused
+        There is no such case.
     """
     found = next(
         (case for case in cases().values() if name in (case.name, *case.other_names)), None
@@ -82,10 +111,26 @@ def case(name: str) -> Case:
 
 
 def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -> Changes:
-    """What a model of the sand changes in a case; ``values`` by ``component.name`` may ask for another state of the soil.
+    """Return what is other in a case with a model of the sand.
 
-    Raises:
-        InputRefused: there is no such model, or the case has no sand.
+    Parameters
+    ----------
+    chosen : Case
+        The case.
+    name : str or None
+        Name of the model; None for the case as it is.
+    values : mapping of str to Value
+        Values by ``component.parameter`` that are asked for; those of the soil count.
+
+    Returns
+    -------
+    Changes
+        Values, sizes and keys of the system.
+
+    Raises
+    ------
+    InputRefused
+        There is no such model, or the case has no sand.
     """
     if name is None:
         return Changes()
@@ -109,7 +154,11 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
 
 
 def differences(
-    chosen: Case, base: System, given: Mapping[str, Value], sizes: Sizes, own: Sizes
+    chosen: Case,
+    base: SystemSpec,
+    given: Mapping[str, Value],
+    sizes: ComponentSizes,
+    own: ComponentSizes,
 ) -> dict[str, Value]:
     """Return what a run has other than its case.
 
@@ -117,7 +166,7 @@ def differences(
     ----------
     chosen : Case
         The case that is run.
-    base : System
+    base : SystemSpec
         The system of the case in the sizes of the run, before any value is changed.
     given : mapping of str to Value
         Values by ``component.parameter`` or name of a shared value, and keys of the system.
@@ -158,13 +207,13 @@ def references(chosen: Case, differing: Mapping[str, Value]) -> References:
     References
         What is known, and why something is not compared.
     """
-    keys = System.model_fields
+    keys = SystemSpec.model_fields
     return chosen.references({name: value for name, value in differing.items() if name not in keys})
 
 
-def _own_value(chosen: Case, system: System, name: str) -> Value | None:
+def _own_value(chosen: Case, system: SystemSpec, name: str) -> Value | None:
     """Return the value of a parameter or a shared value in a case; None if there is none."""
-    if name in System.model_fields:
+    if name in SystemSpec.model_fields:
         return cast(Value | None, getattr(system, name))
     for key, entry in system.shared.items():
         if name == key or name in entry.targets:
@@ -195,11 +244,11 @@ def _same(one: Value, other: Value | None) -> bool:
 
 
 def _laboratory(test: sonoda1993.Test) -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return sonoda1993.lab_system(
             fmus,
             test,
-            cast(sonoda1993.Coupling, coupling),
+            coupling,
             sizes["sand"]["discs"],
             sizes["beam"]["elements"],
         )
@@ -227,12 +276,13 @@ def _laboratory(test: sonoda1993.Test) -> Case:
 
 
 def _static_test() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return static_test.static_system(fmus, coupling, sizes["sand"]["discs"])
 
     return Case(
         static_test.NAME,
-        "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, rigid floor",
+        "Sonoda et al. 1993, static test: a disc of 9.9 cm pushed 4 cm into the sand at 1 cm/s, "
+        "rigid floor",
         models={"sand": "SandCushion", "rock": "FallingRock"},
         sizes={"sand": {"discs": static_test.DISCS, "elements": 1}},
         couplings={
@@ -246,12 +296,12 @@ def _static_test() -> Case:
 
 
 def _shed_on_piles() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return shed_on_piles.shed_system(
             fmus, sizes["sand"]["discs"], sizes["sand"]["elements"], sizes["rod_left"]["segments"]
         )
 
-    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+    def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
         with suppress(
             ValueError, ZeroDivisionError
         ):  # a value that is no number, or 0: its FMU says so
@@ -276,8 +326,8 @@ def _shed_on_piles() -> Case:
             **{f"rod_{side}": segments for side in shed_on_piles.SIDES},
         },
         couplings={
-            "impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the toes, exchange every "
-            "0.005 ms"
+            "impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the "
+            "toes, exchange every 0.005 ms"
         },
         make=make,
         one_size=("sand.elements", "beam.elements"),
@@ -287,10 +337,10 @@ def _shed_on_piles() -> Case:
 
 
 def _spt() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return spt.spt_system(fmus, coupling)
 
-    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+    def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
         with suppress(
             ValueError, ZeroDivisionError
         ):  # a value that is no number, or 0: its FMU says so
@@ -304,7 +354,8 @@ def _spt() -> Case:
         sizes={"rod": {"segments": spt.SEGMENTS}},
         couplings={
             "waves": "rod last, waves at head and toe, exchange every 0.1 ms",
-            "plain": "rod last, waves at the head, motion and held force at the toe, exchange every 0.01 ms",
+            "plain": "rod last, waves at the head, motion and held force at the toe, exchange "
+            "every 0.01 ms",
         },
         make=make,
         derived=derived,
@@ -317,8 +368,8 @@ _FULL_SCALE_COUPLINGS = {
 }
 
 
-def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
-    """The weight of the sand, under which a beam starts bent."""
+def _weight_on_beam(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
+    """Return the weight of the sand, under which a beam starts bent."""
     with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
         return (
             {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])}
@@ -329,11 +380,11 @@ def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return full_scale.full_scale_system(
             fmus,
             impact,
-            cast(full_scale.Coupling, coupling),
+            coupling,
             sizes["sand"]["discs"],
             sizes["sand"]["elements"],
         )
@@ -355,10 +406,10 @@ def _full_scale(impact: full_scale.Impact) -> Case:
 
 
 def _slope_to_cushion() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return slope_to_cushion.slope_system(
             fmus,
-            cast(full_scale.Coupling, coupling),
+            coupling,
             sizes["sand"]["discs"],
             sizes["sand"]["elements"],
         )

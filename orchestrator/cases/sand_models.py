@@ -1,4 +1,7 @@
-"""Models of the sand by name: what each sets in the sand cushion, and what it takes from the state of the soil in a case."""
+"""Models of the sand by name.
+
+A model sets parameters of the sand cushion, and takes from the case the state of the soil.
+"""
 
 import math
 from collections.abc import Mapping
@@ -20,20 +23,44 @@ LATTICE_SHIFT = 1e-3
 
 @dataclass(frozen=True)
 class Soil:
-    """State of the soil. cohesion: of the moist sand (Pa). solid_fraction: part of the layer that its discs fill."""
+    """State of a soil.
+
+    Attributes
+    ----------
+    cohesion : float
+        Of the moist sand (Pa).
+    solid_fraction : float
+        Part of the layer that its discs fill.
+    """
 
     cohesion: float
     solid_fraction: float
 
 
 @dataclass(frozen=True)
-class Layer:
-    """The layer of sand of a case and what meets it.
+class SandLayer:
+    """The layer of sand of a case, and the rock that meets it.
 
-    width, height: of the layer (m). disc_radius, rock_radius: (m). speed: of the rock at the surface, downwards (m/s). falling:
-    whether it speeds up on the way there. dropped: whether it starts above the layer, and does not come from a slope. on_beam:
-    whether the sand lies on a beam. duration: of the run (s). step: of the sand (s), where the case's own is longer than prepared
-    layers bear.
+    Attributes
+    ----------
+    width, height : float
+        Of the layer (m).
+    disc_radius, rock_radius : float
+        Radii (m).
+    speed : float
+        Of the rock at the surface, downwards (m/s).
+    soil : Soil
+        State of the soil.
+    duration : float
+        Duration of the run (s).
+    falling : bool
+        Whether the rock speeds up on its way to the surface.
+    dropped : bool
+        Whether the rock starts above the layer, and does not come from a slope.
+    on_beam : bool
+        Whether the sand lies on a beam.
+    step : float or None
+        Internal step of the sand (s), where the case's own is longer than prepared layers bear.
     """
 
     width: float
@@ -51,7 +78,17 @@ class Layer:
 
 @dataclass(frozen=True)
 class Changes:
-    """What a model changes in a case: values by ``component.name``, sizes by ``component.name``, keys of the system."""
+    """Whatever a case has other than as it is declared.
+
+    Attributes
+    ----------
+    values : mapping of str to Value
+        By ``component.parameter``.
+    sizes : mapping of str to int
+        By ``component.size``.
+    options : mapping of str to float
+        Keys of the system.
+    """
 
     values: Mapping[str, Value] = field(default_factory=dict)
     sizes: Mapping[str, int] = field(default_factory=dict)
@@ -59,16 +96,31 @@ class Changes:
 
 
 LOOSE, DENSE = 0.735, 0.75
-"""Solid fractions of discs (in the plane) that stand for sand as poured and compacted: calibrated with the same tests."""
+"""Solid fractions of discs (in the plane) for sand as poured and as compacted.
+
+Calibrated with the same tests.
+"""
 FULL_SCALE_SOIL = Soil(0.05 * _KGF_PER_CM2, DENSE)
-"""Nothing is known of the sand on rigid base and girders; taken as moist and compacted."""
+"""Soil on rigid base and girders, of which nothing is known: moist and compacted."""
 
 
 def sand_model(name: str) -> SandModel:
-    """The model of this name.
+    """Return a model by its name.
 
-    Raises:
-        InputRefused: there is none.
+    Parameters
+    ----------
+    name : str
+        ``calibrated``, ``literal`` or ``one-law``.
+
+    Returns
+    -------
+    SandModel
+        The model.
+
+    Raises
+    ------
+    InputRefused
+        There is no such model.
     """
     if name not in MODELS:
         raise InputRefused(
@@ -82,22 +134,62 @@ def sand_model(name: str) -> SandModel:
 
 
 @cache
-def discs_of(layer: Layer, solid_fraction: float) -> int:
-    """Number of discs of many sizes that fill the layer to ``solid_fraction``; the mean of r^2 is r^2 (1 + spread^2 / 3)."""
+def discs_of(layer: SandLayer, solid_fraction: float) -> int:
+    """Return the number of discs of many sizes that fill a layer.
+
+    The mean of r^2 is r^2 (1 + spread^2 / 3).
+
+    Parameters
+    ----------
+    layer : SandLayer
+        The layer.
+    solid_fraction : float
+        Part of it that the discs fill.
+
+    Returns
+    -------
+    int
+        Number of discs.
+    """
     area = math.pi * layer.disc_radius**2 * (1.0 + SPREAD**2 / 3.0)
     return round(solid_fraction * layer.width * layer.height / area)
 
 
 def model_values(name: str) -> dict[str, Value]:
-    """Return the values, by ``sand.parameter``, of a model that takes nothing from the soil."""
+    """Return the values of a model that takes nothing from the soil.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model.
+
+    Returns
+    -------
+    dict of str to Value
+        By ``sand.parameter``.
+    """
     return {f"sand.{key}": value for key, value in MODELS[name].parameters.items()}
 
 
-def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes:
-    """What a model changes in a case with this layer. soil: another state of the soil than the case's.
+def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Changes:
+    """Return what is other in a case with a model of the sand.
 
-    The surface of a prepared layer is uneven and known only when it has settled: the rock starts higher, and slower by what it
-    gains on the way.
+    The surface of a prepared layer is uneven and known only when it has settled: the rock starts
+    higher, and slower by what it gains on the way.
+
+    Parameters
+    ----------
+    model : SandModel
+        The model.
+    layer : SandLayer
+        The layer of the case.
+    soil : Soil, optional
+        Another state of the soil than the case's.
+
+    Returns
+    -------
+    Changes
+        Values, sizes and keys of the system.
     """
     values: dict[str, Value] = {f"sand.{name}": value for name, value in model.parameters.items()}
     if not model.prepared:

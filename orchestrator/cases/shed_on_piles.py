@@ -1,15 +1,17 @@
-"""A rock shed on piles: an impact on girders as in Sonoda et al., whose supports stand on two driven rods with ground under them.
+"""A rock shed on piles: an impact on girders whose supports stand on two driven rods in the ground.
 
-The paper's supports are rigid; piles and soil are assumed. Static weight: the girders start bent under their own weight and that of
-the sand, at rest. Each rod carries half of it at its head from the start on (``head.preload``), the ground under it that and the
-weight of the rod (``preload``): Smith's spring at the toe is compressed by it, the shaft carries nothing at rest. Rods and ground
-count displacements, waves and stresses from there, so gravity is 0 in them.
+The impact is that of Sonoda et al., whose supports are rigid; piles and soil are assumed. Static
+weight: the girders start bent under their own weight and that of the sand, at rest. Each rod
+carries half of it at its head from the start on (``head.preload``), the ground under it that and
+the weight of the rod (``preload``): Smith's spring at the toe is compressed by it, the shaft
+carries nothing at rest. Rods and ground count displacements, waves and stresses from there, so
+gravity is 0 in them.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..core.system.system import ComponentSpec, Connection, PowerBond, System, Value
+from ..core.system.system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from . import full_scale
 from .spt import toe_bond, toe_connections
 
@@ -17,15 +19,29 @@ NAME = "shed-on-piles"
 GIRDERS = "girders-8"
 SIDES = ("left", "right")
 EXCHANGE = 5e-6
-"""Exchange step (s), a fifth of the limit Z/k of a rod under the end of the girders. The sand takes it too, with the
-impulse-conserving scheme: a longer step of its own would show its forces late, which costs 1.6 % of the impact energy at 0.2 ms."""
+"""Exchange step (s), a fifth of the limit Z/k of a rod under the end of the girders.
+
+The sand takes it too, with the impulse-conserving scheme: a longer step of its own would show its
+forces late, which costs 1.6 % of the impact energy at 0.2 ms.
+"""
 
 
 @dataclass(frozen=True)
 class Pile:
-    """A concrete pile of 50 cm: length (m), area (m2), wave speed (m/s), density (kg/m3); soil in N, m, s/m.
+    """A concrete pile of 50 cm in its soil.
 
-    segments: of the travel time of an exchange step each.
+    Attributes
+    ----------
+    length, area : float
+        Of the rod (m, m2).
+    speed, density : float
+        Wave speed and density of the rod (m/s, kg/m3).
+    shaft, toe : float
+        Resistances of the soil (N).
+    quake : float
+        Of shaft and toe (m).
+    shaft_damping, toe_damping : float
+        Smith's damping (s/m).
     """
 
     length: float = 10.0
@@ -40,12 +56,12 @@ class Pile:
 
     @property
     def segments(self) -> int:
-        """Number of segments."""
+        """Number of segments, of the travel time of an exchange step each."""
         return round(self.length / self.speed / EXCHANGE)
 
     @property
     def weight(self) -> float:
-        """Of the rod (N)."""
+        """Weight of the rod (N), without the soil."""
         return self.length * self.area * self.density * full_scale.GRAVITY
 
 
@@ -54,76 +70,90 @@ PILE = Pile()
 
 def shed_system(
     fmus: Mapping[str, str], discs: int, elements: int, segments: int = PILE.segments
-) -> System:
-    """The shed as a co-simulation of ``sand``, ``rock``, ``beam``, and ``rod_left``, ``ground_left``, ``rod_right``,
-    ``ground_right``; the rods come last. Sizes are those that the FMUs were built with.
+) -> SystemSpec:
+    """Return the shed as a co-simulation of impact, two rods and the ground under each.
+
+    The components are ``sand``, ``rock``, ``beam``, ``rod_left``, ``ground_left``, ``rod_right``
+    and ``ground_right``; the rods come last.
+
+    Parameters
+    ----------
+    fmus : mapping of str to str
+        Files of the FMUs by component.
+    discs, elements, segments : int
+        Sizes that sand, beam and rods were built with.
+
+    Returns
+    -------
+    SystemSpec
+        The co-simulation.
     """
     base = full_scale.full_scale_system(
         fmus, full_scale.impacts()[GIRDERS], "impulse", discs, elements
     )
     components = dict(base.components)
-    connections, bonds = list(base.connections), dict(base.bonds)
+    connections = list(base.connections)
+    bonds = dict(base.bonds)
     for number, side in enumerate(SIDES, 1):
-        rod, ground = f"rod_{side}", f"ground_{side}"
+        rod = f"rod_{side}"
+        ground = f"ground_{side}"
         components[rod] = ComponentSpec(fmu=fmus[rod], parameters=_rod(segments))
-        components[ground] = ComponentSpec(
-            fmu=fmus[ground],
-            parameters={
-                "port": "wave",
-                "law": "smith",
-                "ultimate_resistance": PILE.toe,
-                "quake": PILE.quake,
-                "damping": PILE.toe_damping,
-                "internal_step": EXCHANGE,
-            },
-        )
+        components[ground] = ComponentSpec(fmu=fmus[ground], parameters=_ground())
         connections += [*support_connections("beam", number, rod), *toe_connections(rod, ground)]
-        bonds[f"beam_{rod}"] = PowerBond(
-            giver="beam",
-            force=[f"support.mean_force.y[{number}]"],
-            taker=rod,
-            position=["head.position"],
-            work=f"support.work[{number}]",
-        )
+        bonds[f"beam_{rod}"] = _support_bond("beam", number, rod)
         bonds[f"{ground}_{rod}"] = toe_bond(rod, ground)
-    order = [
-        "sand",
-        "rock",
-        "beam",
-        *(f"ground_{side}" for side in SIDES),
-        *(f"rod_{side}" for side in SIDES),
-    ]
+    grounds = [f"ground_{side}" for side in SIDES]
+    rods = [f"rod_{side}" for side in SIDES]
+    recorded = [f"{rod}.{part}.*" for rod in rods for part in ("head", "toe", "energy", "stress")]
     return base.model_copy(
         update={
             "name": NAME,
-            "description": "1 tf from 10 m on 90 cm of crushed sand on girders of 8 m that stand on two piles",
+            "description": "1 tf from 10 m on 90 cm of crushed sand on girders of 8 m that stand "
+            "on two piles",
             "components": components,
             "connections": connections,
             "bonds": bonds,
-            "order": order,
+            "order": ["sand", "rock", "beam", *grounds, *rods],
             "exchange_step": EXCHANGE,
-            "record": [
-                "sand.*",
-                "rock.*",
-                "beam.*",
-                *(f"ground_{side}.*" for side in SIDES),
-                *(
-                    f"rod_{side}.{what}.*"
-                    for side in SIDES
-                    for what in ("head", "toe", "energy", "stress")
-                ),
-            ],
+            "record": [f"{name}.*" for name in ("sand", "rock", "beam", *grounds)] + recorded,
             "watch": [
                 *base.watch,
-                *(f"rod_{side}.head.contact_force" for side in SIDES),
-                *(f"ground_{side}.settlement" for side in SIDES),
+                *(f"{rod}.head.contact_force" for rod in rods),
+                *(f"{ground}.settlement" for ground in grounds),
             ],
         }
     )
 
 
+def _support_bond(beam: str, number: int, rod: str) -> PowerBond:
+    """Return the interface of a support of a beam with the head of a rod."""
+    return PowerBond(
+        giver=beam,
+        force=[f"support.mean_force.y[{number}]"],
+        taker=rod,
+        position=["head.position"],
+        work=f"support.work[{number}]",
+    )
+
+
+def _ground() -> dict[str, Value]:
+    """Return the parameters of the ground under a rod."""
+    return {
+        "port": "wave",
+        "law": "smith",
+        "ultimate_resistance": PILE.toe,
+        "quake": PILE.quake,
+        "damping": PILE.toe_damping,
+        "internal_step": EXCHANGE,
+    }
+
+
 def _rod(segments: int) -> dict[str, Value]:
-    """Parameters of a rod. The last segment has no shaft resistance: the toe's port of waves needs one that reflects nothing."""
+    """Return the parameters of a rod.
+
+    The last segment has no shaft resistance: the toe's port of waves needs one that reflects
+    nothing.
+    """
     return {
         "section.length[1]": PILE.length,
         "section.area[1]": PILE.area,
@@ -141,7 +171,20 @@ def _rod(segments: int) -> dict[str, Value]:
 
 
 def support_connections(beam: str, number: int, rod: str) -> list[Connection]:
-    """A support of a beam on the head of a rod that counts upwards."""
+    """Return the connections of a support of a beam with the head of a rod that counts upwards.
+
+    Parameters
+    ----------
+    beam, rod : str
+        Names of the components.
+    number : int
+        Of the support, from 1.
+
+    Returns
+    -------
+    list of Connection
+        Mean force to the rod, motion to the beam.
+    """
     return [
         Connection(source=f"{beam}.support.mean_force.y[{number}]", target=f"{rod}.head.force"),
         Connection(source=f"{rod}.head.position", target=f"{beam}.support.position.y[{number}]"),
@@ -149,8 +192,23 @@ def support_connections(beam: str, number: int, rod: str) -> list[Connection]:
     ]
 
 
-def derived(system: System, discs: int, elements: int) -> dict[str, Value]:
-    """The weights at rest, and the stiffness of the girders' end that the rods must know for their limit, 4 EI/R3."""
+def derived(system: SystemSpec, discs: int, elements: int) -> dict[str, Value]:
+    """Return the weights at rest, and the stiffness of the girders' end, 4 EI/R3.
+
+    The rods must know that stiffness for their limit.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        The shed.
+    discs, elements : int
+        Sizes of sand and beam.
+
+    Returns
+    -------
+    dict of str to Value
+        By ``component.parameter``.
+    """
     beam = system.components["beam"].parameters
     cushion = float(beam.get("cushion.weight", full_scale.cushion_weight(system, discs)))
     span, density = float(beam["span"]), float(beam.get("density", 7850.0))

@@ -1,7 +1,9 @@
-"""A rock from its slope onto the cushion of a rock shed: ``examples/shed.toml`` above the girders of Sonoda et al. (1993).
+"""A rock from its slope onto the cushion of a rock shed.
 
-The rock is a trial of the campaign over that slope: of the rocks that land on the cushion the one at the 95th percentile of the
-kinetic energy. It comes in obliquely, over the side wall, is handed over above the sand, and may bounce and go on along the slope.
+The slope is ``examples/shed.toml``, above the girders of Sonoda et al. (1993). The rock is a trial
+of the campaign over that slope: of the rocks that land on the cushion the one at the 95th
+percentile of the kinetic energy. It comes in obliquely, over the side wall, is handed over above
+the sand, and may bounce and go on along the slope.
 """
 
 import tomllib
@@ -13,14 +15,17 @@ from rockshed.components.common.component import Instance
 from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
-from ..core.system.system import ComponentSpec, System, Value
+from ..core.system.system import ComponentSpec, SystemSpec, Value
 from ..sites.rockfall.preparation import prepare
-from .full_scale import GIRDER_DEPTH, Coupling, Impact, full_scale_system, layer
-from .sand_models import Layer
+from .full_scale import GIRDER_THICKNESS, Impact, full_scale_system, layer
+from .sand_models import SandLayer
 
 SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
 LINE, SHARE = "cushion", 0.95
-"""Search line of the site that the rocks pass as they land on the cushion, and the percentile of their kinetic energy there."""
+"""Search line that the rocks pass as they land on the cushion, and the percentile there.
+
+The percentile is that of their kinetic energy.
+"""
 TRIAL = 7649
 """The trial at this percentile in the site's 10,000; a test finds it again."""
 
@@ -29,17 +34,28 @@ IMPACT = Impact(
     "95th-percentile rock of a 35 m slope on 90 cm of crushed sand on H-300x400 girders of 10 m",
     100.0 * kgf / cm2,
     10.0,
-    GIRDER_DEPTH,
+    GIRDER_THICKNESS,
     0.6,
     10.0,
 )
-"""The girders of the case ``girders-10`` with sand on their whole length, as on a roof; the rock is that of the site."""
-# A roof is flat: the sand lies on the surface of the beam, and not between its discs, where it chatters.
+"""The girders of the case ``girders-10`` with sand on their whole length, as on a roof.
+
+The rock is that of the site. A roof is flat: the sand lies on the surface of the beam, and not
+between its discs, where it chatters.
+"""
 WALL_HEIGHT, WALL_THICKNESS = 89 * cm, 50 * cm
-"""A little lower than the ground on the uphill side, which does not touch it; as wide as rocks need that are on their way off."""
+"""Height and thickness (m) of the walls of the roof.
+
+A little lower than the ground on the uphill side, which does not touch the wall; as wide as rocks
+need that are on their way off.
+"""
 BEAM_DAMPING = 5e-6
-"""Rayleigh damping of the beam's stiffness (s): less than 0.01 % of critical for its first mode, tens of percent for its fastest,
-which would grow without any, for the contact forces on the beam are held over an exchange (4 % of the impact energy after 1 s)."""
+"""Rayleigh damping of the beam's stiffness (s).
+
+Less than 0.01 % of critical for its first mode, tens of percent for its fastest, which would grow
+without any, for the contact forces on the beam are held over an exchange (4 % of the impact energy
+after 1 s).
+"""
 LEAD_TIME = 5e-3
 """Time (s) from the start to the hand-over."""
 _MARGIN = 5 * cm
@@ -47,19 +63,33 @@ _MARGIN = 5 * cm
 
 @cache
 def cells() -> int:
-    """Number of cells of the site's slope; each begins at a node that names its material."""
+    """Return the number of cells of the site's slope.
+
+    Each begins at a node that names its material.
+    """
     with SITE.open("rb") as file:
         return len(tomllib.load(file)["profile"]["points"]) - 1
 
 
 @cache
 def _site() -> Instance:
-    """The site as an initialised component, as its campaign has it."""
+    """Return the site as an initialised component, as its campaign has it."""
     return prepare(SITE).instance
 
 
 def site_parameters(instance: Instance) -> dict[str, Value]:
-    """Every parameter of a slope that differs from its start value, as the FMU takes it."""
+    """Return every parameter of a slope that differs from its start value, as the FMU takes it.
+
+    Parameters
+    ----------
+    instance : Instance
+        A slope with all values set.
+
+    Returns
+    -------
+    dict of str to Value
+        By the name of the parameter.
+    """
     found: dict[str, Value] = {}
     names = iter(instance.references.items())
     for variable in instance.component.layout.ordered:
@@ -76,8 +106,21 @@ def site_parameters(instance: Instance) -> dict[str, Value]:
 
 
 def receiver(radius: float) -> dict[str, Value]:
-    """The box in which the rock is handed over, for a rock of this radius (m): between the outer faces of the walls, and on the
-    downhill side until the rock has fallen clear of them; its upper side is the search line."""
+    """Return the box in which the rock is handed over.
+
+    It reaches between the outer faces of the walls, and on the downhill side until the rock has
+    fallen clear of them; its upper side is the search line.
+
+    Parameters
+    ----------
+    radius : float
+        Of the rock (m).
+
+    Returns
+    -------
+    dict of str to Value
+        By the name of the parameter of the slope.
+    """
     with SITE.open("rb") as file:
         line = next(entry for entry in tomllib.load(file)["line"] if entry["name"] == LINE)
     return {
@@ -91,13 +134,27 @@ def receiver(radius: float) -> dict[str, Value]:
 
 def slope_system(
     fmus: Mapping[str, str],
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int | None = None,
-) -> System:
-    """Slope, sand and girders as a co-simulation of FMUs. The origin is the left support, below the surface of the beam.
+) -> SystemSpec:
+    """Return slope, sand and girders as a co-simulation.
 
-    discs, elements: sizes that ``sand`` and ``beam`` were built with, by default those of the impact.
+    The origin is the left support, below the surface of the beam.
+
+    Parameters
+    ----------
+    fmus : mapping of str to str
+        Files of the FMUs by component.
+    coupling : str
+        ``paper`` or ``impulse``.
+    discs, elements : int, optional
+        Sizes that ``sand`` and ``beam`` were built with, by default those of the impact.
+
+    Returns
+    -------
+    SystemSpec
+        The co-simulation.
     """
     system = full_scale_system(fmus, IMPACT, coupling, discs, elements)
     site, sand, beam = _site(), system.components["sand"], system.components["beam"]
@@ -140,6 +197,6 @@ def slope_system(
     )
 
 
-def sand_layer() -> Layer:
-    """The sand, for the models of it."""
+def sand_layer() -> SandLayer:
+    """Return the sand of the roof, for the models of it."""
     return layer(IMPACT, dropped=False)

@@ -1,4 +1,7 @@
-"""The laboratory of Sonoda et al. (1993), sec. 2 and 4 (2): data of the tests and the system that computes one of them."""
+"""The laboratory of Sonoda et al. (1993), sec. 2 and 4 (2).
+
+Data of the tests, and the system that computes one of them.
+"""
 
 import csv
 import math
@@ -7,7 +10,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Literal
 
 from rockshed.components.common.units import cm, kgf, mm
 
@@ -18,11 +20,11 @@ from ..core.system.system import (
     EnergyAlarm,
     PowerBond,
     SharedValue,
-    System,
+    SystemSpec,
     Value,
 )
 from ..references import Known, Reference, References
-from .sand_models import DENSE, LOOSE, Layer, Soil
+from .sand_models import DENSE, LOOSE, SandLayer, Soil
 
 _DATA = Path(__file__).parent / "data"
 
@@ -35,15 +37,16 @@ _BEAM_ENERGY = "peak beam energy from the midspan strain"
 STATIC_RATIO = 1.29
 """k (kgf/cm) / E_bar (kgf/cm2) of table 4; gives E_bar for the tests that table 4 leaves out."""
 
-Coupling = Literal["paper", "impulse", "jacobi"]
-"""paper: sand first, inputs held, exchange 1e-5 s. impulse: sand first, kinematics extrapolated, mean forces, 1e-4 s.
-jacobi: all at once, inputs held, 1e-4 s."""
-
 _COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "paper": ("sequential", 1e-5, "held", "last"),
     "impulse": ("sequential", 1e-4, "linear", "mean"),
     "jacobi": ("jacobi", 1e-4, "held", "last"),
 }
+"""Master, exchange step (s), kinematics and forces of the sand by scheme of exchange.
+
+paper: sand first, inputs held, exchange 1e-5 s. impulse: sand first, kinematics extrapolated, mean
+forces, 1e-4 s. jacobi: all at once, inputs held, 1e-4 s.
+"""
 
 
 @dataclass(frozen=True)
@@ -77,14 +80,25 @@ class Test:
 
 
 def printed_rows(table: str) -> list[dict[str, str]]:
-    """Rows of a table of the paper, as printed, or of the soil."""
+    """Return the rows of a table of the paper, or of the soil.
+
+    Parameters
+    ----------
+    table : str
+        ``table1``, ``table2``, ``table4``, ``table5``, ``table6`` or ``soil``.
+
+    Returns
+    -------
+    list of dict of str to str
+        Cells as printed, by the title of the column.
+    """
     lines = (_DATA / f"sonoda1993_{table}.csv").read_text(encoding="utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
 @cache
 def tests() -> dict[int, Test]:
-    """The sixteen tests of table 2 by number."""
+    """Return the sixteen tests of table 2 by number."""
     printed = {int(row["no"]): float(row["e_bar_kgf_per_cm2"]) for row in printed_rows("table4")}
     found = {}
     for row in printed_rows("table2"):
@@ -118,7 +132,7 @@ class Sand:
 
 @cache
 def sands() -> dict[str, Sand]:
-    """The two sands of table 1 by their letter."""
+    """Return the two sands of table 1 by their letter."""
     return {
         row["sand"]: Sand(
             row["name"],
@@ -146,7 +160,7 @@ class TableFiveRow:
 
 @cache
 def table_5() -> list[TableFiveRow]:
-    """Influence of the damping constant h, computed in the paper."""
+    """Return the rows of table 5: the influence of the damping constant h, as computed."""
     return [
         TableFiveRow(
             float(r["e_bar_kgf_per_cm2"]) * kgf / cm**2,
@@ -179,64 +193,95 @@ LOAD_CELL = 1000.0
 DEFAULT_TEST = 4
 """The test that fig. 17 shows, and ``lab-impact`` computes."""
 BEAM_ENERGY = {4: 13 * kgf * cm, 10: 40 * kgf * cm}
-"""Peak energy of the beam measured by its strain (J), read from figs 17 and 18; the tests that these do not show are missing."""
+"""Peak energy of the beam measured by its strain (J), read from figs 17 and 18, by test.
+
+The tests that these do not show are missing.
+"""
 
 
 def case_name(test: int) -> str:
-    """Name of the case of a test of table 2."""
+    """Return the name of the case of a test of table 2.
+
+    Parameters
+    ----------
+    test : int
+        Number of the test.
+
+    Returns
+    -------
+    str
+        Name of the case.
+    """
     return "lab-impact" if test == DEFAULT_TEST else f"lab-impact-{test}"
 
 
 def discs_across(box: int) -> int:
-    """Number of sand discs of 1 cm side by side."""
+    """Return the number of sand discs of 1 cm side by side.
+
+    Parameters
+    ----------
+    box : int
+        Number of the sand box, 1 or 2.
+
+    Returns
+    -------
+    int
+        Number of discs.
+    """
     return round(BOX_WIDTH[box] / (2 * DISC_RADIUS))
 
 
 def discs_in(box: int) -> int:
-    """Number of sand discs of 1 cm in a layer of 10 cm (370 in box 1, as in the paper)."""
+    """Return the number of sand discs of 1 cm in a layer of 10 cm: 370 in box 1, as in the paper.
+
+    Parameters
+    ----------
+    box : int
+        Number of the sand box, 1 or 2.
+
+    Returns
+    -------
+    int
+        Number of discs.
+    """
     return discs_across(box) * round(LAYER / (2 * DISC_RADIUS))
 
 
 def lab_system(
     fmus: Mapping[str, str],
     test: Test,
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int = ELEMENTS,
-) -> System:
-    """The laboratory impact of fig. 14 as a co-simulation of three FMUs.
+) -> SystemSpec:
+    """Return the laboratory impact of fig. 14 as a co-simulation of rock, sand and beam.
 
-    fmus: files of the FMUs ``rock``, ``sand`` and ``beam``.
-    discs, elements: sizes that ``sand`` and ``beam`` were built with, by default :func:`discs_in` and 24; the rock starts above
-        the layer that so many discs make, and the beam's discs share the span.
+    Parameters
+    ----------
+    fmus : mapping of str to str
+        Files of the FMUs by component.
+    test : Test
+        The test.
+    coupling : str
+        ``paper``, ``impulse`` or ``jacobi``.
+    discs, elements : int, optional
+        Sizes that sand and beam were built with, by default :func:`discs_in` and 24; the rock
+        starts above the layer that so many discs make, and the beam's discs share the span.
+
+    Returns
+    -------
+    SystemSpec
+        The co-simulation.
     """
     master, exchange, kinematics, forces = _COUPLINGS[coupling]
-    width, spacing = BOX_WIDTH[test.box], SPAN / elements
-    rows = math.ceil((discs or discs_in(test.box)) / discs_across(test.box))
-    return System(
+    spacing = SPAN / elements
+    return SystemSpec(
         name=case_name(test.number),
-        description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand on an H-100x50x7 beam of 120 cm"
-        f"; {test.state}",
+        description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand "
+        f"on an H-100x50x7 beam of 120 cm; {test.state}",
         components={
-            "sand": ComponentSpec(
-                fmu=fmus["sand"],
-                record_states=True,
-                parameters={
-                    "modulus": test.modulus,
-                    "box.left": 0.5 * (SPAN - width),
-                    "box.width": width,
-                    "kinematics": kinematics,
-                    "forces": forces,
-                },
-            ),
-            "rock": ComponentSpec(
-                fmu=fmus["rock"],
-                parameters={
-                    "position0.x": 0.5 * SPAN,
-                    "position0.y": rows * 2 * DISC_RADIUS + BALL_RADIUS + _GAP,
-                    "velocity0.y": -BALL_SPEED,
-                },
-            ),
+            "sand": _sand(fmus["sand"], test, kinematics, forces),
+            "rock": _ball(fmus["rock"], test, discs or discs_in(test.box)),
             "beam": ComponentSpec(
                 fmu=fmus["beam"], parameters={"span": SPAN, "axis.y": -0.5 * spacing}
             ),
@@ -257,20 +302,57 @@ def lab_system(
         exchange_step=exchange,
         output_interval=1e-4,
         state_interval=5e-4,
-        watch=[
-            "sand.transmitted_force",
-            "sand.rock.force.y",
-            "sand.penetration",
-            "beam.midspan.deflection",
-            "beam.energy.elastic",
-            "beam.energy.strain_estimate",
-        ],
+        watch=list(_WATCHED),
     )
 
 
-def layer(test: Test) -> Layer:
-    """The sand of a test, for the models of it."""
-    return Layer(
+_WATCHED = (
+    "sand.transmitted_force",
+    "sand.rock.force.y",
+    "sand.penetration",
+    "beam.midspan.deflection",
+    "beam.energy.elastic",
+    "beam.energy.strain_estimate",
+)
+
+
+def _sand(fmu: str, test: Test, kinematics: str, forces: str) -> ComponentSpec:
+    width = BOX_WIDTH[test.box]
+    parameters: dict[str, Value] = {
+        "modulus": test.modulus,
+        "box.left": 0.5 * (SPAN - width),
+        "box.width": width,
+        "kinematics": kinematics,
+        "forces": forces,
+    }
+    return ComponentSpec(fmu=fmu, record_states=True, parameters=parameters)
+
+
+def _ball(fmu: str, test: Test, discs: int) -> ComponentSpec:
+    """Return the ball above the layer that so many discs make on a square lattice."""
+    rows = math.ceil(discs / discs_across(test.box))
+    parameters: dict[str, Value] = {
+        "position0.x": 0.5 * SPAN,
+        "position0.y": rows * 2 * DISC_RADIUS + BALL_RADIUS + _GAP,
+        "velocity0.y": -BALL_SPEED,
+    }
+    return ComponentSpec(fmu=fmu, parameters=parameters)
+
+
+def layer(test: Test) -> SandLayer:
+    """Return the sand of a test, for the models of it.
+
+    Parameters
+    ----------
+    test : Test
+        The test.
+
+    Returns
+    -------
+    SandLayer
+        The layer.
+    """
+    return SandLayer(
         BOX_WIDTH[test.box],
         LAYER,
         DISC_RADIUS,
@@ -283,13 +365,24 @@ def layer(test: Test) -> Layer:
 
 
 def soil(test: Test) -> Soil:
-    """State of a test's soil: solid fraction from the compaction, cohesion from the static spring constant."""
+    """Return the state of a test's soil.
+
+    Parameters
+    ----------
+    test : Test
+        The test.
+
+    Returns
+    -------
+    Soil
+        Solid fraction from the compaction, cohesion from the static spring constant.
+    """
     return Soil(_cohesions()[test.number], DENSE if test.compaction else LOOSE)
 
 
 @cache
 def _cohesions() -> dict[int, float]:
-    """Cohesion (Pa) by the number of the test."""
+    """Return the cohesion (Pa) by the number of the test."""
     return {
         int(row["no"]): float(row["cohesion_kgf_per_cm2"]) * kgf / cm**2
         for row in printed_rows("soil")
@@ -301,7 +394,18 @@ _FORCES = ("force.x", "force.y", "torque")
 
 
 def impact_connections(partners: Iterable[str]) -> list[Connection]:
-    """Kinematics of ``partners``, of rock and beam, to the sand; contact forces back."""
+    """Return the connections of a sand cushion: kinematics to the sand, contact forces back.
+
+    Parameters
+    ----------
+    partners : iterable of str
+        ``rock`` and ``beam``, or one of them.
+
+    Returns
+    -------
+    list of Connection
+        For all discs of a beam.
+    """
     ends = [(name, "[*]" if name == "beam" else "") for name in partners]
     return [
         Connection(source=f"{name}.{q}{all_}", target=f"sand.{name}.{q}{all_}")
@@ -315,7 +419,18 @@ def impact_connections(partners: Iterable[str]) -> list[Connection]:
 
 
 def impact_bonds(partners: Iterable[str]) -> dict[str, PowerBond]:
-    """The interfaces of the cushion with ``partners``, of rock and beam."""
+    """Return the interfaces of a sand cushion.
+
+    Parameters
+    ----------
+    partners : iterable of str
+        ``rock`` and ``beam``, or one of them.
+
+    Returns
+    -------
+    dict of str to PowerBond
+        By name, ``sand_rock`` and ``sand_beam``.
+    """
     return {
         f"sand_{name}": PowerBond(
             giver="sand",
@@ -329,7 +444,18 @@ def impact_bonds(partners: Iterable[str]) -> dict[str, PowerBond]:
 
 
 def known_of(test: Test) -> dict[str, Known]:
-    """What the paper gives to compare with the computation of a test, by the name of the figure."""
+    """Return what the paper gives to compare with the computation of a test.
+
+    Parameters
+    ----------
+    test : Test
+        The test.
+
+    Returns
+    -------
+    dict of str to Known
+        By the name of the metric.
+    """
     measured, computed = BEAM_ENERGY.get(test.number), _analysis(test.modulus, _DAMPING)
     return {
         _PEAK: Known(computed[_PEAK].paper, Reference(test.peak_force)),
@@ -342,20 +468,35 @@ def known_of(test: Test) -> dict[str, Known]:
 
 
 SAND = ("sand.modulus", "sand.damping")
-"""What the paper varies in table 5 for the system of the tests."""
+"""Parameters that the paper varies in table 5 for the system of the tests."""
 _TESTED = ("box.", "rock.", "beam.", "base.y", "thickness", "disc.radius", "density", "gravity")
-"""Beginnings of the sand's parameters that describe the test; those of :data:`_SUPPORT` are whole names. The others are choices
-of the model."""
+"""Beginnings of the sand's parameters that describe the test.
+
+Those of :data:`_SUPPORT` are whole names. The others are choices of the model.
+"""
 _SUPPORT = ("base", "walls")
 _READINGS = ("beam.disc_mass", "density_of")
 """Parameters that read the paper in another way, whatever they begin with."""
 
 
 def references(test: Test, changed: Mapping[str, Value]) -> References:
-    """What is known of a test that is computed with other values or sizes, by ``component.name``.
+    """Return what is known of a test that is computed with other values or sizes.
 
-    Steps and choices of the sand's model leave it that test. Another sand is no longer the experiment's, but in table 5 if its
-    damping constant is. With anything else another system is computed.
+    Steps and choices of the sand's model leave it that test. Another sand is no longer the
+    experiment's, but in table 5 if its damping constant is. With anything else another system is
+    computed.
+
+    Parameters
+    ----------
+    test : Test
+        The test.
+    changed : mapping of str to Value
+        Values and sizes that differ, by ``component.name``.
+
+    Returns
+    -------
+    References
+        What is known, and why something is not compared.
     """
     if others := [name for name in changed if of_the_test(name)]:
         return References(remarks=[f"not compared: {differs(others)}"])
@@ -380,7 +521,18 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
 
 
 def of_the_test(name: str) -> bool:
-    """Whether a value, by ``component.name``, belongs to what was tested: not to the steps or the sand's model."""
+    """Tell whether a value belongs to what was tested: not to the steps or the sand's model.
+
+    Parameters
+    ----------
+    name : str
+        ``component.name``.
+
+    Returns
+    -------
+    bool
+        Whether another one makes another test.
+    """
     owner, _, port = name.partition(".")
     if port in ("internal_step", *_READINGS) or name in SAND:
         return False
@@ -388,12 +540,23 @@ def of_the_test(name: str) -> bool:
 
 
 def differs(names: Sequence[str]) -> str:
-    """The names, in a sentence."""
+    """Say that values differ from the test.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Their names.
+
+    Returns
+    -------
+    str
+        Part of a sentence.
+    """
     return f"{', '.join(names)} {'differs' if len(names) == 1 else 'differ'} from the test"
 
 
 def _analysis(modulus: float, damping: float) -> dict[str, Known]:
-    """What the paper computed, or would have."""
+    """Return what the paper computed, or would have, by the name of the metric."""
     return {
         _PEAK: Known(_trend(modulus, damping, lambda row: row.peak_force)),
         _PENETRATION: Known(_trend(modulus, damping, lambda row: row.penetration)),
@@ -401,7 +564,10 @@ def _analysis(modulus: float, damping: float) -> dict[str, Known]:
 
 
 def _trend(modulus: float, damping: float, value: Callable[[TableFiveRow], float]) -> Reference:
-    """The paper's own result; for a modulus that is not in table 5, from a power law through the two nearest rows."""
+    """Return the paper's own result for a modulus (Pa) and a damping constant.
+
+    For a modulus that is not in table 5, from a power law through the two nearest rows.
+    """
     rows = sorted((row for row in table_5() if row.damping == damping), key=lambda row: row.modulus)
     if (
         printed := next(

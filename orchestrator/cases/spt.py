@@ -1,84 +1,71 @@
 """The standard penetration test of Uto et al., table 1: hammer, rod and ground as three FMUs.
 
-A ram of 63.5 kg falls 75 cm on a rod. The length of the rod is not in the table: 10.24 m, in which a wave travels for 2 ms. The
-ground under the sampler is Smith's, with a resistance of 20 kN, which is assumed, and Smith's quake and damping.
+A ram of 63.5 kg falls 75 cm on a rod. The length of the rod is not in the table: 10.24 m, in which
+a wave travels for 2 ms. The ground under the sampler is Smith's, with a resistance of 20 kN, which
+is assumed, and Smith's quake and damping.
 """
 
 from collections.abc import Mapping
-from typing import Literal
 
 from rockshed.components.common.units import cm, cm2, mm
 
-from ..core.system.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, System, Value
+from ..core.system.system import (
+    ComponentSpec,
+    Connection,
+    EnergyAlarm,
+    PowerBond,
+    SystemSpec,
+    Value,
+)
 
 NAME = "spt"
-Coupling = Literal["waves", "plain"]
 COUPLINGS: Mapping[str, tuple[str, float]] = {
     "waves": ("waves", 1e-4),
     "plain": ("kinematics", 1e-5),
 }
-"""Kind of the toe's port and exchange step (s). The hammer, rigid and without cushion, needs waves in both."""
+"""Kind of the toe's port and exchange step (s) by coupling.
+
+The hammer, rigid and without cushion, needs waves in both.
+"""
 
 MASS, DROP = 63.5, 75 * cm
 AREA, DENSITY, SPEED = 5.8 * cm2, 7850.0, 5120.0
 LENGTH = 2e-3 * SPEED
 SEGMENTS = 200
-"""Of 0.01 ms travel time, a tenth of the exchange step."""
+"""Segments of the rod, of 0.01 ms travel time each: a tenth of the exchange step."""
 RESISTANCE, QUAKE, DAMPING = 20e3, 2.5 * mm, 0.5
 STOP = 0.03
 
 
-def spt_system(
-    fmus: Mapping[str, str], coupling: str = "waves", segments: int = SEGMENTS
-) -> System:
-    """The test as a co-simulation of ``hammer``, ``ground`` and ``rod``, in this order: the rod comes last, so that it makes a step
-    with the forces that its partners had in it.
+def spt_system(fmus: Mapping[str, str], coupling: str = "waves") -> SystemSpec:
+    """Return the test as a co-simulation of ``hammer``, ``ground`` and ``rod``.
 
-    Displacements, velocities and forces at head and toe count downwards and in compression. segments: those that ``rod`` was built
-    with.
+    The rod comes last, so that it makes a step with the forces that its partners had in it.
+    Displacements, velocities and forces at head and toe count downwards and in compression.
+
+    Parameters
+    ----------
+    fmus : mapping of str to str
+        Files of the FMUs by component.
+    coupling : str
+        Key of :data:`COUPLINGS`.
+
+    Returns
+    -------
+    SystemSpec
+        The co-simulation.
     """
     port, exchange = COUPLINGS[coupling]
-    sections = ("length", "area", "modulus", "density")
-    values = (LENGTH, AREA, DENSITY * SPEED**2, DENSITY)
-    return System(
+    return SystemSpec(
         name=NAME,
-        description="standard penetration test, 63.5 kg from 75 cm on a rod of 10.24 m (Uto et al., table 1)",
+        description="standard penetration test, 63.5 kg from 75 cm on a rod of 10.24 m "
+        "(Uto et al., table 1)",
         master="sequential",
         order=["hammer", "ground", "rod"],
         components={
-            "hammer": ComponentSpec(
-                fmu=fmus["hammer"],
-                parameters={
-                    "mass": MASS,
-                    "drop_height": DROP,
-                    "port": "waves",
-                    "internal_step": 1e-6,
-                },
-            ),
-            "rod": ComponentSpec(
-                fmu=fmus["rod"],
-                parameters={
-                    **{
-                        f"section.{name}[1]": value
-                        for name, value in zip(sections, values, strict=True)
-                    },
-                    "head.port": "waves",
-                    "toe.condition": "port",
-                    "toe.port": port,
-                    "exchange": "sequential",
-                },
-            ),
-            "ground": ComponentSpec(
-                fmu=fmus["ground"],
-                parameters={
-                    "port": "wave" if port == "waves" else port,
-                    "law": "smith",
-                    "ultimate_resistance": RESISTANCE,
-                    "quake": QUAKE,
-                    "damping": DAMPING,
-                    "internal_step": 1e-5,
-                },
-            ),
+            "hammer": ComponentSpec(fmu=fmus["hammer"], parameters=_hammer()),
+            "rod": ComponentSpec(fmu=fmus["rod"], parameters=_rod(port)),
+            "ground": ComponentSpec(fmu=fmus["ground"], parameters=_ground(port)),
         },
         connections=[*hammer_connections("hammer", "rod"), *toe_connections("rod", "ground")],
         bonds={"hammer_rod": hammer_bond("hammer", "rod"), "ground_rod": toe_bond("rod", "ground")},
@@ -91,8 +78,49 @@ def spt_system(
     )
 
 
+def _hammer() -> dict[str, Value]:
+    return {"mass": MASS, "drop_height": DROP, "port": "waves", "internal_step": 1e-6}
+
+
+def _rod(port: str) -> dict[str, Value]:
+    """Return the parameters of the rod; port: kind of its toe's port."""
+    return {
+        "section.length[1]": LENGTH,
+        "section.area[1]": AREA,
+        "section.modulus[1]": DENSITY * SPEED**2,
+        "section.density[1]": DENSITY,
+        "head.port": "waves",
+        "toe.condition": "port",
+        "toe.port": port,
+        "exchange": "sequential",
+    }
+
+
+def _ground(port: str) -> dict[str, Value]:
+    """Return the parameters of the ground; port: kind of the rod's toe's port."""
+    return {
+        "port": "wave" if port == "waves" else port,
+        "law": "smith",
+        "ultimate_resistance": RESISTANCE,
+        "quake": QUAKE,
+        "damping": DAMPING,
+        "internal_step": 1e-5,
+    }
+
+
 def hammer_connections(hammer: str, rod: str) -> list[Connection]:
-    """A hammer on the head of a rod, by waves."""
+    """Return the connections of a hammer with the head of a rod, by waves.
+
+    Parameters
+    ----------
+    hammer, rod : str
+        Names of the components.
+
+    Returns
+    -------
+    list of Connection
+        Wave and impedance to the hammer, force to the rod.
+    """
     return [
         *(
             Connection(source=f"{rod}.head.{name}", target=f"{hammer}.head.{name}")
@@ -103,7 +131,20 @@ def hammer_connections(hammer: str, rod: str) -> list[Connection]:
 
 
 def toe_connections(rod: str, ground: str) -> list[Connection]:
-    """The ground under the toe of a rod. Motion and waves are both connected: the ports take what they need."""
+    """Return the connections of the toe of a rod with the ground under it.
+
+    Motion and waves are both connected: the ports take what they need.
+
+    Parameters
+    ----------
+    rod, ground : str
+        Names of the components.
+
+    Returns
+    -------
+    list of Connection
+        Wave, impedance and motion to the ground, mean force to the rod.
+    """
     return [
         *(
             Connection(source=f"{rod}.toe.{name}", target=f"{ground}.toe.{name}")
@@ -114,7 +155,18 @@ def toe_connections(rod: str, ground: str) -> list[Connection]:
 
 
 def hammer_bond(hammer: str, rod: str) -> PowerBond:
-    """The interface at the head."""
+    """Return the interface at the head.
+
+    Parameters
+    ----------
+    hammer, rod : str
+        Names of the components.
+
+    Returns
+    -------
+    PowerBond
+        The hammer computes the force.
+    """
     return PowerBond(
         giver=hammer,
         force=["force"],
@@ -125,7 +177,18 @@ def hammer_bond(hammer: str, rod: str) -> PowerBond:
 
 
 def toe_bond(rod: str, ground: str) -> PowerBond:
-    """The interface at the toe, whose force presses upwards."""
+    """Return the interface at the toe, whose force presses upwards.
+
+    Parameters
+    ----------
+    rod, ground : str
+        Names of the components.
+
+    Returns
+    -------
+    PowerBond
+        The ground computes the force.
+    """
     return PowerBond(
         giver=ground,
         force=["toe.mean_force"],
@@ -136,8 +199,19 @@ def toe_bond(rod: str, ground: str) -> PowerBond:
     )
 
 
-def partner_stiffness(system: System) -> dict[str, Value]:
-    """The stiffness R_u/Q of the ground, which a rod with a plain toe has to know for its limit."""
+def partner_stiffness(system: SystemSpec) -> dict[str, Value]:
+    """Return the stiffness R_u/Q of the ground, which a rod with a plain toe has to know.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        With the resistance (N) and the quake (m) of the ground.
+
+    Returns
+    -------
+    dict of str to Value
+        ``rod.toe.partner.stiffness`` (N/m).
+    """
     ground = system.components["ground"].parameters
     return {
         "rod.toe.partner.stiffness": float(ground["ultimate_resistance"]) / float(ground["quake"])

@@ -1,13 +1,16 @@
-"""The static loading test of Sonoda et al. (1993), fig. 12: a disc is pushed into the sand at 1 cm/s, in a box on a rigid floor."""
+"""The static loading test of Sonoda et al. (1993), fig. 12.
+
+A disc is pushed into the sand at 1 cm/s, in a box on a rigid floor.
+"""
 
 from collections.abc import Mapping
 
 from rockshed.components.common.units import cm, kgf
 
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..references import Known, Reference, References
-from .sand_models import Layer
+from .sand_models import SandLayer
 from .sonoda1993 import (
     BALL_MASS,
     BALL_RADIUS,
@@ -30,10 +33,10 @@ NAME = "static-test"
 DEPTH = 4 * cm
 """Penetration (m) to which the secant spring constant k counts."""
 BOX = 1
-"""The box of 37 cm."""
+"""Number of the sand box, that of 37 cm."""
 DISCS = discs_in(BOX)
 SPEED = 1 * cm
-"""Of the rock, downwards (m/s)."""
+"""Speed of the rock, downwards (m/s)."""
 GAP = 0.05 * cm
 """Distance (m) between rock and sand at the start."""
 STOP = (GAP + DEPTH + 0.05 * cm) / SPEED
@@ -44,15 +47,18 @@ COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "impulse": ("sequential", 1e-3, "linear", "mean"),
     "paper": ("sequential", 1e-5, "held", "last"),
 }
-"""impulse: sand first, the rock's motion extrapolated, which is exact here, mean forces, exchange every 1 ms. paper: sand first,
-inputs held, exchange every 0.01 ms."""
+"""Master, exchange step (s), kinematics and forces of the sand by coupling.
+
+impulse: sand first, the rock's motion extrapolated, which is exact here, mean forces. paper: sand
+first, inputs held.
+"""
 _SAND_STEP = 5e-5
 """Stable up to E_bar = 200 kgf/cm2 with the calibrated sand, up to 60 with the literal one."""
 E_BAR = (20.0, 40.0, 60.0, 80.0, 100.0)
 """Fictitious moduli of fig. 13 (kgf/cm2)."""
 
 
-LAYER_OF_SAND = Layer(
+LAYER_OF_SAND = SandLayer(
     _WIDTH,
     LAYER,
     DISC_RADIUS,
@@ -67,49 +73,53 @@ LAYER_OF_SAND = Layer(
 
 
 def rock_height(surface: float) -> float:
-    """Height (m) of the rock's centre at the start over sand whose surface is ``surface`` (m) over the floor."""
+    """Return the height of the rock's centre at the start.
+
+    Parameters
+    ----------
+    surface : float
+        Height of the sand's surface over the floor (m).
+
+    Returns
+    -------
+    float
+        Height over the floor (m).
+    """
     return surface + BALL_RADIUS + GAP
 
 
-def static_system(fmus: Mapping[str, str], coupling: str = "impulse", discs: int = DISCS) -> System:
-    """The static test as a co-simulation of two FMUs, ``rock`` and ``sand``, with the sand of test 4.
+def static_system(
+    fmus: Mapping[str, str], coupling: str = "impulse", discs: int = DISCS
+) -> SystemSpec:
+    """Return the static test as a co-simulation of ``rock`` and ``sand``, with the sand of test 4.
 
-    The origin is the left wall's foot. discs: number that ``sand`` was built with; the rock starts above the layer that so many
-    make on a square lattice.
+    The origin is the left wall's foot.
+
+    Parameters
+    ----------
+    fmus : mapping of str to str
+        Files of the FMUs by component.
+    coupling : str
+        Key of :data:`COUPLINGS`.
+    discs : int
+        Number that ``sand`` was built with; the rock starts above the layer that so many make on a
+        square lattice.
+
+    Returns
+    -------
+    SystemSpec
+        The co-simulation.
     """
     master, exchange, kinematics, forces = COUPLINGS[coupling]
     modulus = tests()[DEFAULT_TEST].modulus
-    columns = round(_WIDTH / (2 * DISC_RADIUS))
-    return System(
+    return SystemSpec(
         name=NAME,
         description="Sonoda et al. 1993, fig. 12: static loading test",
         master=master,
         order=["sand", "rock"],
         components={
-            "sand": ComponentSpec(
-                fmu=fmus["sand"],
-                record_states=True,
-                parameters={
-                    "modulus": modulus,
-                    "box.left": 0.0,
-                    "box.width": _WIDTH,
-                    "base": "floor",
-                    "kinematics": kinematics,
-                    "forces": forces,
-                    "internal_step": _SAND_STEP,
-                },
-            ),
-            "rock": ComponentSpec(
-                fmu=fmus["rock"],
-                parameters={
-                    "motion": "driven",
-                    "shape": "disc",
-                    "position0.x": 0.5 * _WIDTH,
-                    "position0.y": rock_height(-(-discs // columns) * 2 * DISC_RADIUS),
-                    "velocity0.y": -SPEED,
-                    "internal_step": exchange,
-                },
-            ),
+            "sand": _sand(fmus["sand"], kinematics, forces),
+            "rock": _rock(fmus["rock"], discs, exchange),
         },
         shared={
             "rock_radius": SharedValue(
@@ -128,13 +138,62 @@ def static_system(fmus: Mapping[str, str], coupling: str = "impulse", discs: int
     )
 
 
+def _sand(fmu: str, kinematics: str, forces: str) -> ComponentSpec:
+    parameters: dict[str, Value] = {
+        "modulus": tests()[DEFAULT_TEST].modulus,
+        "box.left": 0.0,
+        "box.width": _WIDTH,
+        "base": "floor",
+        "kinematics": kinematics,
+        "forces": forces,
+        "internal_step": _SAND_STEP,
+    }
+    return ComponentSpec(fmu=fmu, record_states=True, parameters=parameters)
+
+
+def _rock(fmu: str, discs: int, exchange: float) -> ComponentSpec:
+    """Return the driven rock above the layer that so many discs make on a square lattice."""
+    columns = round(_WIDTH / (2 * DISC_RADIUS))
+    parameters: dict[str, Value] = {
+        "motion": "driven",
+        "shape": "disc",
+        "position0.x": 0.5 * _WIDTH,
+        "position0.y": rock_height(-(-discs // columns) * 2 * DISC_RADIUS),
+        "velocity0.y": -SPEED,
+        "internal_step": exchange,
+    }
+    return ComponentSpec(fmu=fmu, parameters=parameters)
+
+
 def paper_stiffness(modulus: float) -> float:
-    """Secant spring constant k (N/m) that the paper computed for a fictitious modulus E_bar (Pa): k = 1.29 E_bar, table 4."""
+    """Return the secant spring constant k that the paper computed: k = 1.29 E_bar, table 4.
+
+    Parameters
+    ----------
+    modulus : float
+        Fictitious modulus E_bar (Pa).
+
+    Returns
+    -------
+    float
+        Spring constant (N/m).
+    """
     return STATIC_RATIO * modulus * cm
 
 
 def references(changed: Mapping[str, Value]) -> References:
-    """What is known of a static test with other values or sizes, by ``component.name``: with every E_bar, but only that test."""
+    """Return what is known of a static test with other values or sizes.
+
+    Parameters
+    ----------
+    changed : mapping of str to Value
+        Values and sizes that differ, by ``component.name``.
+
+    Returns
+    -------
+    References
+        With every E_bar, but only of this test.
+    """
     others = [
         name
         for name in changed

@@ -50,7 +50,7 @@ class LazyCommands(TyperGroup):
         self.commands = dict.fromkeys(COMMANDS)  # type: ignore[assignment]  # made when used
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Make a command."""
+        """Import a command and make it for typer; None if there is none of this name."""
         if cmd_name not in COMMANDS:
             return None
         module = import_module(f".{cmd_name}", __package__)
@@ -71,8 +71,8 @@ app = typer.Typer(
     help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.",
     epilog="`rockshed run lab-impact` is where to begin; `rockshed COMMAND --help` tells the "
     "options. Exit codes: 0 done, 1 the run failed (what was computed is kept), 2 refused (nothing "
-    "was computed or left behind), 3 a check failed, 130 interrupted with Ctrl-C (what was computed "
-    "is kept).",
+    "was computed or left behind), 3 a check failed, 130 interrupted with Ctrl-C (what was "
+    "computed is kept).",
     **_STYLE,
 )
 

@@ -1,4 +1,4 @@
-"""The command ``rockshed bench``."""
+"""The command ``rockshed bench``: speed and price of the coupling."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..bench.table import PARTS, Row
+from ..bench.table import PARTS, Measurement
 from ..core.errors import InputRefused, Problem
 from ..tables import Table
 from .options import Json, Quiet
@@ -38,7 +38,7 @@ def command(
         ]
         if problems:
             raise InputRefused(problems)
-        rows: list[Row] = []
+        rows: list[Measurement] = []
         for name in wanted:
             with screen.busy(f"measuring: {name}"):
                 rows += PARTS[name](rounds)
@@ -50,7 +50,7 @@ def command(
             raise typer.Exit(CHECK_FAILED)
 
 
-def _table(rows: Sequence[Row]) -> Table:
+def _table(rows: Sequence[Measurement]) -> Table:
     titles = ("figure", "measured", "unit", "as a multiple of", "goal")
     table = Table(titles, right=("measured",))
     for row in rows:

@@ -1,4 +1,4 @@
-"""The command ``rockshed build``."""
+"""The command ``rockshed build``: FMUs of components."""
 
 from pathlib import Path
 from typing import Annotated

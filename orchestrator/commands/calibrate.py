@@ -1,4 +1,4 @@
-"""The command ``rockshed calibrate``."""
+"""The command ``rockshed calibrate``: E_bar of a sand from a measurement."""
 
 import re
 from pathlib import Path

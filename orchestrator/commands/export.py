@@ -1,4 +1,4 @@
-"""The command ``rockshed export``."""
+"""The command ``rockshed export``: a system as files."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The command ``rockshed info``."""
+"""The command ``rockshed info``: the content of an FMU or a system."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The command ``rockshed list``."""
+"""The command ``rockshed list``: cases and components."""
 
 from rockshed.components.catalogue import NAMES, component
 

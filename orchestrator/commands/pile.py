@@ -1,4 +1,4 @@
-"""The command ``rockshed pile``."""
+"""The command ``rockshed pile``: blows on a driven pile or rod."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The command ``rockshed plot``."""
+"""The command ``rockshed plot``: pictures of a run, drawn again."""
 
 from pathlib import Path
 from typing import Annotated

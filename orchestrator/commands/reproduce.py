@@ -1,4 +1,4 @@
-"""The command ``rockshed reproduce``."""
+"""The command ``rockshed reproduce``: the studies of a paper."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The command ``rockshed rockfall``."""
+"""The command ``rockshed rockfall``: a campaign of trials on a slope."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The command ``rockshed run``."""
+"""The command ``rockshed run``: a case or a system file from its values to its pictures."""
 
 from pathlib import Path
 from shlex import quote
@@ -53,7 +53,8 @@ _LoadCell = Annotated[
     float | None,
     typer.Option(
         metavar="HERTZ",
-        help="Show the peak transmitted force also as a load cell with this cut-off frequency does.",
+        help="Show the peak transmitted force also as a load cell with this cut-off frequency "
+        "does.",
     ),
 ]
 _Runtime = Annotated[

@@ -1,4 +1,4 @@
-"""What the user sees: notes, progress and problems on stderr, results on stdout."""
+"""The screen of a command: notes, progress and problems on stderr, results on stdout."""
 
 import json
 import os
@@ -32,24 +32,55 @@ COLD_START = "compiling kernels, first run only (about a minute)"
 _SURE_AFTER = 2.0
 """Seconds after which the speed of a run says how long it will take."""
 _TOLD_AFTER = 5.0
-"""Seconds after which it is told where there is no bar; told again whenever the time that has gone has doubled."""
+"""Seconds after which progress is told where there is no bar.
+
+It is told again whenever the time that has gone has doubled.
+"""
 
 
 class Estimate:
-    """How long a run will still take, from its own speed until now. clock: time (s)."""
+    """An estimate of how long a run will still take, from its own speed until now.
+
+    Parameters
+    ----------
+    clock : callable
+        Returns the time (s).
+    """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._began: tuple[float, float] | None = None
 
     def gone(self, reached: float) -> float:
-        """Wall time (s) since the first call, when the run had reached its first time."""
+        """Return the wall time since the first call.
+
+        Parameters
+        ----------
+        reached : float
+            Simulated time reached (s); that of the first call is where the estimate begins.
+
+        Returns
+        -------
+        float
+            Wall time (s).
+        """
         now = self._clock()
         self._began = self._began or (now, reached)
         return now - self._began[0]
 
     def left(self, reached: float, stop: float) -> str:
-        """The wall time from ``reached`` to ``stop`` (s) in words; nothing as long as that cannot be told."""
+        """Return the wall time that is left, in words.
+
+        Parameters
+        ----------
+        reached, stop : float
+            Simulated time reached, and at the end (s).
+
+        Returns
+        -------
+        str
+            Empty as long as nothing can be said.
+        """
         gone = self.gone(reached)
         done = reached - self._began[1] if self._began else 0.0
         return (
@@ -70,20 +101,39 @@ _SPANS = (
 
 
 def spoken(seconds: float) -> str:
-    """A span of time to two digits, in the unit in which one would say it."""
+    """Return a span of time to two digits, in the unit in which one would say it.
+
+    Parameters
+    ----------
+    seconds : float
+        The span (s).
+
+    Returns
+    -------
+    str
+        Number and unit.
+    """
     unit, size, _ = next(span for span in _SPANS if seconds < span[2])
     return f"{float(f'{seconds / size:.2g}'):,.10g} {unit}"
 
 
 @dataclass(frozen=True)
 class Bar:
-    """A progress bar: called with the time reached and the stop time (s). Where nobody looks, the bar shows nothing."""
+    """A progress bar over simulated time, called with the time reached and the stop time (s).
+
+    Attributes
+    ----------
+    describe : callable
+        Called with the text before the bar.
+    show : callable
+        Called with the time reached and the stop time (s).
+    """
 
     describe: Callable[[str], None]
     show: Callable[[float, float], None] = lambda reached, stop: None
 
     def __call__(self, reached: float, stop: float) -> None:
-        """Show the time reached."""
+        """Show the time reached and the stop time (s)."""
         self.show(reached, stop)
 
 
@@ -125,7 +175,12 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
 class Screen:
     """The two streams of a command.
 
-    quiet: no notes and no progress. as_json: results on stdout are one JSON document.
+    Parameters
+    ----------
+    quiet : bool
+        No notes and no progress.
+    as_json : bool
+        Results on stdout are one JSON document.
     """
 
     def __init__(self, quiet: bool = False, as_json: bool = False) -> None:
@@ -138,20 +193,20 @@ class Screen:
     # ------------------------------------------------------------------ stderr
 
     def note(self, text: str) -> None:
-        """Say what is being done."""
+        """Say what is being done, unless the command is quiet."""
         if not self.quiet:
             self.err.print(escape(text), style="dim", soft_wrap=True)
 
     def warn(self, text: str) -> None:
-        """Say what the user should know although it went on."""
+        """Say something that the user should know although it went on."""
         self.err.print(f"[yellow]warning:[/] {escape(text)}", soft_wrap=True)
 
     def fail(self, text: str) -> None:
-        """Say why it did not go on."""
+        """Say why the command did not go on."""
         self.err.print(f"[bold red]failed:[/] {escape(text)}", soft_wrap=True)
 
     def refuse(self, problems: Sequence[Problem]) -> None:
-        """Say what has to be changed before it can be tried again."""
+        """Say what has to be changed before the command can be tried again."""
         if self.as_json:
             self.dump({"status": "refused", "problems": [asdict(problem) for problem in problems]})
         count = "" if len(problems) == 1 else f"{len(problems)} problems"
@@ -165,7 +220,7 @@ class Screen:
 
     @contextmanager
     def busy(self, text: str) -> Iterator[None]:
-        """A spinner while something goes on that cannot tell how far it is."""
+        """Show a spinner while something goes on that cannot tell how far it is."""
         if self.quiet or not self.err.is_terminal:
             self.note(f"{text} ...")
             yield
@@ -175,7 +230,18 @@ class Screen:
 
     @contextmanager
     def progress(self, preparing: str) -> "Iterator[Bar]":
-        """A bar over the simulated time; ``preparing`` stands there until the first exchange."""
+        """Show a bar over the simulated time.
+
+        Parameters
+        ----------
+        preparing : str
+            Text that stands there until the first exchange.
+
+        Yields
+        ------
+        Bar
+            Shows nothing where nobody looks.
+        """
         estimate = Estimate()
         if self.quiet or not self.err.is_terminal:
             yield Bar(self.note, self._told(estimate))
@@ -207,7 +273,7 @@ class Screen:
             yield Bar(describe, show)
 
     def _told(self, estimate: Estimate) -> Callable[[float, float], None]:
-        """Notes in the place of a bar, at ever longer intervals."""
+        """Return a function that gives notes in the place of a bar, at ever longer intervals."""
         due = _TOLD_AFTER
 
         def show(reached: float, stop: float) -> None:
@@ -220,7 +286,18 @@ class Screen:
 
     @contextmanager
     def counting(self, text: str) -> "Iterator[Callable[[int, int], None]]":
-        """A bar over pieces of work: called with the number done and the number of all. Elsewhere a note for each tenth."""
+        """Show a bar over pieces of work; where there is no terminal, a note for each tenth.
+
+        Parameters
+        ----------
+        text : str
+            Name of the pieces.
+
+        Yields
+        ------
+        callable
+            Called with the number done and the number of all.
+        """
         if self.quiet or not self.err.is_terminal:
             tenths = 0
 
@@ -293,7 +370,20 @@ def _reached(reached: float, stop: float) -> str:
 
 
 def plain_table(*columns: str, right: Sequence[str] = ()) -> rich_table.Table:
-    """A table in the style of all commands; ``right``: columns of numbers, which are not broken into lines."""
+    """Return an empty table in the style of all commands.
+
+    Parameters
+    ----------
+    *columns : str
+        Titles.
+    right : sequence of str
+        Titles of columns of numbers, which are not broken into lines.
+
+    Returns
+    -------
+    rich.table.Table
+        Without rows.
+    """
     table = rich_table.Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for name in columns:
         table.add_column(name, justify="right" if name in right else "left", no_wrap=name in right)

@@ -1,4 +1,4 @@
-"""FMUs of our components, built where they are missing or out of date, and the sizes they are built in."""
+"""FMUs of components: built where they are missing or out of date, and in which sizes."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,13 @@ Note = Callable[[str], None]
 
 
 def silent(text: str) -> None:
-    """Tell nobody: the default of every ``note``."""
+    """Tell nobody: the default of every ``note``.
+
+    Parameters
+    ----------
+    text : str
+        A line.
+    """
 
 
 def own_sizes(chosen: Case, others: Mapping[str, int]) -> dict[str, dict[str, int]]:
@@ -98,7 +104,7 @@ def _not_whole(name: str, value: object) -> Problem:
 def _with_one_size(
     chosen: Case, numbers: Mapping[str, int], problems: list[Problem]
 ) -> dict[str, int]:
-    """Return the sizes that are asked for, and those that are the same number as one of them."""
+    """Return the sizes that are asked for, and those that are one number with them."""
     given = {name: value for name, value in numbers.items() if name in chosen.one_size}
     if len(set(given.values())) > 1:
         problems.append(
@@ -115,7 +121,22 @@ def _with_one_size(
 
 
 def range_problems(where: str, model: str, sizes: Mapping[str, int]) -> list[Problem]:
-    """Sizes that are out of range."""
+    """Return the sizes of a component that are out of range.
+
+    Parameters
+    ----------
+    where : str
+        Place of the sizes, for messages.
+    model : str
+        Name of the component in the catalogue.
+    sizes : mapping of str to int
+        By name of the size.
+
+    Returns
+    -------
+    list of Problem
+        Empty if all are in range.
+    """
     try:
         component(model).with_sizes(sizes)
     except ComponentError as error:
@@ -125,7 +146,15 @@ def range_problems(where: str, model: str, sizes: Mapping[str, int]) -> list[Pro
 
 @dataclass(frozen=True)
 class CaseFmus:
-    """The FMU files of a case by component, their runtime, and why it was chosen."""
+    """The FMUs of a case.
+
+    Attributes
+    ----------
+    files : mapping of str to str
+        By component of the system.
+    runtime, reason : str
+        Their runtime, and why it was chosen.
+    """
 
     files: Mapping[str, str]
     runtime: str
@@ -135,12 +164,28 @@ class CaseFmus:
 def case_fmus(
     chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO
 ) -> CaseFmus:
-    """The FMUs of a case; those that are missing or out of date are built.
+    """Return the FMUs of a case; those that are missing or out of date are built.
 
-    wanted: a runtime, or AUTO: native if all of these FMUs are there and up to date, otherwise Python.
+    Parameters
+    ----------
+    chosen : Case
+        The case.
+    sizes : mapping of str to mapping of str to int
+        Sizes by component.
+    note : callable
+        Called with a line for each FMU that is built.
+    wanted : str
+        A runtime, or ``auto``: native if all of these FMUs are there and up to date, else Python.
 
-    Raises:
-        InputRefused: they cannot be compiled or written.
+    Returns
+    -------
+    CaseFmus
+        Files, runtime and reason.
+
+    Raises
+    ------
+    InputRefused
+        They cannot be compiled or written.
     """
     stale = _stale(chosen, sizes)
     runtime, reason = (
@@ -170,7 +215,7 @@ def _build_if_needed(
 
 
 def _stale(chosen: Case, sizes: Mapping[str, Mapping[str, int]]) -> list[str]:
-    """Components of which there is no native FMU that is up to date."""
+    """Return the components of which there is no native FMU that is up to date."""
     return [
         name
         for name, model in chosen.models.items()
@@ -198,7 +243,7 @@ def _changed_at(file: Path) -> int:
 
 @dataclass(frozen=True)
 class Export:
-    """What FMUs are built for.
+    """The kind of FMUs that are built.
 
     Attributes
     ----------
@@ -414,5 +459,16 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Probl
 
 
 def is_cold(names: Iterable[str]) -> bool:
-    """Whether kernels of any of these components have never been compiled and kept on this machine."""
+    """Tell whether kernels have never been compiled and kept on this machine.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names of components in the catalogue.
+
+    Returns
+    -------
+    bool
+        Whether those of any of them have not.
+    """
     return not all(has_kernels(component(name).folder) for name in names)

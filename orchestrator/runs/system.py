@@ -1,4 +1,4 @@
-"""A co-simulation that is made in steps: from a case, a file or nothing, then changed, shown, run."""
+"""A co-simulation made in steps: from a case, a file or nothing, then changed, shown and run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,8 +10,14 @@ from rockshed.components.common.component import Component
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
-from ..core.system.system import ComponentSpec, PowerBond, Value, system_from, with_values
-from ..core.system.system import System as SystemSpec
+from ..core.system.system import (
+    ComponentSpec,
+    PowerBond,
+    SystemSpec,
+    Value,
+    system_from,
+    with_values,
+)
 from ..tables import Table
 from .building import Note, silent
 from .export import export_system
@@ -69,7 +75,27 @@ class System:
     def prepared(
         cls, request: Request, note: Note = silent, problems: Sequence[Problem] = ()
     ) -> "System":
-        """Make the system of a request; see :func:`rockshed.runs.job.prepare`."""
+        """Make the system of a request.
+
+        Parameters
+        ----------
+        request : Request
+            A case or a system file, and what is to be other than it is there.
+        note : callable
+            Called with a line for each FMU that is built.
+        problems : sequence of Problem
+            Problems that the caller has with the request, refused together with those seen here.
+
+        Returns
+        -------
+        System
+            The system, ready to run.
+
+        Raises
+        ------
+        InputRefused
+            Everything that is wrong with the request.
+        """
         return cls(prepare(request, note, problems), request)
 
     @classmethod
@@ -237,7 +263,7 @@ class System:
             fmu = f"{made.name} (in process)"
         spec = {"fmu": fmu, "step": step, "parameters": dict(values or {})}
         entries: dict[str, Any] = {"components": {**self._data()["components"], name: spec}}
-        if self.spec.order:  # a component that is added comes last
+        if self.spec.order and name not in self.spec.order:  # it comes last
             entries["order"] = [*self.spec.order, name]
         made_system = self._detached(entries)
         return System(replace(made_system.job, sources=sources))

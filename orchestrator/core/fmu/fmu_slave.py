@@ -55,7 +55,7 @@ from .slave import (
     REAL,
     STATUS_NAMES,
     Addresses,
-    References,
+    ValueReferences,
     Values,
 )
 
@@ -437,7 +437,7 @@ class FmuSlave:
             address("fmi2DoStep"),
         )
 
-    def set(self, references: References, values: Values, kind: str = REAL) -> int:
+    def set(self, references: ValueReferences, values: Values, kind: str = REAL) -> int:
         """Set variables of one kind."""
         if kind != REAL:
             values = values.astype(np.int32)
@@ -447,7 +447,7 @@ class FmuSlave:
             )
         )
 
-    def get(self, references: References, out: Values, kind: str = REAL) -> int:
+    def get(self, references: ValueReferences, out: Values, kind: str = REAL) -> int:
         """Read variables of one kind into ``out``."""
         if kind == REAL:
             return int(

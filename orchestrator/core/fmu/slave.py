@@ -28,7 +28,7 @@ BOOLEAN = "Boolean"
 STRING = "String"
 """Families of FMI calls. An enumeration travels as Integer."""
 
-References = NDArray[np.uint32]
+ValueReferences = NDArray[np.uint32]
 Values = NDArray[np.float64]
 
 
@@ -70,10 +70,10 @@ class Slave(Protocol):
     messages: list[tuple[int, str]]
     addresses: Addresses | None
 
-    def set(self, references: References, values: Values, kind: str = REAL) -> int:
+    def set(self, references: ValueReferences, values: Values, kind: str = REAL) -> int:
         """Set variables of one kind. Integers and booleans come as whole floats."""
 
-    def get(self, references: References, out: Values, kind: str = REAL) -> int:
+    def get(self, references: ValueReferences, out: Values, kind: str = REAL) -> int:
         """Write the present values of variables of one kind into ``out``."""
 
     def set_text(self, reference: int, text: str) -> int:

@@ -7,7 +7,7 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from ..fmu.slave import References
+from ..fmu.slave import ValueReferences
 from ..system.plan import End
 
 _WORTH_A_CALL = 16
@@ -30,7 +30,7 @@ class Block:
     """
 
     kind: str
-    references: References
+    references: ValueReferences
     begin: int
 
     @cached_property
@@ -67,7 +67,7 @@ def make_blocks(ends: Sequence[End], begin: int = 0) -> dict[str, list[Block]]:
     return blocks
 
 
-def _cuts(references: References) -> list[int]:
+def _cuts(references: ValueReferences) -> list[int]:
     """Return the places at which a row of references is cut, its ends included."""
     jumps = np.flatnonzero(np.diff(references.astype(np.int64)) != 1) + 1
     runs = pairwise([0, *jumps, len(references)])
