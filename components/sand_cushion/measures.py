@@ -13,7 +13,8 @@ _OPTIONAL = (
     ("unloading_ratio", "unloading ratio", 1.0, 1.0, ""),
     ("cohesion", "cohesion", 0.0, kgf / cm**2, " kgf/cm²"),
 )
-"""Parameters that are named where they are not idle: name, words, idle value, unit in SI, its name."""
+"""Parameters that are named where they are not idle: name, words, idle value, unit in SI, its
+name."""
 
 
 def contact_frequency(parameters: Parameters) -> float:

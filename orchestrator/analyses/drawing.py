@@ -2,14 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from ..pictures.style import styled
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 @contextmanager
-def drawn(lines: Sequence[str], width: float, height: float) -> Iterator[Figure]:
+def drawn(lines: Sequence[str], width: float, height: float) -> "Iterator[Figure]":
     """Open a figure that keeps the look of all pictures after the block.
 
     Parameters

@@ -25,7 +25,7 @@ from rockshed.components.sand_cushion import kernel as sand_kernel
 from rockshed.components.sand_cushion.declarations import ANGLE, FORCE_ROW, RADIUS, ROW, SPIN, SUM
 from rockshed.components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
 
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 
 RV, SV, BV = ROCK_LAYOUT.scalar, SAND_LAYOUT.scalar, BEAM_LAYOUT.scalar
 SA, BA = SAND_LAYOUT.array, BEAM_LAYOUT.array
@@ -77,7 +77,7 @@ class Monolith:
 
 
 def from_system(
-    system: System, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6
+    system: SystemSpec, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6
 ) -> Monolith:
     """The monolithic program of a laboratory system: same parameters, same start."""
     instances = {
@@ -110,7 +110,7 @@ def from_system(
     )
 
 
-def _sizes(name: str, system: System) -> Mapping[str, int]:
+def _sizes(name: str, system: SystemSpec) -> Mapping[str, int]:
     width = system.components["sand"].parameters["box.width"]
     return {"rock": {}, "sand": {"discs": round(float(width) / 0.01) * 10}, "beam": {}}[name]
 

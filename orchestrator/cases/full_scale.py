@@ -8,28 +8,25 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, cm2, cm4, kgf, kN
 
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..references import Known, Reference, References
-from .sand_models import FULL_SCALE_SOIL, Layer
+from .sand_models import FULL_SCALE_SOIL, SandLayer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
-
-Coupling = Literal["paper", "impulse"]
-"""Schemes of exchange.
-
-paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first,
-kinematics extrapolated, mean forces, exchange every 0.2 ms.
-"""
 
 _COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "paper": ("sequential", 5e-5, "held", "last"),
     "impulse": ("sequential", 2e-4, "linear", "mean"),
 }
+"""Master, exchange step (s), kinematics and forces of the sand by scheme of exchange.
+
+paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first,
+kinematics extrapolated, mean forces, exchange every 0.2 ms.
+"""
 
 ROCK_MASS = 1000.0
 ROCK_RADIUS = 45.6 * cm
@@ -161,10 +158,10 @@ def impacts() -> dict[str, Impact]:
 def full_scale_system(
     fmus: Mapping[str, str],
     impact: Impact,
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int | None = None,
-) -> System:
+) -> SystemSpec:
     """Return an impact at full scale as a co-simulation of rock, sand and, on girders, beam.
 
     The origin is the left support on the girders, the left wall on the rigid base.
@@ -183,7 +180,7 @@ def full_scale_system(
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     master, exchange, kinematics, forces = _COUPLINGS[coupling]
@@ -198,7 +195,7 @@ def full_scale_system(
         spacing = impact.span / (elements or impact.elements)
         components["beam"] = _girders(fmus["beam"], impact, spacing)
         watch += ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"]
-    return System(
+    return SystemSpec(
         name=impact.name,
         description=f"Sonoda et al. 1993, full scale: {impact.summary}",
         components=components,
@@ -279,7 +276,7 @@ def _middle(impact: Impact) -> float:
     return 0.5 * (impact.span or impact.width)
 
 
-def cushion_weight(system: System, discs: int) -> float:
+def cushion_weight(system: SystemSpec, discs: int) -> float:
     """Return the weight of the sand on girders, under which they start bent, at rest.
 
     Radii that differ are uniform within radius (1 - spread, 1 + spread): on average discs are
@@ -287,7 +284,7 @@ def cushion_weight(system: System, discs: int) -> float:
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         With the parameters of the sand.
     discs : int
         Number of discs.
@@ -311,7 +308,7 @@ def cushion_weight(system: System, discs: int) -> float:
     return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
 
 
-def layer(impact: Impact, dropped: bool = True) -> Layer:
+def layer(impact: Impact, dropped: bool = True) -> SandLayer:
     """Return the sand of an impact, for the models of it.
 
     Parameters
@@ -323,10 +320,10 @@ def layer(impact: Impact, dropped: bool = True) -> Layer:
 
     Returns
     -------
-    Layer
+    SandLayer
         The layer.
     """
-    return Layer(
+    return SandLayer(
         impact.width,
         LAYER,
         DISC_RADIUS,

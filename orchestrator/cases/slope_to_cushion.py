@@ -15,10 +15,10 @@ from rockshed.components.common.component import Instance
 from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
-from ..core.system.system import ComponentSpec, System, Value
+from ..core.system.system import ComponentSpec, SystemSpec, Value
 from ..sites.rockfall.preparation import prepare
-from .full_scale import GIRDER_DEPTH, Coupling, Impact, full_scale_system, layer
-from .sand_models import Layer
+from .full_scale import GIRDER_DEPTH, Impact, full_scale_system, layer
+from .sand_models import SandLayer
 
 SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
 LINE, SHARE = "cushion", 0.95
@@ -134,10 +134,10 @@ def receiver(radius: float) -> dict[str, Value]:
 
 def slope_system(
     fmus: Mapping[str, str],
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int | None = None,
-) -> System:
+) -> SystemSpec:
     """Return slope, sand and girders as a co-simulation.
 
     The origin is the left support, below the surface of the beam.
@@ -153,7 +153,7 @@ def slope_system(
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     system = full_scale_system(fmus, IMPACT, coupling, discs, elements)
@@ -197,6 +197,6 @@ def slope_system(
     )
 
 
-def sand_layer() -> Layer:
+def sand_layer() -> SandLayer:
     """Return the sand of the roof, for the models of it."""
     return layer(IMPACT, dropped=False)

@@ -7,7 +7,7 @@ from typing import Any
 from rockshed.components.common.units import SCREEN_UNITS
 
 from ..core.results.metric import Beside, Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..references import Known, References
 from ..tables import Table
 from . import names
@@ -105,12 +105,12 @@ class Row:
     handbook_deviation: float | None = None
 
 
-def known_of(run: Run) -> Mapping[str, Known]:
+def known_of(run: StoredRun) -> Mapping[str, Known]:
     """Return the references of a run, as its preparation has written them down.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -121,16 +121,16 @@ def known_of(run: Run) -> Mapping[str, Known]:
     return {} if still_sinking(run) else _references(run).known
 
 
-def _references(run: Run) -> References:
+def _references(run: StoredRun) -> References:
     return References.from_data(run.provenance.get("references", {}))
 
 
-def figures(run: Run, known: Mapping[str, Known]) -> list[Metric]:
+def figures(run: StoredRun, known: Mapping[str, Known]) -> list[Metric]:
     """Return every headline metric of a run with its references.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.
@@ -146,12 +146,12 @@ def _compared(metric: Metric, known: Known) -> Metric:
     return replace(metric, references=references)
 
 
-def rows(run: Run, known: Mapping[str, Known]) -> list[Row]:
+def rows(run: StoredRun, known: Mapping[str, Known]) -> list[Row]:
     """Return the rows of the table.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.
@@ -211,7 +211,7 @@ def _written(value: float, scale: Scale) -> str:
     return f"{shown:{scale.sign}.3g}"
 
 
-def _couplings(run: Run) -> Iterator[Row]:
+def _couplings(run: StoredRun) -> Iterator[Row]:
     """Yield the energy that each coupling has made, as a share of the impact energy."""
     impact = impact_energy(run)
     for column, values in run.series.items():
@@ -225,12 +225,12 @@ def _couplings(run: Run) -> Iterator[Row]:
                 yield Row(f"coupling {bond}", "J", f"{values[-1]:.4g}")
 
 
-def notes(run: Run, known: Mapping[str, Known]) -> list[str]:
+def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     """Return what a reader of the table has to know.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.
@@ -254,12 +254,12 @@ def notes(run: Run, known: Mapping[str, Known]) -> list[str]:
     return remarks + list(dict.fromkeys(origins)) + still
 
 
-def table(run: Run, known: Mapping[str, Known]) -> Table:
+def table(run: StoredRun, known: Mapping[str, Known]) -> Table:
     """Return the rows as a table, without the columns that nothing stands in.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.

@@ -17,20 +17,21 @@ from matplotlib.patches import Rectangle
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import cm, kN, ms
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..metrics.caption import caption
 from ..metrics.contents import decoded
 from ..metrics.energy import structures
 from ..metrics.roles import column, elements, members
 from ..metrics.values import extreme
 from .cushion import force_axes
-from .references import References
+from .references import KnownMetrics
 from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
 _READ_AS = (
     "lines: forces in the contacts, by width and colour; deep: the rock's lowest point below "
-    "the surface that the sand had at the start; transmitted: vertical force of the sand on its base"
+    "the surface that the sand had at the start; transmitted: vertical force of the sand on its "
+    "base"
 )
 _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
@@ -61,12 +62,12 @@ class Frame:
     state: Any
 
 
-def frames(run: Run, cushion: str, wanted: Sequence[float]) -> list[Frame]:
+def frames(run: StoredRun, cushion: str, wanted: Sequence[float]) -> list[Frame]:
     """Return the recorded states nearest to the times that are wanted, each once.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -79,7 +80,7 @@ def frames(run: Run, cushion: str, wanted: Sequence[float]) -> list[Frame]:
     return [Frame(float(times[i]), decoded(run, cushion, recorded[i][1])) for i in chosen]
 
 
-def _evenly(run: Run, cushion: str) -> list[float]:
+def _evenly(run: StoredRun, cushion: str) -> list[float]:
     """Return times (s) evenly over that part of the run in which something happens."""
     force = run.series[str(column(run, cushion, Role.TRANSMITTED))]
     time = run.series["time"]
@@ -87,8 +88,8 @@ def _evenly(run: Run, cushion: str) -> list[float]:
     return list(np.linspace(time[0], end, FRAMES))
 
 
-def _moments(run: Run, cushion: str) -> list[float]:
-    """Return the times (s) of half the peak of the force, of the peak, and of the greatest depth."""
+def _moments(run: StoredRun, cushion: str) -> list[float]:
+    """Return the times (s) of half the peak force, of the peak, and of the greatest depth."""
     transmitted = str(column(run, cushion, Role.TRANSMITTED))
     force = run.series[transmitted]
     half = float(run.series["time"][np.flatnonzero(force >= 0.5 * force.max())[0]])
@@ -96,12 +97,12 @@ def _moments(run: Run, cushion: str) -> list[float]:
     return [half, extreme(run, transmitted)[1], deepest[1]]
 
 
-def snapshots(run: Run, cushion: str, file: Path) -> None:
+def snapshots(run: StoredRun, cushion: str, file: Path) -> None:
     """Draw six instants side by side, with one scale of colours.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -120,12 +121,12 @@ def snapshots(run: Run, cushion: str, file: Path) -> None:
         draw(run, cushion, shown, made, panels[: len(shown)])
 
 
-def overview(run: Run, cushion: str, known: References, file: Path) -> None:
+def overview(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
     """Draw three instants and the forces over time in one wide picture.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -153,13 +154,13 @@ def _shape(shown: Sequence[Frame]) -> float:
 
 
 def draw(
-    run: Run, cushion: str, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]
+    run: StoredRun, cushion: str, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]
 ) -> None:
     """Draw one frame in each panel, with one scale of the forces and its colour bar.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -194,17 +195,17 @@ def draw(
 class _View:
     """What all panels have in common.
 
-    Run, cushion, structure under it, window (m), enlargement of deflections.
+    StoredRun, cushion, structure under it, window (m), enlargement of deflections.
     """
 
-    run: Run
+    run: StoredRun
     cushion: str
     structure: str | None
     window: tuple[float, float, float, float]
     deflection_scale: float
 
 
-def _deflection_scale(run: Run, structure: str | None, shown: Sequence[Frame]) -> float:
+def _deflection_scale(run: StoredRun, structure: str | None, shown: Sequence[Frame]) -> float:
     """Return how many times too large the deflections of the structure are drawn."""
     deflection = column(run, structure, Role.DEFLECTION) if structure else None
     if deflection is None:

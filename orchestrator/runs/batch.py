@@ -16,7 +16,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 from .building import Note, silent
 from .job import prepare
 from .request import Request
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..core.errors import RunFailed
-    from ..core.results.reading import Run
+    from ..core.results.reading import StoredRun
 
 COMPLETE = "complete"
 FAILED = "failed"
@@ -162,7 +162,7 @@ class _Order:
     """Run as it is sent to a process."""
 
     key: str
-    system: System
+    system: SystemSpec
     allow_unstable: bool
 
 
@@ -316,7 +316,7 @@ def run_one(order: _Order) -> Outcome:
         return _outcome(order.key, run, failure, began)
 
 
-def _outcome(key: str, run: "Run", failure: "RunFailed | None", began: float) -> Outcome:
+def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: float) -> Outcome:
     components = run.provenance["components"]
     return Outcome(
         key,
@@ -331,7 +331,7 @@ def _outcome(key: str, run: "Run", failure: "RunFailed | None", began: float) ->
     )
 
 
-def _metrics(run: "Run") -> dict[str, float]:
+def _metrics(run: "StoredRun") -> dict[str, float]:
     """Return the numbers of a run by the names of the metrics."""
     from ..metrics.headlines import headlines
 

@@ -14,7 +14,7 @@ from rockshed.core.errors import InputRefused
 from rockshed.core.fmu.fmu_slave import read_description
 from rockshed.core.results.metric import Metric, Metrics
 from rockshed.core.results.provenance import declarations
-from rockshed.core.results.reading import Run
+from rockshed.core.results.reading import StoredRun
 from rockshed.fmus.description.fmi2 import model_description
 from rockshed.metrics import comparison, names
 from rockshed.metrics.caption import models
@@ -97,7 +97,7 @@ def made_up(length=0.02, summary=(), **columns):
             )
         },
     }
-    return Run(None, provenance, Metrics(summary), [], series)
+    return StoredRun(None, provenance, Metrics(summary), [], series)
 
 
 def figure(run, name):

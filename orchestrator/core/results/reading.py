@@ -37,7 +37,7 @@ from .series import Series
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class StoredRun:
     """Results of a run, as its folder holds them.
 
     ``run["rock.position.x"]`` is a :class:`~rockshed.core.results.series.Series`; iterating over a
@@ -168,7 +168,7 @@ def _stored_states(path: Path, component: str) -> Iterator[tuple[float, bytes]]:
                 yield float(at), file[f"{component}/state/{number}"][:].tobytes()
 
 
-def read_run(folder: Path) -> Run:
+def read_run(folder: Path) -> StoredRun:
     """Read the folder of a run, or what a run that was killed has left.
 
     Parameters
@@ -178,7 +178,7 @@ def read_run(folder: Path) -> Run:
 
     Returns
     -------
-    Run
+    StoredRun
 
     Raises
     ------
@@ -200,7 +200,7 @@ def read_run(folder: Path) -> Run:
         columns = read_columns(place / COLUMNS)
     with _undamaged(place / SUMMARY):
         metrics = _read_metrics(place / SUMMARY)
-    return Run(place, provenance, metrics, columns, _read_series(place, columns))
+    return StoredRun(place, provenance, metrics, columns, _read_series(place, columns))
 
 
 def _place_of(folder: Path) -> Path:

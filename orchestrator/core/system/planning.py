@@ -19,18 +19,18 @@ from .names import expand, nearest, select
 from .plan import BondPlaces, End, Plan
 from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
-from .system import ComponentSpec, Connection, PowerBond, System, Value
+from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
 from .units import is_joule, unit_text, units_agree
 from .values import value_for
 
 
-def make_plan(system: System, sources: Mapping[str, Source]) -> Plan:
+def make_plan(system: SystemSpec, sources: Mapping[str, Source]) -> Plan:
     """Check the whole system and resolve every name.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Checked in its form already.
     sources : mapping of str to Source
         Give the model descriptions of the components.
@@ -81,7 +81,7 @@ class _Planner:
     A part that depends on something missing is passed over in silence.
     """
 
-    system: System
+    system: SystemSpec
     sources: Mapping[str, Source]
     problems: list[Problem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)

@@ -141,7 +141,7 @@ class EnergyAlarm(_Data):
     reference: str | Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
 
-class System(_Data):
+class SystemSpec(_Data):
     """A co-simulation: what takes part, how it is connected and how it is run.
 
     Attributes
@@ -197,7 +197,7 @@ class System(_Data):
         return self.components[component].step or self.exchange_step
 
 
-def system_from(data: Mapping[str, Any], where: str = "system") -> System:
+def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
     """Make a system of plain data.
 
     Parameters
@@ -209,7 +209,7 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
 
     Returns
     -------
-    System
+    SystemSpec
 
     Raises
     ------
@@ -218,7 +218,7 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
         its key.
     """
     try:
-        return System.model_validate(data)
+        return SystemSpec.model_validate(data)
     except ValidationError as error:
         found: dict[str, list[str]] = {}
         for entry in error.errors():
@@ -228,7 +228,7 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
         ) from error
 
 
-def load_system(path: Path) -> System:
+def load_system(path: Path) -> SystemSpec:
     """Read a system from a TOML file.
 
     Parameters
@@ -238,7 +238,7 @@ def load_system(path: Path) -> System:
 
     Returns
     -------
-    System
+    SystemSpec
 
     Raises
     ------
@@ -272,12 +272,12 @@ def _not_utf_8(path: Path) -> Problem:
     )
 
 
-def with_values(system: System, values: Mapping[str, Value]) -> System:
+def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
     """Return the system with other values.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Stays as it is.
     values : mapping of str to value
         By ``component.parameter`` or by the name of a shared value. A value that is shared changes
@@ -285,7 +285,7 @@ def with_values(system: System, values: Mapping[str, Value]) -> System:
 
     Returns
     -------
-    System
+    SystemSpec
 
     Raises
     ------
@@ -323,7 +323,7 @@ def with_values(system: System, values: Mapping[str, Value]) -> System:
     )
 
 
-def _owner(system: System, name: str) -> str | None:
+def _owner(system: SystemSpec, name: str) -> str | None:
     """Return the shared value that a name stands for or that its parameter takes."""
     for key, entry in system.shared.items():
         if name == key or any(matches(target, name) for target in entry.targets):
@@ -368,7 +368,7 @@ def _sentence(error: Any) -> str:
 _KEYS = sorted(
     {
         key
-        for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, System)
+        for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, SystemSpec)
         for key in model.model_fields
     }
 )
