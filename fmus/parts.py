@@ -8,7 +8,6 @@ from pathlib import Path
 
 from rockshed import components
 from rockshed.components.common.component import Component
-from rockshed.components.common.ports import Sizes
 
 COMPONENTS = Path(components.__file__).parent
 SHARED = COMPONENTS / "common"
@@ -54,13 +53,6 @@ def component_sources(component: Component) -> Files:
         if path.is_file() and path.suffix not in _NOT_FROZEN
     }
     return {name: path.read_bytes() for name, path in paths.items()}
-
-
-def documentation(component: Component, sizes: Sizes) -> Files:
-    """The documentation."""
-    from .description.documentation import index_html
-
-    return {"documentation/index.html": index_html(component, sizes).encode()}
 
 
 def picture(component: Component, name: str) -> Files:

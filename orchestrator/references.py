@@ -78,7 +78,7 @@ class References:
 
         Returns
         -------
-        References
+        references : References
             Equal to those that were written.
         """
         known = {

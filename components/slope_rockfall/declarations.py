@@ -41,7 +41,7 @@ GROUND = Ground(*range(9))
 Body = namedtuple(
     "Body",
     "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction roughness sin "
-    "cos pressure shear drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
+    "cos normal_force shear_force drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
     " handovers handover_time seed trial",
 )
 BODY = Body(*range(35))

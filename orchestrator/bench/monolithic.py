@@ -1,7 +1,9 @@
-"""The laboratory impact as one program: rock, sand and beam in one loop over shared positions, without ports, FMI or master.
+"""The laboratory impact as one program, without ports, FMI or master.
 
-This is the reference that the co-simulation is compared with. It uses the components' physics (contact forces, motion of discs,
-rock and beam) but its own loop: forces at the positions of the moment, then everything moves, the beam in shorter steps.
+This is the reference that the co-simulation is compared with: rock, sand and beam in one loop over
+shared positions. It uses the components' physics (contact forces, motion of discs, rock and beam)
+but its own loop: forces at the positions of the moment, then everything moves, the beam in shorter
+steps.
 """
 
 from collections.abc import Mapping
@@ -42,7 +44,10 @@ COLUMNS = (
 
 @dataclass
 class Monolith:
-    """The three subsystems in one program, initialised; ``history`` has a row of :data:`COLUMNS` for every step."""
+    """Three subsystems in one program, initialised.
+
+    ``history`` has a row of :data:`COLUMNS` for every step.
+    """
 
     rock: Instance
     sand: Instance
@@ -79,7 +84,7 @@ class Monolith:
 def from_system(
     system: SystemSpec, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6
 ) -> Monolith:
-    """The monolithic program of a laboratory system: same parameters, same start."""
+    """Return the monolithic program of a laboratory system: same parameters, same start."""
     instances = {
         name: component.instance(**_sizes(name, system))
         for name, component in (("rock", ROCK), ("sand", SAND), ("beam", BEAM))

@@ -409,7 +409,7 @@ def references(impact: Impact, changed: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         What is known, and why something is not compared.
     """
     if others := [

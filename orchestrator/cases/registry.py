@@ -204,7 +204,7 @@ def references(chosen: Case, differing: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         What is known, and why something is not compared.
     """
     keys = SystemSpec.model_fields

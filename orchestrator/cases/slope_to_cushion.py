@@ -16,7 +16,6 @@ from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
 from ..core.system.system import ComponentSpec, SystemSpec, Value
-from ..sites.rockfall.preparation import prepare
 from .full_scale import GIRDER_THICKNESS, Impact, full_scale_system, layer
 from .sand_models import SandLayer
 
@@ -74,6 +73,8 @@ def cells() -> int:
 @cache
 def _site() -> Instance:
     """Return the site as an initialised component, as its campaign has it."""
+    from ..sites.rockfall.preparation import prepare  # imports numba, which other cases need not
+
     return prepare(SITE).instance
 
 

@@ -495,7 +495,7 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         What is known, and why something is not compared.
     """
     if others := [name for name in changed if of_the_test(name)]:

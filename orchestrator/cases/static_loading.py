@@ -191,7 +191,7 @@ def references(changed: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         With every E_bar, but only of this test.
     """
     others = [

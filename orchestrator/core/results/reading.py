@@ -245,7 +245,12 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
     with _undamaged(folder / COLUMNS):
-        return {column.name: table[column.name].to_numpy() for column in columns}
+        return {column.name: _numbers(table[column.name]) for column in columns}
+
+
+def _numbers(column: Any) -> NDArray[np.float64]:
+    """Return a column as one array. Its ``to_numpy`` would import pandas, wherever that is."""
+    return np.concatenate([np.empty(0), *map(np.from_dlpack, column.chunks)])
 
 
 def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:
