@@ -56,7 +56,7 @@ MODELS: Mapping[str, SandModel] = {
             "disc.spread": SPREAD,
             "rolling_resistance": ROLLING,
             "unloading_ratio": ONE_LAW_UNLOADING,
-            "unit_weight_of": "layer",
+            "density_of": "layer",
         },
         prepared=True,
     ),

@@ -57,7 +57,7 @@ class Impact:
         Fictitious modulus E_bar (Pa).
     width : float
         Of the box (m).
-    depth : float
+    thickness : float
         Effective thickness dL of the sand out of the plane (m).
     stop_time : float
         End of the run (s), after the rock has turned.
@@ -69,7 +69,7 @@ class Impact:
     summary: str
     modulus: float
     width: float
-    depth: float
+    thickness: float
     stop_time: float
     span: float = 0.0
 
@@ -87,13 +87,13 @@ class Impact:
         return round(self.span / ELEMENT) if self.span else 1
 
 
-RIGID_DEPTH = 2 * ROCK_RADIUS * 10.0 / 9.9
+RIGID_THICKNESS = 2 * ROCK_RADIUS * 10.0 / 9.9
 """Effective thickness on the rigid base (m), which the paper does not give.
 
 As in the laboratory, 10 cm for a ball of 9.9 cm.
 """
-GIRDER_DEPTH = 170 * cm
-"""Distance of the girders, which the paper takes as the effective depth."""
+GIRDER_THICKNESS = 170 * cm
+"""Distance of the girders, which the paper takes as the effective thickness."""
 
 ELEMENT = 20 * cm
 """Length of a beam element (m): a disc twice a sand disc, with a stable step of 2e-5 s.
@@ -134,7 +134,7 @@ def impacts() -> dict[str, Impact]:
             f"1 tf from 10 m on 90 cm of {words} on a rigid base, E_bar {modulus:g} kgf/cm²",
             modulus * kgf / cm2,
             4.0,
-            RIGID_DEPTH,
+            RIGID_THICKNESS,
             stop,
         )
         for name, words, modulus, stop in _SANDS
@@ -146,7 +146,7 @@ def impacts() -> dict[str, Impact]:
             f"1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders of {span:g} m",
             _GIRDER_SAND * kgf / cm2,
             3.0,
-            GIRDER_DEPTH,
+            GIRDER_THICKNESS,
             _GIRDER_STOP,
             span,
         )
@@ -216,7 +216,7 @@ def full_scale_system(
 def _sand(fmu: str, impact: Impact, kinematics: str, forces: str) -> ComponentSpec:
     parameters: dict[str, Value] = {
         "modulus": impact.modulus,
-        "depth": impact.depth,
+        "thickness": impact.thickness,
         "disc.radius": DISC_RADIUS,
         "base": "beam_discs" if impact.span else "floor",
         "kinematics": kinematics,
@@ -300,12 +300,12 @@ def cushion_weight(system: SystemSpec, discs: int) -> float:
         if v.size is None
     }
     sand = {**given, **system.components["sand"].parameters}
-    density = float(sand["unit_weight"]) / (
-        float(sand["solid_fraction"]) if sand.get("unit_weight_of") == "layer" else 1.0
+    density = float(sand["density"]) / (
+        float(sand["solid_fraction"]) if sand.get("density_of") == "layer" else 1.0
     )
     spread = float(sand["disc.spread"]) if sand["packing"] in ("random", "prepared") else 0.0
     area = math.pi * float(sand["disc.radius"]) ** 2 * (1.0 + spread**2 / 3.0)
-    return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
+    return discs * density * area * float(sand["thickness"]) * float(sand["gravity"])
 
 
 def layer(impact: Impact, dropped: bool = True) -> SandLayer:

@@ -16,7 +16,7 @@ from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
 from ..core.system.system import ComponentSpec, SystemSpec, Value
-from .full_scale import GIRDER_DEPTH, Impact, full_scale_system, layer
+from .full_scale import GIRDER_THICKNESS, Impact, full_scale_system, layer
 from .sand_models import SandLayer
 
 SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
@@ -33,7 +33,7 @@ IMPACT = Impact(
     "95th-percentile rock of a 35 m slope on 90 cm of crushed sand on H-300x400 girders of 10 m",
     100.0 * kgf / cm2,
     10.0,
-    GIRDER_DEPTH,
+    GIRDER_THICKNESS,
     0.6,
     10.0,
 )

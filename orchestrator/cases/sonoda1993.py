@@ -469,13 +469,13 @@ def known_of(test: Test) -> dict[str, Known]:
 
 SAND = ("sand.modulus", "sand.damping")
 """Parameters that the paper varies in table 5 for the system of the tests."""
-_TESTED = ("box.", "rock.", "beam.", "base.y", "depth", "disc.radius", "unit_weight", "gravity")
+_TESTED = ("box.", "rock.", "beam.", "base.y", "thickness", "disc.radius", "density", "gravity")
 """Beginnings of the sand's parameters that describe the test.
 
 Those of :data:`_SUPPORT` are whole names. The others are choices of the model.
 """
 _SUPPORT = ("base", "walls")
-_READINGS = ("beam.disc_mass", "unit_weight_of")
+_READINGS = ("beam.disc_mass", "density_of")
 """Parameters that read the paper in another way, whatever they begin with."""
 
 
