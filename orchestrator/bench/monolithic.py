@@ -57,7 +57,7 @@ class Monolith:
     history: NDArray[np.float64]
 
     def run(self) -> None:
-        """All steps."""
+        """Make all steps, from the start to the stop time."""
         inertia = float(rock_kernel.inertia(self.rock.w))
         rock, sand, beam = self.rock, self.sand, self.beam
         status = _run(

@@ -134,7 +134,8 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
     """
     if name is None:
         return Changes()
-    model, layer = sand_model(name), chosen.layer
+    model = sand_model(name)
+    layer = chosen.layer
     if layer is None:
         raise InputRefused(
             [
@@ -253,7 +254,8 @@ def _laboratory(test: sonoda1993.Test) -> Case:
             sizes["beam"]["elements"],
         )
 
-    name, numbered = sonoda1993.case_name(test.number), f"lab-impact-{test.number}"
+    name = sonoda1993.case_name(test.number)
+    numbered = f"lab-impact-{test.number}"
     return Case(
         name,
         f"Sonoda et al. 1993, laboratory, test {test.number}: {test.state}",

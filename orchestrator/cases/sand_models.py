@@ -194,7 +194,8 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
     values: dict[str, Value] = {f"sand.{name}": value for name, value in model.parameters.items()}
     if not model.prepared:
         return Changes(values)
-    state, largest = soil or layer.soil, 2.0 * layer.disc_radius * (1.0 + SPREAD)
+    state = soil or layer.soil
+    largest = 2.0 * layer.disc_radius * (1.0 + SPREAD)
     clearance = 1.5 * largest
     gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
     values |= {

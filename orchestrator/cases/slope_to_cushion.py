@@ -15,16 +15,15 @@ from rockshed.components.common.component import Instance
 from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
-from ..core.system.system import ComponentSpec, SystemSpec, Value
+from ..core.system.system import ComponentSpec, SharedValue, SystemSpec, Value
 from .full_scale import GIRDER_DEPTH, Impact, full_scale_system, layer
 from .sand_models import SandLayer
 
 SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
-LINE, SHARE = "cushion", 0.95
-"""Search line that the rocks pass as they land on the cushion, and the percentile there.
-
-The percentile is that of their kinetic energy.
-"""
+LINE = "cushion"
+"""Search line that the rocks pass as they land on the cushion."""
+SHARE = 0.95
+"""Percentile of the kinetic energy of the rocks there."""
 TRIAL = 7649
 """The trial at this percentile in the site's 10,000; a test finds it again."""
 
@@ -158,25 +157,11 @@ def slope_system(
         The co-simulation.
     """
     system = full_scale_system(fmus, IMPACT, coupling, discs, elements)
-    site, sand, beam = _site(), system.components["sand"], system.components["beam"]
-    shared = {
-        name: value.model_copy(update={"value": site[name.removeprefix("rock_")]})
-        if name.startswith("rock_")
-        else value
-        for name, value in system.shared.items()
-    }
-    given = {
-        name: value
-        for name, value in site_parameters(site).items()
-        if name not in ("mass", "radius")
-    }
-    rock = {
-        **given,
-        "trial": TRIAL,
-        "lead_time": LEAD_TIME,
-        **receiver(site["radius"]),
-        "internal_step": system.components["rock"].parameters["internal_step"],
-    }
+    site = _site()
+    sand = system.components["sand"]
+    beam = system.components["beam"]
+    step = system.components["rock"].parameters["internal_step"]
+    rock = {**_rock_parameters(site), "internal_step": step}
     roof = {
         "base": "beam_surface",
         "box.wall_height": WALL_HEIGHT,
@@ -185,7 +170,7 @@ def slope_system(
     return system.model_copy(
         update={
             "description": IMPACT.summary,
-            "shared": shared,
+            "shared": _shared(system, site),
             "components": {
                 **system.components,
                 "rock": ComponentSpec(fmu=fmus["rock"], parameters=rock),
@@ -196,6 +181,23 @@ def slope_system(
             },
         }
     )
+
+
+def _shared(system: SystemSpec, site: Instance) -> dict[str, SharedValue]:
+    """Return the shared values of the impact, those of the rock as the site has them."""
+    return {
+        name: value.model_copy(update={"value": site[name.removeprefix("rock_")]})
+        if name.startswith("rock_")
+        else value
+        for name, value in system.shared.items()
+    }
+
+
+def _rock_parameters(site: Instance) -> dict[str, Value]:
+    """Return the parameters of the rock on its slope; mass and radius are shared values."""
+    own = site_parameters(site)
+    slope = {name: own[name] for name in own if name not in ("mass", "radius")}
+    return {**slope, "trial": TRIAL, "lead_time": LEAD_TIME, **receiver(site["radius"])}
 
 
 def sand_layer() -> SandLayer:

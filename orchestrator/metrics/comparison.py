@@ -88,7 +88,7 @@ _STILL = (
 
 
 @dataclass(frozen=True)
-class Row:
+class ComparedRow:
     """A metric as it is shown.
 
     Text per column, deviations (computed / reference - 1) as numbers.
@@ -146,7 +146,7 @@ def _compared(metric: Metric, known: Known) -> Metric:
     return replace(metric, references=references)
 
 
-def rows(run: StoredRun, known: Mapping[str, Known]) -> list[Row]:
+def rows(run: StoredRun, known: Mapping[str, Known]) -> list[ComparedRow]:
     """Return the rows of the table.
 
     Parameters
@@ -158,7 +158,7 @@ def rows(run: StoredRun, known: Mapping[str, Known]) -> list[Row]:
 
     Returns
     -------
-    list of Row
+    list of ComparedRow
         In the order in which a designer asks for them; of a system without any of them, its
         summary.
     """
@@ -180,19 +180,19 @@ def rows(run: StoredRun, known: Mapping[str, Known]) -> list[Row]:
     return shown + list(_couplings(run))
 
 
-def _plain(metric: Metric) -> Row:
+def _plain(metric: Metric) -> ComparedRow:
     value = metric.value if isinstance(metric.value, str) else f"{metric.value:.6g}"
-    return Row(metric.name, "" if metric.unit == "1" else metric.unit, value)
+    return ComparedRow(metric.name, "" if metric.unit == "1" else metric.unit, value)
 
 
-def _headline_rows(metric: Metric, name: str) -> Iterator[Row]:
+def _headline_rows(metric: Metric, name: str) -> Iterator[ComparedRow]:
     """Yield the rows of a headline metric; of one among several, with the name of its component."""
     label, scales = _ROWS[name]
     owner = metric.name.removesuffix(name)
     return _rows(f"{owner}{label}", scales, metric)
 
 
-def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[Row]:
+def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[ComparedRow]:
     """Yield one row for each unit; the deviations stand in the first."""
     for number, scale in enumerate(scales):
         first = number == 0
@@ -201,7 +201,9 @@ def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[Row]:
             beside[who] = ("≈ " if found.note else "") + _written(found.value, scale)
             beside[f"{who}_deviation"] = found.deviation if first else None
         unit = "" if scale.unit == "1" else scale.unit
-        yield Row(label if first else "", unit, _written(float(metric.value), scale), **beside)
+        yield ComparedRow(
+            label if first else "", unit, _written(float(metric.value), scale), **beside
+        )
 
 
 def _written(value: float, scale: Scale) -> str:
@@ -211,18 +213,18 @@ def _written(value: float, scale: Scale) -> str:
     return f"{shown:{scale.sign}.3g}"
 
 
-def _couplings(run: StoredRun) -> Iterator[Row]:
+def _couplings(run: StoredRun) -> Iterator[ComparedRow]:
     """Yield the energy that each coupling has made, as a share of the impact energy."""
     impact = impact_energy(run)
     for column, values in run.series.items():
         if column.startswith("coupling.") and column.endswith(".energy"):
             bond = column.removeprefix("coupling.").removesuffix(".energy").replace("_", "-")
             if impact:
-                yield Row(
+                yield ComparedRow(
                     f"coupling {bond} / E0", "%", _written(values[-1] / impact, Scale("%", 3))
                 )
             else:
-                yield Row(f"coupling {bond}", "J", f"{values[-1]:.4g}")
+                yield ComparedRow(f"coupling {bond}", "J", f"{values[-1]:.4g}")
 
 
 def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:

@@ -2,9 +2,6 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rockshed.components.common.roles import Role
 
 from ..core.results.metric import Metric
@@ -14,9 +11,7 @@ from .energy import driven
 from .filtering import load_cell, low_pass
 from .load_curve import DEPTH, LoadCurve, driven_curve
 from .roles import column, elements, members, owners, parameters
-from .values import extreme, integral, of_each
-
-Values = NDArray[np.float64]
+from .values import Samples, extreme, integral, of_each
 
 SETTLING = 0.5
 """Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one
@@ -158,7 +153,7 @@ def cut_off(run: StoredRun, cushion: str) -> float | None:
     return SETTLING * float(known.contact_frequency(parameters(run, cushion)))
 
 
-def settled(run: StoredRun, cushion: str, name: str) -> Values | None:
+def settled(run: StoredRun, cushion: str, name: str) -> Samples | None:
     """Return an output of a cushion without what is faster than its cut-off.
 
     Parameters

@@ -46,9 +46,11 @@ def warnings(run: StoredRun) -> list[str]:
 
 def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
     """Doubt an energy balance that does not close."""
-    name, whole = names.RESIDUAL_SHARE, "impact energy"
+    name = names.RESIDUAL_SHARE
+    whole = "impact energy"
     if driven(run):
-        name, whole = names.RESIDUAL_WORK_SHARE, "work of the machine"
+        name = names.RESIDUAL_WORK_SHARE
+        whole = "work of the machine"
     share = next((float(metric.value) for metric in found if metric.name == name), None)
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
         yield (

@@ -3,18 +3,13 @@
 from collections.abc import Iterator
 from functools import partial
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rockshed.components.common.roles import Role
 
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import names
 from .roles import column, owners, parameter, recorded
-from .values import extreme, of_each
-
-Values = NDArray[np.float64]
+from .values import Samples, extreme, of_each
 
 
 def driven(run: StoredRun) -> bool:
@@ -29,7 +24,7 @@ def driven(run: StoredRun) -> bool:
     return any(value in ("driven", True) for value in values)
 
 
-def machine_work(run: StoredRun) -> Values | None:
+def machine_work(run: StoredRun) -> Samples | None:
     """Return the work of the machines on driven bodies since the start.
 
     Parameters
@@ -46,7 +41,7 @@ def machine_work(run: StoredRun) -> Values | None:
     return sum(works[1:], works[0]) if works and driven(run) else None
 
 
-def system_residual(run: StoredRun) -> Values | None:
+def system_residual(run: StoredRun) -> Samples | None:
     """Return the energy that the whole system has made since the start.
 
     That is what is stored and dissipated less what came in. A component's residual is the change of
@@ -79,7 +74,7 @@ def system_residual(run: StoredRun) -> Values | None:
     return total if total is None or carried is None else total - carried
 
 
-def carried_work(run: StoredRun) -> Values | None:
+def carried_work(run: StoredRun) -> Samples | None:
     """Return the work of loads at rest that no component counts.
 
     Parameters
@@ -216,7 +211,7 @@ def _structure_shares(impact: float, run: StoredRun, structure: str) -> Iterator
         yield Metric(_SHARES[name], energy / impact)
 
 
-def largest(values: Values) -> float:
+def largest(values: Samples) -> float:
     """Return the value that is farthest from zero.
 
     Parameters

@@ -3,9 +3,15 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from .names import of_component
+
+Samples = NDArray[np.float64]
+"""Values of a variable over time, shape (rows,)."""
 
 
 def extreme(run: StoredRun, column: str) -> tuple[float, float]:

@@ -118,7 +118,8 @@ def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
 
 def _draw_panel(run: StoredRun, panel: _Panel, axes: Axes, several: bool) -> None:
     """Draw the curves of a panel."""
-    told, colours = panel.told, cycle(_COLOURS)
+    told = panel.told
+    colours = cycle(_COLOURS)
     unit = told["unit"]
     for component in panel.components:
         colour = ""

@@ -84,7 +84,8 @@ def energy(run: StoredRun, file: Path) -> None:
 
 def _stack(run: StoredRun, axes: Axes) -> None:
     """Draw the layers, and the energy that there should be."""
-    time, shown = run.series["time"] / ms, list(layers(run))
+    time = run.series["time"] / ms
+    shown = list(layers(run))
     if shown:  # no part may have any energy
         axes.stackplot(
             time,
@@ -120,9 +121,11 @@ def _error(run: StoredRun, axes: Axes) -> None:
     It is a share of the impact energy, or of what a machine has put in.
     """
     residual, machine = system_residual(run), machine_work(run)
-    whole, name = impact_energy(run), "impact\nenergy"
+    whole = impact_energy(run)
+    name = "impact\nenergy"
     if machine is not None:
-        whole, name = float(abs(machine[-1])), "work of\nthe machine"
+        whole = float(abs(machine[-1]))
+        name = "work of\nthe machine"
     if residual is not None and whole:
         axes.plot(run.series["time"] / ms, 100.0 * residual / whole, color=INK, linewidth=1.0)
         axes.set_ylabel(f"error of the balance\n(% of the {name})", fontsize=8)

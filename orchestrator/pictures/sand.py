@@ -193,7 +193,7 @@ def draw(
 
 @dataclass(frozen=True)
 class _View:
-    """What all panels have in common.
+    """Geometry and scales that all panels have in common.
 
     StoredRun, cushion, structure under it, window (m), enlargement of deflections.
     """

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused, Problem
-from ..fmu.description import Description, Port, Unit
+from ..fmu.description import Description, Port, UnitDefinition
 from ..fmu.fmu_slave import read_description
 from ..fmu.slave import REAL, Source
 from .limits import amount_problems, internal_step_problems
@@ -471,7 +471,7 @@ class _Planner:
                     "name forces with positions and torques with angles, in SI units",
                 )
                 return
-        if work and is_joule(work[0].port.unit, Unit("1", {})) is False:
+        if work and is_joule(work[0].port.unit, UnitDefinition("1", {})) is False:
             self._refuse(
                 where, f"{work[0].name} is in {work[0].port.unit_name}", "name an output in J"
             )
