@@ -149,7 +149,7 @@ def stop(t, v, mass, load, impedance, resistance, rise):
 def work_of_load(t, v, mass, load, impedance, resistance, rise):
     """Return the work of the load c - Z v on the plate.
 
-    Gauss's rule of three points: exact for Z = 0, and nearly so for short t.
+    Gauss's rule of three points: exact for Z = 0 and for short t.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ def shaft_soil(i, w, x, k):
     Parameters
     ----------
     i : int
-        Node, 0 is the head (with a ram: the ram).
+        Node; 0 is the head, or the ram of masses and springs.
     w, x : ndarray of float64
         Variables and state.
     k : ndarray of int64

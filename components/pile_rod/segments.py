@@ -30,7 +30,7 @@ _EQUAL = 1e-9
 
 @kernel
 def divide(w, x, k):
-    """Set impedance and area of each segment.
+    """Set travel time of the rod, impedance and area of each segment.
 
     The rod is divided in equal travel times, not lengths. The impedance of a segment is the mean
     over its travel time: its mass is then that of the rod there.
