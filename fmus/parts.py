@@ -1,4 +1,4 @@
-"""What the FMUs of both runtimes have in common: their files, hashes of them, the archive, and what can go wrong."""
+"""Parts that both runtimes have in common: files of an FMU, hashes of them, the archive, errors."""
 
 import hashlib
 import io
@@ -19,7 +19,7 @@ Files = dict[str, bytes]
 
 
 class Runtime(StrEnum):
-    """What carries out an FMU's kernels."""
+    """Carriers of an FMU's kernels."""
 
     PYTHON = "python"
     NATIVE = "native"

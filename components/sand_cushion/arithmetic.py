@@ -2,12 +2,11 @@
 
 A formula that is written with these functions, with + - * / and with > is computed for one contact
 at a time in kernels, and for eight contacts at a time where :mod:`.vector` writes instructions: the
-same source, there with numbers and here with :class:`.vector.lanes.Lanes`.
+same source, there with numbers and here with :class:`.vector.lanes.Lanes`, which bring the methods
+``selected`` and ``fused``. This module does not know that class, whose module knows this one.
 """
 
 from numba.extending import overload, register_jitable
-
-from .vector.lanes import Lanes, fused, selected
 
 formula = register_jitable(error_model="numpy")
 """Decorator of formulas: leaves the function as it is and lets kernels call it too."""
@@ -28,8 +27,8 @@ def where(condition, yes, no):
     float or Lanes
         The selected number.
     """
-    if isinstance(condition, Lanes):
-        return selected(condition, yes, no)
+    if hasattr(condition, "selected"):
+        return condition.selected(yes, no)
     return yes if condition else no
 
 
@@ -49,8 +48,8 @@ def multiply_add(one, other, added):
     float or Lanes
         The sum.
     """
-    if isinstance(one, Lanes):
-        return fused(one, other, added)
+    if hasattr(one, "fused"):
+        return one.fused(other, added)
     return one * other + added
 
 

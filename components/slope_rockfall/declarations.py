@@ -14,8 +14,8 @@ RELATIVE, ABSOLUTE = 1, 2
 NORMAL, UNIFORM, LOGNORMAL, TRIANGULAR = 1, 2, 3, 4
 FLIGHT, ROLLING, SLIDING, SPINNING, REST, RECEIVED = range(1, 7)
 IMPACT, NODE, TAKE_OFF, GRIP, HALT, ENTER, LEAVE = range(1, 8)
-"""What ends a stretch of motion: impact on a cell, passing to the next cell, limit speed, end of slip, end of motion or spin,
-entering and leaving the receiver."""
+"""Events that end a stretch of motion: impact on a cell, passing to the next cell, limit speed, end
+of slip, end of motion or spin, entering and leaving the receiver."""
 
 SIZES = {"cells": Size(15, 1, 5000, "straight cells of the slope")}
 

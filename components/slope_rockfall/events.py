@@ -63,8 +63,8 @@ World = namedtuple(
     "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean limit_deviation "
     "limit_kind roughness_kind tilt_kind tail hypercube receiver left right bottom top",
 )
-"""What does not change during a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated normal.
-hypercube: trials of a Latin hypercube, or 0."""
+"""Constants of a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated
+normal. hypercube: trials of a Latin hypercube, or 0."""
 
 
 @kernel
@@ -347,7 +347,11 @@ def end_of_line_motion(world, b):
     if b[BODY.mode] == SLIDING and slip * rate < 0.0 and -slip / rate < wait:
         event, wait = GRIP, -slip / rate
     limit = take_off_speed(world, c, b)
-    reaches = 0.0 if u >= limit else ((limit - u) / acceleration if acceleration > 0.0 else NEVER)
+    reaches = NEVER
+    if u >= limit:
+        reaches = 0.0
+    elif acceleration > 0.0:
+        reaches = (limit - u) / acceleration
     if reaches < wait:
         event, wait = TAKE_OFF, reaches
     return event, wait

@@ -17,7 +17,7 @@ Touch = namedtuple("Touch", "mass radius ratio friction sin cos")
 """A rock on a cell: mass (kg), radius (m), I/(m r2), mu, sine and cosine of the angle phi of the
 contact force."""
 LineMotion = namedtuple("LineMotion", "mode acceleration normal_force shear_force")
-"""What a rock does until the next event: mode, acceleration (m/s2), P and S (N)."""
+"""Motion of a rock until the next event: mode, acceleration (m/s2), P and S (N)."""
 
 _SLIP = 1e-10
 """Slip, relative to the speeds it is the difference of, that is rounding."""

@@ -84,7 +84,7 @@ def trial(
 
 @kernel
 def clear_records(passages, peaks, outcome):
-    """Nothing has happened yet."""
+    """Set all records to those of a rock that has not moved."""
     for i in range(passages.shape[0]):
         for q in range(passages.shape[1]):
             passages[i, q] = 0.0

@@ -65,6 +65,17 @@ class Lanes:
     def __gt__(self, other: Lanes | float) -> Lanes:
         return self.made(self.builder.fcmp_ordered(">", self.value, self.like(other)))
 
+    def selected(self, yes: Lanes | float, no: Lanes | float) -> Lanes:
+        """Return one of two vectors, lane by lane; this vector is a mask."""
+        vector = yes if isinstance(yes, Lanes) else no
+        assert isinstance(vector, Lanes)
+        chosen = self.builder.select(self.value, vector.like(yes), vector.like(no))
+        return vector.made(chosen)
+
+    def fused(self, other: Lanes, added: Lanes) -> Lanes:
+        """Return this vector times another plus a third, rounded once."""
+        return _intrinsic("fma", self, other, added)
+
     def shuffled(self, places: list[int], other: Lanes | None = None) -> Lanes:
         """Return some of the numbers of this vector and, behind them, of another.
 
@@ -116,21 +127,9 @@ def divisors(one: Lanes, other: Lanes) -> tuple[Divisor, Divisor]:
     return Divisor(one, both * other), Divisor(other, both * one)
 
 
-def selected(mask: Lanes, yes: Lanes | float, no: Lanes | float) -> Lanes:
-    """Return one of two vectors, lane by lane."""
-    vector = yes if isinstance(yes, Lanes) else no
-    assert isinstance(vector, Lanes)
-    return vector.made(mask.builder.select(mask.value, vector.like(yes), vector.like(no)))
-
-
 def sqrt(number: Lanes) -> Lanes:
     """Return the square roots, lane by lane."""
     return _intrinsic("sqrt", number)
-
-
-def fused(one: Lanes, other: Lanes, added: Lanes) -> Lanes:
-    """Return one * other + added, rounded once."""
-    return _intrinsic("fma", one, other, added)
 
 
 def _intrinsic(name: str, *arguments: Lanes) -> Lanes:

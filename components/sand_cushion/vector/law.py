@@ -10,7 +10,7 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
-from ..arithmetic import multiply_add
+from ..arithmetic import multiply_add, where
 from ..contact_law import (
     Approach,
     Response,
@@ -22,7 +22,7 @@ from ..contact_law import (
     yield_loss,
 )
 from ..declarations import BLOCK, COLUMN, LANES, LAW, TALLY, Law
-from .lanes import Access, Lanes, Running, divisor, divisors, fused, selected, spread, sqrt
+from .lanes import Access, Lanes, Running, divisor, divisors, spread, sqrt
 
 
 def _constants(access: Access) -> Law:
@@ -33,7 +33,7 @@ def _constants(access: Access) -> Law:
 
 def _add(total: Running, one: Lanes, other: Lanes) -> None:
     """Add a product to a running sum."""
-    total.become(fused(one, other, total.now))
+    total.become(multiply_add(one, other, total.now))
 
 
 def _yielded(
@@ -44,7 +44,7 @@ def _yielded(
     full = law.pull * reach
     grown = permanent_overlap(before, overlap, law)
     sums.plastic.become(sums.plastic.now + yield_loss(before, grown, full, law))
-    permanent = selected(overlap > -longest, grown, 0.0)
+    permanent = where(overlap > -longest, grown, 0.0)
     elastic = overlap - permanent
     closure = bridge_closure(elastic, longest)
     sums.capillary.become(sums.capillary.now + capillary_energy(elastic, closure, longest, full))

@@ -14,9 +14,9 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from ...common.kernels import kernel
-from ..arithmetic import larger
+from ..arithmetic import larger, multiply_add
 from ..declarations import BLOCK, FORCE_ROW, HALF_ROOT, INVERSE_MASS, LANES, ROW
-from .lanes import INDEX, WORD, Access, Lanes, constant, fused, spread
+from .lanes import INDEX, WORD, Access, Lanes, constant, spread
 
 KINETIC, FASTEST, POTENTIAL = 0, 4, 6
 """Places of the sums of :func:`move_rows`: m/4 times old and new velocity to the right, upwards and
@@ -114,7 +114,7 @@ def pairs_to_columns(typing, body, pair, at, block):
             rows = []
             for q in range(LANES):
                 i, j = _bodies(access, access.place(builder.add(access[2], lane), q))
-                rows.append(fused(access.load(0, i, ROW), sign, access.load(0, j, ROW)))
+                rows.append(multiply_add(access.load(0, i, ROW), sign, access.load(0, j, ROW)))
             columns = _transposed(rows)
             for column, source in enumerate((0, 1, 2, 3, 4, 5, 7)):
                 access.store(columns[source], 3, access.place(lane, column * BLOCK))
@@ -161,7 +161,7 @@ def _columns_to_pairs(turning: bool) -> Any:
                         [two, two + 1, two + 8, two + 9][:width], turns[q % 2]
                     )
                     before = access.loaded(i, width)
-                    access.put(fused(row, sign, before) if turning else before - row, i)
+                    access.put(multiply_add(row, sign, before) if turning else before - row, i)
                     access.put(row + access.loaded(j, width), j)
             return context.get_dummy_value()
 
@@ -222,12 +222,12 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
             root = spread(builder, access.number(0, access.place(at, HALF_ROOT)), 4)
             old, position = access.load(0, velocity, 4), access.load(0, at, 2)
             mass = root * root
-            new = fused(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
+            new = multiply_add(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
             access.store(new, 0, velocity)  # and the radius, to which nothing was added
-            kinetic.become(fused(mass * old, new, kinetic.now))
-            potential.become(fused(mass.shuffled([0, 1]), position, potential.now))
+            kinetic.become(multiply_add(mass * old, new, kinetic.now))
+            potential.become(multiply_add(mass.shuffled([0, 1]), position, potential.now))
             speed = new.shuffled([0, 1])
-            access.store(fused(speed, way, position), 0, at)
+            access.store(multiply_add(speed, way, position), 0, at)
             square = speed * speed
             fastest.become(larger(square + square.shuffled([1, 0]), fastest.now))
             access.store(Lanes(builder, zero), 1, force)
