@@ -169,19 +169,19 @@ def switch(name: str, description: str, start: bool, **rest: Any) -> Variable:
 
 
 def count(name: str, description: str, start: int, **rest: Any) -> Variable:
-    """Declare an integer parameter."""
+    """Declare a parameter that is a whole number."""
     return Variable(
         name, Causality.PARAMETER, description, "1", float(start), kind=Kind.INTEGER, **rest
     )
 
 
 def inp(name: str, description: str, unit: str = "1", start: Start = 0.0, **rest: Any) -> Variable:
-    """Declare a real input."""
+    """Declare an input that is a real number."""
     return Variable(name, Causality.INPUT, description, unit, start, **rest)
 
 
 def out(name: str, description: str, unit: str = "1", **rest: Any) -> Variable:
-    """Declare a real output.
+    """Declare an output that is a real number.
 
     It has no start value: the component computes it when it is initialised.
     """

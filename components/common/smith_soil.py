@@ -8,10 +8,11 @@ The law stands here in the two forms that its users need, with one set of words;
 them:
 
 * of a **node** that goes some way in a step (:class:`Soil`): the state is the stretch, the elastic
-  displacement R Q/R_u, negative where a toe has left the ground. The resistance is its mean over the
-  way, so that elastic soil keeps its energy.
+  displacement R Q/R_u, negative where a toe has left the ground. The resistance is its mean over
+  the way, so that elastic soil keeps its energy.
 * of a **toe** that moves piece by piece (:class:`Spring`): the state is the resistance itself and
-  the slack, the way until the toe touches the ground. Pieces end where the law changes and are exact.
+  the slack, the way until the toe touches the ground. Pieces end where the law changes and are
+  exact.
 """
 
 import math
@@ -50,7 +51,8 @@ def mean_static(soil, way):
 
     It is the work on the soil divided by the way.
     """
-    end, low = soil.stretch + way, -soil.quake if soil.tension else 0.0
+    end = soil.stretch + way
+    low = -soil.quake if soil.tension else 0.0
     begun, held = min(max(soil.stretch, low), soil.quake), min(max(end, low), soil.quake)
     elastic = 0.5 * soil.ultimate / soil.quake * (begun + held)
     if way == 0.0 or held - begun == way:
@@ -144,7 +146,8 @@ def _balanced(total, drive, shaft, toe, velocity, dt):
 @kernel
 def _slope(soil, way, mean):
     """Return the change of the mean resistance with the way (N/m)."""
-    end, low = soil.stretch + way, -soil.quake if soil.tension else 0.0
+    end = soil.stretch + way
+    low = -soil.quake if soil.tension else 0.0
     if low <= soil.stretch and low <= end <= soil.quake:
         return 0.5 * soil.ultimate / soil.quake
     return 0.0 if way == 0.0 else (static(soil, end) - mean) / way

@@ -172,8 +172,7 @@ def stored_energy(w):
 
 @kernel
 def publish_energies(kinetic, potential, w, sums):
-    """Write the energies at the beginning of the last internal step, and the error of their
-    balance.
+    """Write the energies at the start of the last internal step, and the error of their balance.
 
     Parameters
     ----------

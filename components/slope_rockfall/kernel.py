@@ -1,4 +1,7 @@
-"""Life of the rock as an FMU: start, event-driven motion on the slope, motion under outside forces in the receiver."""
+"""Life of the rock as an FMU: start, motion from event to event, motion in the receiver.
+
+In the receiver outside forces move the rock.
+"""
 
 import math
 
@@ -26,26 +29,31 @@ __all__ = ["evaluate", "initialise", "problems", "step"]
 V, A = LAYOUT.scalar, LAYOUT.array
 
 UNBOUNDED_STEP = 1e6
-"""Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
+"""Published as stable step (s): without outside forces that depend on the motion, every step is
+stable."""
 TOUCHING = 1e-9
 """Depth (m) below the path that is rounding."""
 MOST_EVENTS = 1_000_000
 """Events in one communication step after which something must be wrong."""
 _GRID = 1e12
-"""Times are taken in whole picoseconds, so that the rounding of a tool's clock does not reach the outputs."""
+"""Times are taken in whole picoseconds, so that the rounding of a tool's clock does not reach the
+outputs."""
 _COARSE = 2.0**52 / _GRID
 """Time (s) beyond which numbers are too far apart to tell picoseconds."""
 
 
 @kernel
 def on_grid(time):
-    """The time (s) in whole picoseconds."""
+    """Return a time (s) in whole picoseconds."""
     return math.floor(time * _GRID + 0.5) / _GRID
 
 
 @kernel
 def grid_after(time):
-    """The first whole picosecond (s) that is not before the time (s): a step that ends there has what happens then behind it."""
+    """Return the first whole picosecond (s) that is not before a time (s).
+
+    A step that ends there has what happens then behind it.
+    """
     if time > _COARSE:
         return time
     number = math.floor(time * _GRID)
@@ -59,30 +67,30 @@ def grid_after(time):
 
 @kernel
 def lay_ground(w, x, k):
-    """The materials, cell by cell."""
+    """Copy the materials, cell by cell."""
     ground = view(x, k, A.ground)
     for c in range(k[A.end_x + 1]):
         at = c * len(GROUND)
-        ground[at + GROUND.strength], ground[at + GROUND.stiffness] = (
-            view(w, k, A.strength)[c],
-            view(w, k, A.stiffness)[c],
-        )
-        ground[at + GROUND.hardening], ground[at + GROUND.friction] = (
-            view(w, k, A.hardening)[c],
-            view(w, k, A.friction)[c],
-        )
+        ground[at + GROUND.strength] = view(w, k, A.strength)[c]
+        ground[at + GROUND.stiffness] = view(w, k, A.stiffness)[c]
+        ground[at + GROUND.hardening] = view(w, k, A.hardening)[c]
+        ground[at + GROUND.friction] = view(w, k, A.friction)[c]
         ground[at + GROUND.resistance] = view(w, k, A.resistance)[c]
-        ground[at + GROUND.tilt], ground[at + GROUND.tilt_deviation] = (
-            view(w, k, A.tilt)[c],
-            view(w, k, A.tilt_deviation)[c],
-        )
+        ground[at + GROUND.tilt] = view(w, k, A.tilt)[c]
+        ground[at + GROUND.tilt_deviation] = view(w, k, A.tilt_deviation)[c]
         ground[at + GROUND.roughness] = view(w, k, A.roughness)[c]
         ground[at + GROUND.roughness_deviation] = view(w, k, A.roughness_deviation)[c]
 
 
 @kernel
 def prepare(w, x, k):
-    """Path and materials from the parameters. Returns the status: OK, or the first fault of the parameters."""
+    """Compute path and materials from the parameters.
+
+    Returns
+    -------
+    int
+        OK, or the first fault of the parameters.
+    """
     fault = first_fault(w, k)
     if fault != OK:
         return fault
@@ -93,7 +101,7 @@ def prepare(w, x, k):
 
 @kernel
 def initialise(w, x, k):
-    """The rock at its start, or ``lead_time`` before it is handed over, and what it will do first."""
+    """Put the rock to its start, or to ``lead_time`` before its first hand-over, and plan ahead."""
     clock, b = view(x, k, A.clock), view(x, k, A.body)
     view(k, k, A.started)[0] = 0
     clock[CLOCK.origin], clock[CLOCK.begun] = 0.0, 0.0
@@ -114,7 +122,10 @@ def initialise(w, x, k):
 
 @kernel
 def skip(world, seed, trial, w, b, clock):
-    """Bring the trial to ``lead_time`` before its first hand-over: once to learn when that is, and once again up to there."""
+    """Bring the trial to ``lead_time`` before its first hand-over, and return the status.
+
+    The trial runs once to learn when that is, and once again up to there.
+    """
     entry = first_entry(world, stream(seed, trial), b)
     begin(world, seed, trial, w, b)
     if entry == NEVER:
@@ -126,7 +137,10 @@ def skip(world, seed, trial, w, b, clock):
 
 @kernel
 def first_entry(world, source, b):
-    """Time (s) at which the rock is handed over for the first time; NEVER if it is not. The rock is elsewhere then."""
+    """Return the time (s) at which the rock is handed over for the first time; NEVER if it is not.
+
+    The rock is moved to there.
+    """
     for _ in range(MOST_EVENTS):
         if b[BODY.handovers] > 0.0:
             return b[BODY.handover_time]
@@ -138,7 +152,7 @@ def first_entry(world, source, b):
 
 @kernel
 def evaluate(w, x, k):
-    """Outputs at the start: :func:`initialise` has set them, and they do not depend on the inputs."""
+    """Accept the inputs: :func:`initialise` has set the outputs, and they do not depend on them."""
     return OK
 
 
@@ -147,7 +161,20 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s): from event to event, or with constant force and torque where the rock is handed over."""
+    """Advance by h (s): from event to event, or under constant load where the rock is handed over.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the step (s).
+    w, x, k : ndarray
+        Variables, state and table of arrays.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     started, clock, b = view(k, k, A.started), view(x, k, A.clock), view(x, k, A.body)
     if started[0] == 0:
         started[0], clock[CLOCK.origin] = 1, t - clock[CLOCK.begun]
@@ -165,7 +192,7 @@ def step(t, h, w, x, k):
 
 @kernel
 def advance(world, source, end, b):
-    """Let everything happen up to the time ``end`` (s). Returns the status."""
+    """Let everything happen up to the time ``end`` (s), and return the status."""
     for _ in range(MOST_EVENTS):
         if not b[BODY.next_time] <= end:
             return OK
@@ -203,7 +230,7 @@ def push(world, now, end, h, w, b):
 
 @kernel
 def publish(time, w, x, k):
-    """Outputs at a time (s) not after the next event, from the last event's state."""
+    """Publish the outputs at a time (s) not after the next event, from the last event's state."""
     constants, b = world(w, x, k), view(x, k, A.body)
     span = max(0.0, time - b[BODY.time])
     w[V.position_x] = b[BODY.x] + span * (b[BODY.vx] + 0.5 * span * b[BODY.ax])
@@ -218,7 +245,7 @@ def publish(time, w, x, k):
 
 @kernel
 def publish_place(world, b, w, x, k):
-    """Mode, cell, height, next event and hand-over."""
+    """Publish mode, cell, height, next event and hand-over."""
     origin = view(x, k, A.clock)[CLOCK.origin]
     j = line_below(w[V.position_x], world.lines, world.path)
     w[V.mode] = b[BODY.mode]
@@ -232,7 +259,7 @@ def publish_place(world, b, w, x, k):
 
 @kernel
 def publish_energies(world, span, b, w):
-    """Energies ``span`` seconds after the last event, and the residual."""
+    """Publish the energies ``span`` seconds after the last event, and the residual."""
     spin = world.radius * w[V.angular_velocity]
     square = (
         w[V.velocity_x] * w[V.velocity_x]

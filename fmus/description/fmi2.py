@@ -154,7 +154,7 @@ def add_items(enumeration: etree._Element, variable: Variable) -> None:
 
 
 def enumeration_name(component: Component, variable: Variable) -> str:
-    """Name of the type of an enumeration."""
+    """Return the name of the type of an enumeration."""
     return f"{component.name}.{variable.name}"
 
 

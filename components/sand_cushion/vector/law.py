@@ -91,7 +91,7 @@ def _contact(
 
 
 def _block(access: Access, lasting: bool) -> None:
-    """Write the loop over the BLOCK contacts of a block, for the arguments of :func:`_block_law`."""
+    """Write the loop over the contacts of a block, for the arguments of :func:`_block_law`."""
     constants = _constants(access)
     step = spread(access.builder, access[4], LANES)
     sums = SimpleNamespace(
