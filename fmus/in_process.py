@@ -48,12 +48,34 @@ class InProcess:
         return fmu_files(self.component, self.sizes)["modelDescription.xml"]
 
     def instantiate(self, name: str) -> "InProcessSlave":
-        """Return a new instance of the component."""
+        """Return a new instance of the component.
+
+        Parameters
+        ----------
+        name : str
+            Name of the instance.
+
+        Returns
+        -------
+        InProcessSlave
+        """
         return InProcessSlave(slave_class(self.component, self.sizes), name)
 
 
 def slave_class(component: Component, sizes: Mapping[str, int]) -> type[ComponentSlave]:
-    """Return the class that the FMU of a component holds, over the component of this process."""
+    """Return the class that the FMU of a component holds, over the component of this process.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+
+    Returns
+    -------
+    type of ComponentSlave
+    """
     return type(component.name, (ComponentSlave,), {"component": component, "sizes": dict(sizes)})
 
 
@@ -126,11 +148,37 @@ class InProcessSlave:
         return status
 
     def set_text(self, reference: int, text: str) -> int:
-        """Refuse a string, as no component has one, and return the status."""
+        """Refuse a string, as no component has one, and return the status.
+
+        Parameters
+        ----------
+        reference : int
+            Value reference.
+        text : str
+            The string.
+
+        Returns
+        -------
+        int
+            Status of FMI 2.0.
+        """
         return self._call(self._slave.set_string, [reference], [text])[1]
 
     def setup_experiment(self, start: float, stop: float) -> int:
-        """Tell start and end of the run (s), and return the status."""
+        """Tell start and end of the run (s), and return the status.
+
+        Parameters
+        ----------
+        start : float
+            Start of the run (s).
+        stop : float
+            End of the run (s).
+
+        Returns
+        -------
+        int
+            Status of FMI 2.0.
+        """
         return self._call(self._slave.setup_experiment, start, stop, None)[1]
 
     def enter_initialisation(self) -> int:
@@ -142,7 +190,20 @@ class InProcessSlave:
         return self._call(self._slave.exit_initialization_mode)[1]
 
     def step(self, time: float, step: float) -> int:
-        """Advance from ``time`` by ``step`` (s), and return the status."""
+        """Advance from ``time`` by ``step`` (s), and return the status.
+
+        Parameters
+        ----------
+        time : float
+            Start of the step (s).
+        step : float
+            Length of the step (s).
+
+        Returns
+        -------
+        int
+            Status of FMI 2.0.
+        """
         done, _ = self._call(self._slave.do_step, time, step)
         return OK if done else DISCARD
 

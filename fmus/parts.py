@@ -41,6 +41,16 @@ def component_sources(component: Component) -> Files:
 
     Kernels and declarations follow from them.
 
+    Parameters
+    ----------
+    component : Component
+        The component.
+
+    Returns
+    -------
+    dict of str to bytes
+        Content by path.
+
     Raises
     ------
     BuildError
@@ -64,13 +74,37 @@ def component_sources(component: Component) -> Files:
 
 
 def picture(component: Component, name: str) -> Files:
-    """Return the component's icon under a name, if it has one."""
+    """Return the component's icon under a name, if it has one.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    name : str
+        Path that the icon gets.
+
+    Returns
+    -------
+    dict of str to bytes
+        Content by path; empty without an icon.
+    """
     icon = component.folder / "icon.png"
     return {name: icon.read_bytes()} if icon.is_file() else {}
 
 
 def digest(files: Files) -> str:
-    """Return a hash of files with their names, as 64 hexadecimal digits."""
+    """Return a hash of files with their names, as 64 hexadecimal digits.
+
+    Parameters
+    ----------
+    files : dict of str to bytes
+        Content by path.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits.
+    """
     found = hashlib.sha256()
     for path, content in sorted(files.items()):
         found.update(f"{path}\0{len(content)}\0".encode() + content)
@@ -81,6 +115,16 @@ def archive(files: Files) -> bytes:
     """Return a zip archive that follows from the files alone: fixed order, dates and permissions.
 
     Nothing is compressed, because the result would depend on the version of zlib.
+
+    Parameters
+    ----------
+    files : dict of str to bytes
+        Content by path.
+
+    Returns
+    -------
+    bytes
+        Content of the archive.
     """
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as target:

@@ -53,7 +53,19 @@ def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
 
 
 def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
-    """Return the folder's name: ``python``, ``native`` or ``native-fmi3``."""
+    """Return the folder's name: ``python``, ``native`` or ``native-fmi3``.
+
+    Parameters
+    ----------
+    runtime : Runtime
+        With Python or native.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    str
+    """
     return runtime if fmi is Fmi.TWO else f"{runtime}-fmi{fmi}"
 
 

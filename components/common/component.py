@@ -393,7 +393,18 @@ class Instance:
             raise ComponentError(self.component.name, [at + self.message(status)])
 
     def message(self, status: int) -> str:
-        """Return the message of a kernel's status, with the present values in it."""
+        """Return the message of a kernel's status, with the present values in it.
+
+        Parameters
+        ----------
+        status : int
+            Status other than OK.
+
+        Returns
+        -------
+        str
+            In words.
+        """
         template = self.component.faults.get(status, UNKNOWN_STATUS % status)
         return re.sub(r"\{([^}]+)\}", lambda match: f"{self[match.group(1)]:.6g}", template)
 
@@ -484,7 +495,18 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
 
 
 def allowed_range(variable: Variable) -> str:
-    """Return the allowed range in words, with the unit; empty where there is no bound."""
+    """Return the allowed range in words, with the unit; empty where there is no bound.
+
+    Parameters
+    ----------
+    variable : Variable
+        Its declaration.
+
+    Returns
+    -------
+    str
+        In words.
+    """
     unit = _suffix(variable)
     if variable.minimum is None:
         return "" if variable.maximum is None else f"{variable.maximum:g}{unit} or less"

@@ -19,7 +19,17 @@ _TURNS = 4
 
 @kernel
 def mix(z):
-    """Scatter a 64-bit number with the finaliser of SplitMix64, which is a bijection."""
+    """Scatter a 64-bit number with the finaliser of SplitMix64, which is a bijection.
+
+    Parameters
+    ----------
+    z : uint64
+        The number.
+
+    Returns
+    -------
+    uint64
+    """
     z = (z ^ (z >> _30)) * _MIX_1
     z = (z ^ (z >> _27)) * _MIX_2
     return z ^ (z >> _31)
@@ -27,13 +37,38 @@ def mix(z):
 
 @kernel
 def stream(seed, number):
-    """Return the start of the stream ``number`` among those of ``seed``, for :func:`draw`."""
+    """Return the start of the stream ``number`` among those of ``seed``, for :func:`draw`.
+
+    Parameters
+    ----------
+    seed : int
+        Number that chooses the streams.
+    number : int
+        Number of the stream.
+
+    Returns
+    -------
+    uint64
+    """
     return mix(mix((np.uint64(seed) + _ONE) * _STREAM) + (np.uint64(number) + _ONE) * _STREAM)
 
 
 @kernel
 def draw(start, counter):
-    """Return number ``counter`` of the stream that begins with ``start``, uniform in [0, 1)."""
+    """Return number ``counter`` of the stream that begins with ``start``, uniform in [0, 1).
+
+    Parameters
+    ----------
+    start : uint64
+        Of :func:`stream`.
+    counter : int
+        Place in the stream, from 0.
+
+    Returns
+    -------
+    float
+        In [0, 1).
+    """
     return float(mix(start + (np.uint64(counter) + _ONE) * _STREAM) >> _11) * _UNIT
 
 
@@ -75,5 +110,18 @@ def shuffled(number, count, key):
 
 @kernel
 def uniform(seed, counter):
-    """Return number ``counter`` of stream ``seed``, uniform in [0, 1)."""
+    """Return number ``counter`` of stream ``seed``, uniform in [0, 1).
+
+    Parameters
+    ----------
+    seed : int
+        Number that chooses the streams.
+    counter : int
+        Place in the stream, from 0.
+
+    Returns
+    -------
+    float
+        In [0, 1).
+    """
     return draw(mix((np.uint64(seed) + _ONE) * _STREAM), counter)

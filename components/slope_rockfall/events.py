@@ -74,7 +74,18 @@ truncated normal. hypercube: trials of a Latin hypercube, or 0."""
 
 @kernel
 def inertia(w):
-    """Return the moment of inertia in use (kg m2)."""
+    """Return the moment of inertia in use (kg m2).
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Moment of inertia (kg m2).
+    """
     if w[V.shape] == SPHERE:
         return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]
     return (
@@ -86,7 +97,17 @@ def inertia(w):
 
 @kernel
 def world(w, x, k):
-    """Return the :class:`World`: constants that follow from the parameters and the path."""
+    """Return the :class:`World`: constants that follow from the parameters and the path.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    World
+    """
     ratio = inertia(w) / (w[V.mass] * w[V.radius] * w[V.radius])
     return World(
         view(k, k, A.lines)[0],
@@ -179,7 +200,19 @@ def stratified(world, number, u, b):
 
 @kernel
 def sample_roughness(world, j, source, b):
-    """Draw R_o for the arrival on line j, between 0 and 2; it holds until the next arrival."""
+    """Draw R_o for the arrival on line j, between 0 and 2; it holds until the next arrival.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     at = ground_of(world, j)
     rough = sample(
         world,
@@ -194,7 +227,24 @@ def sample_roughness(world, j, source, b):
 
 @kernel
 def sample_tilt(world, j, source, b):
-    """Return the change (rad) of the inclination of line j for an impact."""
+    """Return the change (rad) of the inclination of line j for an impact.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Change of the inclination (rad).
+    """
     at = ground_of(world, j)
     tilt = sample(
         world,
@@ -211,7 +261,19 @@ def sample_tilt(world, j, source, b):
 
 @kernel
 def ground_of(world, j):
-    """Return where the material of line j begins in ``ground``."""
+    """Return where the material of line j begins in ``ground``.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+
+    Returns
+    -------
+    int
+    """
     return int(world.path[j * len(PATH) + PATH.cell]) * len(GROUND)
 
 
@@ -268,6 +330,17 @@ def settle_on_slope(world, j, source, b):
     """Start a rock that touches line j.
 
     It begins line motion if it moves along the line, strikes if it moves into it, and else flies.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
     """
     at = j * len(PATH)
     u, v = components(world, j, b)
@@ -281,7 +354,13 @@ def settle_on_slope(world, j, source, b):
 
 @kernel
 def receive(b):
-    """Hand the rock over at its last event."""
+    """Hand the rock over at its last event.
+
+    Parameters
+    ----------
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     b[BODY.mode] = RECEIVED
     b[BODY.handovers] += 1.0
     b[BODY.handover_time] = b[BODY.time]
@@ -292,14 +371,43 @@ def receive(b):
 
 @kernel
 def components(world, j, b):
-    """Return the velocity (m/s) along line j, to the right, and along its outward normal."""
+    """Return the velocity (m/s) along line j, to the right, and along its outward normal.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float
+        Along the line and along its normal (m/s).
+    """
     s, c = world.path[j * len(PATH) + PATH.sin], world.path[j * len(PATH) + PATH.cos]
     return b[BODY.vx] * c - b[BODY.vy] * s, b[BODY.vx] * s + b[BODY.vy] * c
 
 
 @kernel
 def set_velocity(world, j, u, v, b):
-    """Set the velocity (m/s) from its components u along line j and v along its normal."""
+    """Set the velocity (m/s) from its components u along line j and v along its normal.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    u : float
+        Velocity along the line, to the right (m/s).
+    v : float
+        Velocity along its outward normal (m/s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     s, c = world.path[j * len(PATH) + PATH.sin], world.path[j * len(PATH) + PATH.cos]
     b[BODY.vx], b[BODY.vy] = u * c + v * s, v * c - u * s
 
@@ -309,13 +417,38 @@ def jump_floor(world, b):
     """Return the height (m) of a jump up to which the motion stays one along the line.
 
     It is R_o r, equations (30) and (31).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Height (m).
     """
     return max(b[BODY.roughness] * world.radius, SMALLEST_JUMP)
 
 
 @kernel
 def kinetic(world, b):
-    """Return the kinetic energy (J) at the last event."""
+    """Return the kinetic energy (J) at the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     spin = world.radius * b[BODY.omega]
     return (
         0.5
@@ -369,7 +502,15 @@ def run_along(world, j, u, b):
 
 @kernel
 def plan(world, b):
-    """Set the accelerations of free motion, and kind and time of the next event."""
+    """Set the accelerations of free motion, and kind and time of the next event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     mode = b[BODY.mode]
     b[BODY.next_line] = b[BODY.line]
     if mode in (FLIGHT, RECEIVED):
@@ -406,7 +547,20 @@ def plan(world, b):
 
 @kernel
 def end_of_line_motion(world, b):
-    """Return the kind of the event that ends a line motion, and the time (s) until then."""
+    """Return the kind of the event that ends a line motion, and the time (s) until then.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of int and float
+        Event, and time from the last one (s).
+    """
     d = b[BODY.direction]
     at = int(b[BODY.line]) * len(PATH)
     s, c = world.path[at + PATH.sin], world.path[at + PATH.cos]
@@ -471,7 +625,17 @@ def take_off_speed(world, c, b):
 
 @kernel
 def happen(world, source, b):
-    """Bring the rock to its next event, let that happen, and plan what follows."""
+    """Bring the rock to its next event, let that happen, and plan what follows.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     waited = b[BODY.next_time] - b[BODY.time]
     b[BODY.stalled] = b[BODY.stalled] + 1.0 if waited < _INSTANT else 0.0
     dissipate(world, waited, b)
@@ -501,7 +665,15 @@ def happen(world, source, b):
 
 @kernel
 def stop(world, b):
-    """Let the rock rest where it is."""
+    """Let the rock rest where it is.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     b[BODY.mode] = REST
     b[BODY.vx], b[BODY.vy], b[BODY.omega] = 0.0, 0.0, 0.0
     b[BODY.ax], b[BODY.ay], b[BODY.alpha] = 0.0, 0.0, 0.0
@@ -509,7 +681,17 @@ def stop(world, b):
 
 @kernel
 def touch(world, j, b):
-    """Take the rounding out of the place of an impact: the rock touches line j."""
+    """Take the rounding out of the place of an impact: the rock touches line j.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     height = height_above(j, b[BODY.x], b[BODY.y], world.path)
     b[BODY.x] -= height * world.path[j * len(PATH) + PATH.sin]
     b[BODY.y] -= height * world.path[j * len(PATH) + PATH.cos]
@@ -616,6 +798,15 @@ def pass_node(world, source, b):
     The rock jumps where the next one is steeper, equation (30), strikes where it is less steep, and
     else goes on along it. Round a corner the rock is guided and keeps its speed. Of the tangents
     that stand for a corner each is compared with the facet that follows.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
     """
     old = int(b[BODY.line])
     d = b[BODY.direction]
@@ -644,7 +835,15 @@ def pass_node(world, source, b):
 
 @kernel
 def take_off(world, b):
-    """Jump with the angle rho = arctan(R_o) from the line, eq. (29); the speed is kept."""
+    """Jump with the angle rho = arctan(R_o) from the line, eq. (29); the speed is kept.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     j = int(b[BODY.line])
     rough = b[BODY.roughness]
     u, _ = components(world, j, b)
@@ -655,7 +854,17 @@ def take_off(world, b):
 
 @kernel
 def change_line_motion(world, event, b):
-    """Go on after the end of slip (GRIP), or of the motion or the spin (HALT)."""
+    """Go on after the end of slip (GRIP), or of the motion or the spin (HALT).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    event : int
+        Event that ends the motion: GRIP or HALT.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     j = int(b[BODY.line])
     u, _ = components(world, j, b)
     if event == GRIP:
@@ -675,6 +884,15 @@ def change_line_motion(world, event, b):
 @kernel
 def losses(world, span, b):
     """Return the energies (J) that line motion takes in ``span`` seconds from the last event on.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    span : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
 
     Returns
     -------
@@ -698,7 +916,17 @@ def losses(world, span, b):
 
 @kernel
 def dissipate(world, span, b):
-    """Book the energies that line motion takes until ``span`` seconds after the last event."""
+    """Book the energies that line motion takes until ``span`` seconds after the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    span : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     friction, roughness, resistance = losses(world, span, b)
     b[BODY.friction] += friction
     b[BODY.roughness_loss] += roughness

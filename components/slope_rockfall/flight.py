@@ -11,7 +11,15 @@ from .declarations import BODY, NEVER, PATH
 
 @kernel
 def move(b, time):
-    """Bring the rock to a time (s) before its next event; it keeps its accelerations."""
+    """Bring the rock to a time (s) before its next event; it keeps its accelerations.
+
+    Parameters
+    ----------
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    time : float
+        Time (s).
+    """
     span = time - b[BODY.time]
     b[BODY.x] += span * (b[BODY.vx] + 0.5 * span * b[BODY.ax])
     b[BODY.y] += span * (b[BODY.vy] + 0.5 * span * b[BODY.ay])

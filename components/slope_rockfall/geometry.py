@@ -23,7 +23,20 @@ _UPRIGHT = 0.5 * math.pi - 1e-3
 
 @kernel
 def node(i, w, k):
-    """Return the coordinates (m) of node i of the slope."""
+    """Return the coordinates (m) of node i of the slope.
+
+    Parameters
+    ----------
+    i : int
+        Number of the node or cell.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    tuple of float
+        x and y (m).
+    """
     if i == 0:
         return w[V.profile_x], w[V.profile_y]
     return view(w, k, A.end_x)[i - 1], view(w, k, A.end_y)[i - 1]
@@ -31,7 +44,20 @@ def node(i, w, k):
 
 @kernel
 def inclination(i, w, k):
-    """Return the angle (rad) of cell i, positive if it descends to the right."""
+    """Return the angle (rad) of cell i, positive if it descends to the right.
+
+    Parameters
+    ----------
+    i : int
+        Number of the node or cell.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    float
+        Angle (rad).
+    """
     x0, y0 = node(i, w, k)
     x1, y1 = node(i + 1, w, k)
     return math.atan2(y0 - y1, x1 - x0)
@@ -50,6 +76,22 @@ def facet_range(i, cells, radius, w, k):
     """Return the range of x (m) of the centre of a rock that touches cell i between its corners.
 
     The end cells have no end.
+
+    Parameters
+    ----------
+    i : int
+        Number of the node or cell.
+    cells : int
+        Number of cells.
+    radius : float
+        Radius of the rock (m).
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    tuple of float
+        Smallest and largest x (m).
     """
     s = math.sin(inclination(i, w, k))
     left, _ = node(i, w, k)
@@ -128,6 +170,16 @@ def visible(w, x, k):
     """List the cells that the rock can touch, from left to right, and return their number.
 
     ``order`` gets the cells, ``order_begin`` the x (m) from which on the rock touches each.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Number of these cells.
     """
     begin, order = view(x, k, A.order_begin), view(k, k, A.order)
     cells = k[A.end_x + 1]
@@ -154,6 +206,11 @@ def build_path(w, x, k):
     """Lay the lines of the path from left to right; their number goes to ``lines``.
 
     The first and the last have no end.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
     """
     begin, order, path = view(x, k, A.order_begin), view(k, k, A.order), view(x, k, A.path)
     cells = k[A.end_x + 1]
@@ -289,7 +346,22 @@ def crossing(j, s, c, x, y, otherwise, path):
 
 @kernel
 def line_below(x, lines, path):
-    """Return the number of the line of the path above or below x (m)."""
+    """Return the number of the line of the path above or below x (m).
+
+    Parameters
+    ----------
+    x : float
+        Place (m).
+    lines : int
+        Number of its lines.
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    int
+        Number of the line.
+    """
     low, high = 0, lines - 1
     while low < high:
         middle = (low + high) // 2
@@ -305,6 +377,22 @@ def height_above(j, x, y, path):
     """Return the distance (m) of the centre from line j of the path, along its normal.
 
     It is that of the rock from the facet.
+
+    Parameters
+    ----------
+    j : int
+        Line of the path.
+    x : float
+        Place of the centre, to the right (m).
+    y : float
+        Height of the centre (m).
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    float
+        Distance (m), negative below the line.
     """
     at = j * len(PATH)
     return (x - path[at + PATH.x]) * path[at + PATH.sin] + (y - path[at + PATH.y]) * path[
@@ -314,6 +402,21 @@ def height_above(j, x, y, path):
 
 @kernel
 def path_y(j, x, path):
-    """Return the height y (m) of line j of the path at x."""
+    """Return the height y (m) of line j of the path at x.
+
+    Parameters
+    ----------
+    j : int
+        Line of the path.
+    x : float
+        Place (m).
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     at = j * len(PATH)
     return path[at + PATH.y] - (x - path[at + PATH.x]) * path[at + PATH.sin] / path[at + PATH.cos]

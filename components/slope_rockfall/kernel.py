@@ -44,7 +44,18 @@ _COARSE = 2.0**52 / _GRID
 
 @kernel
 def on_grid(time):
-    """Return a time (s) in whole picoseconds."""
+    """Return a time (s) in whole picoseconds.
+
+    Parameters
+    ----------
+    time : float
+        Time (s).
+
+    Returns
+    -------
+    float
+        Time (s).
+    """
     return math.floor(time * _GRID + 0.5) / _GRID
 
 
@@ -53,6 +64,16 @@ def grid_after(time):
     """Return the first whole picosecond (s) that is not before a time (s).
 
     A step that ends there has what happens then behind it.
+
+    Parameters
+    ----------
+    time : float
+        Time (s).
+
+    Returns
+    -------
+    float
+        Time (s).
     """
     if time > _COARSE:
         return time
@@ -67,7 +88,13 @@ def grid_after(time):
 
 @kernel
 def lay_ground(w, x, k):
-    """Copy the materials, cell by cell."""
+    """Copy the materials, cell by cell.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     ground = view(x, k, A.ground)
     for c in range(k[A.end_x + 1]):
         at = c * len(GROUND)
@@ -86,6 +113,11 @@ def lay_ground(w, x, k):
 def prepare(w, x, k):
     """Compute path and materials from the parameters.
 
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
     Returns
     -------
     int
@@ -101,7 +133,18 @@ def prepare(w, x, k):
 
 @kernel
 def initialise(w, x, k):
-    """Put the rock to its start, or to ``lead_time`` before its first hand-over, and plan ahead."""
+    """Put the rock to its start, or to ``lead_time`` before its first hand-over, and plan ahead.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     clock, b = view(x, k, A.clock), view(x, k, A.body)
     view(k, k, A.started)[0] = 0
     clock[CLOCK.origin], clock[CLOCK.begun] = 0.0, 0.0
@@ -125,6 +168,26 @@ def skip(world, seed, trial, w, b, clock):
     """Bring the trial to ``lead_time`` before its first hand-over, and return the status.
 
     The trial runs once to learn when that is, and once again up to there.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    seed : int
+        Number of the sample.
+    trial : int
+        Number of the trial in the sample.
+    w : ndarray of float64
+        Variables of the instance.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    clock : ndarray of float64, shape (len(CLOCK),)
+        Origin and beginning of the time (s).
+
+    Returns
+    -------
+    int
+        Status.
     """
     entry = first_entry(world, stream(seed, trial), b)
     begin(world, seed, trial, w, b)
@@ -140,6 +203,20 @@ def first_entry(world, source, b):
     """Return the time (s) at which the rock is handed over for the first time; NEVER if it is not.
 
     The rock is moved to there.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Time (s).
     """
     for _ in range(MOST_EVENTS):
         if b[BODY.handovers] > 0.0:
@@ -152,7 +229,18 @@ def first_entry(world, source, b):
 
 @kernel
 def evaluate(w, x, k):
-    """Accept the inputs: :func:`initialise` has set the outputs, and they do not depend on them."""
+    """Accept the inputs: :func:`initialise` has set the outputs, and they do not depend on them.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status: OK.
+    """
     return OK
 
 
@@ -192,7 +280,24 @@ def step(t, h, w, x, k):
 
 @kernel
 def advance(world, source, end, b):
-    """Let everything happen up to the time ``end`` (s), and return the status."""
+    """Let everything happen up to the time ``end`` (s), and return the status.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    end : float
+        Time (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    int
+        Status: OK, LEFT_BELOW or RESTLESS.
+    """
     for _ in range(MOST_EVENTS):
         if not b[BODY.next_time] <= end:
             return OK
@@ -208,7 +313,28 @@ def advance(world, source, end, b):
 
 @kernel
 def push(world, now, end, h, w, b):
-    """Move the rock for h (s) in the receiver, as FallingRock does, and return the status."""
+    """Move the rock for h (s) in the receiver, as FallingRock does, and return the status.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    now : float
+        Time at the start of the step (s).
+    end : float
+        Time at the end of the step (s).
+    h : float
+        Length of the step (s).
+    w : ndarray of float64
+        Variables of the instance.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    int
+        Status: OK or DIVERGED.
+    """
     move(b, now)
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
@@ -230,7 +356,15 @@ def push(world, now, end, h, w, b):
 
 @kernel
 def publish(time, w, x, k):
-    """Publish the outputs at a time (s) not after the next event, from the last event's state."""
+    """Publish the outputs at a time (s) not after the next event, from the last event's state.
+
+    Parameters
+    ----------
+    time : float
+        Time (s).
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     constants, b = world(w, x, k), view(x, k, A.body)
     span = max(0.0, time - b[BODY.time])
     w[V.position_x] = b[BODY.x] + span * (b[BODY.vx] + 0.5 * span * b[BODY.ax])
@@ -245,7 +379,17 @@ def publish(time, w, x, k):
 
 @kernel
 def publish_place(world, b, w, x, k):
-    """Publish mode, cell, height, next event and hand-over."""
+    """Publish mode, cell, height, next event and hand-over.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     origin = view(x, k, A.clock)[CLOCK.origin]
     j = line_below(w[V.position_x], world.lines, world.path)
     w[V.mode] = b[BODY.mode]
@@ -259,7 +403,19 @@ def publish_place(world, b, w, x, k):
 
 @kernel
 def publish_energies(world, span, b, w):
-    """Publish the energies ``span`` seconds after the last event, and the residual."""
+    """Publish the energies ``span`` seconds after the last event, and the residual.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    span : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    w : ndarray of float64
+        Variables of the instance.
+    """
     spin = world.radius * w[V.angular_velocity]
     square = (
         w[V.velocity_x] * w[V.velocity_x]

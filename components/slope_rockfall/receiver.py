@@ -10,7 +10,21 @@ from .flight import passing
 
 @kernel
 def inside(world, x, y):
-    """Tell whether a centre at (x, y), in m, lies in the receiver, sides included."""
+    """Tell whether a centre at (x, y), in m, lies in the receiver, sides included.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    x : float
+        Place of the centre (m).
+    y : float
+        Height of the centre (m).
+
+    Returns
+    -------
+    bool
+    """
     return world.receiver and world.left <= x <= world.right and world.bottom <= y <= world.top
 
 
@@ -19,6 +33,18 @@ def entrance(world, b):
     """Return the time (s) from now at which the rock enters the receiver; NEVER if it does not.
 
     Its present accelerations stay.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Time (s).
     """
     if not world.receiver:
         return NEVER
@@ -40,6 +66,18 @@ def departure(world, b):
     """Return the time (s) from now at which a rock that is handed over leaves the receiver.
 
     It moves under its weight alone; the time is 0 if it is outside.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Time (s).
     """
     x, y, vx, vy, ax, ay = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy], b[BODY.ax], b[BODY.ay]
     if not inside(world, x, y) and not approaches(world, b):
@@ -52,7 +90,19 @@ def departure(world, b):
 
 @kernel
 def approaches(world, b):
-    """Tell whether a rock outside a side goes inwards: rounding may leave it there as it enters."""
+    """Tell whether a rock outside a side goes inwards: rounding may leave it there as it enters.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    bool
+    """
     x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
     return (
         (x >= world.left or vx > 0.0)

@@ -220,5 +220,24 @@ def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
 
 @kernel
 def motion(u, v, omega, radius, ratio):
-    """Return the kinetic energy per half mass (m2/s2)."""
+    """Return the kinetic energy per half mass (m2/s2).
+
+    Parameters
+    ----------
+    u : float
+        Velocity along the line, to the right (m/s).
+    v : float
+        Velocity along its outward normal (m/s).
+    omega : float
+        Angular velocity (rad/s).
+    radius : float
+        Radius of the rock (m).
+    ratio : float
+        I / (m r^2).
+
+    Returns
+    -------
+    float
+        Energy / (m / 2) (m2/s2).
+    """
     return u * u + v * v + ratio * radius * radius * omega * omega

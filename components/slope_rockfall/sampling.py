@@ -56,7 +56,18 @@ around the median and in the tails."""
 
 @kernel
 def normal_tail(truncation):
-    """Return the probability that a standard normal variate lies below -truncation."""
+    """Return the probability that a standard normal variate lies below -truncation.
+
+    Parameters
+    ----------
+    truncation : float
+        Standard deviations at which the normal distribution is cut off.
+
+    Returns
+    -------
+    float
+        Probability.
+    """
     return 0.5 * math.erfc(truncation / math.sqrt(2.0))
 
 
@@ -86,7 +97,20 @@ def normal_quantile(p):
 
 @kernel
 def polynomial(coefficients, r):
-    """Return the value at r of a polynomial, its highest coefficient first."""
+    """Return the value at r of a polynomial, its highest coefficient first.
+
+    Parameters
+    ----------
+    coefficients : tuple of float
+        Of the powers of r, highest first.
+    r : float
+        Place.
+
+    Returns
+    -------
+    float
+        Value.
+    """
     value = 0.0
     for coefficient in coefficients:
         value = value * r + coefficient
@@ -132,7 +156,24 @@ def variate(distribution, mean, deviation, tail, u):
 
 @kernel
 def widest(distribution, mean, deviation, truncation):
-    """Return the largest value that :func:`variate` can have."""
+    """Return the largest value that :func:`variate` can have.
+
+    Parameters
+    ----------
+    distribution : int
+        NORMAL, UNIFORM, LOGNORMAL or TRIANGULAR.
+    mean : float
+        Mean, in the unit of the variate.
+    deviation : float
+        Standard deviation, likewise.
+    truncation : float
+        Standard deviations at which the normal distribution is cut off.
+
+    Returns
+    -------
+    float
+        In the unit of the variate.
+    """
     if distribution == UNIFORM:
         return mean + deviation * _ROOT_3
     if distribution == TRIANGULAR:

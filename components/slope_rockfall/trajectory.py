@@ -100,7 +100,19 @@ def trial(
 
 @kernel
 def note_end(end, events, b, outcome):
-    """Note how the trial ends, after how many events and impacts."""
+    """Note how the trial ends, after how many events and impacts.
+
+    Parameters
+    ----------
+    end : int
+        One of the ends of a trial, as RESTED.
+    events : int
+        Number of events.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
     outcome[OUTCOME.end] = end
     outcome[OUTCOME.events] = events
     outcome[OUTCOME.impacts] = b[BODY.impacts]
@@ -108,7 +120,17 @@ def note_end(end, events, b, outcome):
 
 @kernel
 def clear_records(passages, peaks, outcome):
-    """Set all records to those of a rock that has not moved."""
+    """Set all records to those of a rock that has not moved.
+
+    Parameters
+    ----------
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines.
+    peaks : ndarray of float64, shape (m, len(PEAK))
+        Largest values at the stations.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
     for i in range(passages.shape[0]):
         for q in range(passages.shape[1]):
             passages[i, q] = 0.0
@@ -122,7 +144,22 @@ def clear_records(passages, peaks, outcome):
 
 @kernel
 def stretch(left, right, b):
-    """Return the time (s) from the last event to the next or to the trial's end, and its end."""
+    """Return the time (s) from the last event to the next or to the trial's end, and its end.
+
+    Parameters
+    ----------
+    left : float
+        x (m) at which the trial ends on the left.
+    right : float
+        x (m) at which it ends on the right.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float and int
+        Time (s) and end; UNFINISHED if an event comes first.
+    """
     if b[BODY.mode] == REST:
         return 0.0, RESTED
     wait, end = b[BODY.next_time] - b[BODY.time], UNFINISHED
@@ -137,7 +174,20 @@ def stretch(left, right, b):
 
 @kernel
 def at(time, b):
-    """Return place (m) and velocity (m/s) ``time`` seconds after the last event."""
+    """Return place (m) and velocity (m/s) ``time`` seconds after the last event.
+
+    Parameters
+    ----------
+    time : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float
+        x, y (m), vx, vy (m/s).
+    """
     return (
         b[BODY.x] + time * (b[BODY.vx] + 0.5 * time * b[BODY.ax]),
         b[BODY.y] + time * (b[BODY.vy] + 0.5 * time * b[BODY.ay]),
@@ -148,21 +198,61 @@ def at(time, b):
 
 @kernel
 def place(wait, b, outcome):
-    """Note where and when the trial ends."""
+    """Note where and when the trial ends.
+
+    Parameters
+    ----------
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
     outcome[OUTCOME.x], outcome[OUTCOME.y], _, _ = at(wait, b)
     outcome[OUTCOME.time] = b[BODY.time] + wait
 
 
 @kernel
 def energy(world, square, omega):
-    """Return the kinetic energy (J) at a squared speed (m2/s2) and angular velocity (rad/s)."""
+    """Return the kinetic energy (J) at a squared speed (m2/s2) and angular velocity (rad/s).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    square : float
+        Squared speed (m2/s2).
+    omega : float
+        Angular velocity (rad/s).
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     spin = world.radius * omega
     return 0.5 * world.mass * (square + world.ratio * spin * spin)
 
 
 @kernel
 def clearance(world, x, y):
-    """Return the distance (m) of a rock with its centre at (x, y) from the cell below it."""
+    """Return the distance (m) of a rock with its centre at (x, y) from the cell below it.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    x : float
+        Place of the centre (m).
+    y : float
+        Height of the centre (m).
+
+    Returns
+    -------
+    float
+        Distance (m).
+    """
     return height_above(line_below(x, world.lines, world.path), x, y, world.path)
 
 
@@ -171,7 +261,21 @@ def clearance(world, x, y):
 
 @kernel
 def record_lines(world, lines, wait, b, passages):
-    """Record passages of search lines within ``wait`` seconds from the last event."""
+    """Record passages of search lines within ``wait`` seconds from the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    lines : ndarray of float64, shape (n, 4)
+        Search lines x1, y1, x2, y2 (m).
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines.
+    """
     x0, x1 = b[BODY.x], b[BODY.x] + wait * (b[BODY.vx] + 0.5 * wait * b[BODY.ax])
     low, high = min(x0, x1), max(x0, x1)
     for i in range(lines.shape[0]):
@@ -218,7 +322,21 @@ def meeting(line, direction, b):
 
 @kernel
 def note_passage(world, i, time, b, passages):
-    """Note that the rock passes search line i ``time`` seconds after the last event."""
+    """Note that the rock passes search line i ``time`` seconds after the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    i : int
+        Number of the search line.
+    time : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines.
+    """
     passages[i, PASSAGE.count] += 1.0
     absolute = b[BODY.time] + time
     if passages[i, PASSAGE.count] > 1.0 and absolute >= passages[i, PASSAGE.time]:
@@ -269,7 +387,25 @@ def first_stop(world, lines, barriers, wait, b):
 
 @kernel
 def holds(world, line, barrier, time, b):
-    """Tell whether a barrier stops the rock that meets it ``time`` seconds after the last event."""
+    """Tell whether a barrier stops the rock that meets it ``time`` seconds after the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    line : ndarray of float64, shape (4,)
+        Search line x1, y1, x2, y2 (m).
+    barrier : ndarray of float64, shape (len(BARRIER),)
+        The search line as a barrier.
+    time : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    bool
+    """
     x, y, vx, vy = at(time, b)
     away = math.sqrt((x - line[0]) * (x - line[0]) + (y - line[1]) * (y - line[1]))
     load = energy(world, vx * vx + vy * vy, b[BODY.omega] + time * b[BODY.alpha])
@@ -329,6 +465,17 @@ def record_peaks(world, wait, b, outcome):
 
     Speed and energy are largest at the events, the height where the rock moves parallel to a cell,
     equation (18).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
     """
     for time in (0.0, wait):
         _, _, vx, vy = at(time, b)
@@ -343,7 +490,22 @@ def record_peaks(world, wait, b, outcome):
 
 @kernel
 def highest(world, wait, b):
-    """Return the largest distance (m) of a rock in flight from the cell below it."""
+    """Return the largest distance (m) of a rock in flight from the cell below it.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Distance (m).
+    """
     x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
     end = x + wait * vx
     peak = 0.0

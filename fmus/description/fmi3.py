@@ -92,7 +92,20 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
 
 
 def value_references(component: Component, sizes: Sizes) -> dict[str, int]:
-    """Return the value reference of every variable, then of the sizes, then of the time."""
+    """Return the value reference of every variable, then of the sizes, then of the time.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+
+    Returns
+    -------
+    dict of str to int
+        Value reference by name.
+    """
     references = {}
     following = 0
     for variable in component.layout.ordered:

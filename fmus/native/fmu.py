@@ -174,6 +174,18 @@ def native_files(
 def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:
     """Return the path of this machine's library in a native FMU.
 
+    Parameters
+    ----------
+    component : Component
+        The component.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    str
+        Path inside the FMU, with forward slashes.
+
     Raises
     ------
     BuildError

@@ -57,7 +57,18 @@ def main() -> None:
 
 
 def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
-    """Return the types of the arguments of each kernel."""
+    """Return the types of the arguments of each kernel.
+
+    Parameters
+    ----------
+    instance : Instance
+        Of the component.
+
+    Returns
+    -------
+    dict of str to tuple
+        Types of numba by the name of the kernel.
+    """
     buffers = tuple(map(typeof, (instance.w, instance.x, instance.k)))
     return {
         "initialise": buffers,
@@ -69,7 +80,22 @@ def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
 def compile_problems(
     component: Component, kinds: Mapping[str, tuple[Any, ...]], folder: Path
 ) -> list[str]:
-    """Return what keeps kernels from being compiled at all, with lines of the sources."""
+    """Return what keeps kernels from being compiled at all, with lines of the sources.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    kinds : mapping of str to tuple
+        Of :func:`signatures`.
+    folder : Path
+        The component's folder.
+
+    Returns
+    -------
+    list of str
+        A reason for each kernel that fails.
+    """
     problems = []
     for name, signature in kinds.items():
         kernel: Any = getattr(component, name)

@@ -28,7 +28,18 @@ UNKNOWN_PLACE = "at an unknown place"
 
 
 def foreign_symbols(module: Any) -> list[str]:
-    """Return the symbols that an LLVM module needs from outside and may not."""
+    """Return the symbols that an LLVM module needs from outside and may not.
+
+    Parameters
+    ----------
+    module : llvmlite.binding.ModuleRef
+        The module.
+
+    Returns
+    -------
+    list of str
+        In alphabetical order.
+    """
     needed = [
         f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")
     ]
@@ -104,7 +115,24 @@ def _field(node: str, name: str) -> str:
 
 
 def error_problem(error: "NumbaError", name: str, kernel: Any, folder: Path) -> str:
-    """Return what numba finds wrong with a kernel, with the line as far as numba knows it."""
+    """Return what numba finds wrong with a kernel, with the line as far as numba knows it.
+
+    Parameters
+    ----------
+    error : NumbaError
+        Raised by the compilation.
+    name : str
+        Name of the kernel.
+    kernel : Dispatcher of numba
+        The kernel.
+    folder : Path
+        The component's folder.
+
+    Returns
+    -------
+    str
+        Place and reason.
+    """
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
     reasons = [
         line.strip()

@@ -269,7 +269,18 @@ class ComponentSlave(Fmi2Slave):
     # --- values
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        """Return real variables; a block of consecutive references is one slice of the buffer."""
+        """Return real variables; a block of consecutive references is one slice of the buffer.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+
+        Returns
+        -------
+        list of float
+            Values, not a number where the call is refused.
+        """
         try:
             if vrs and self._stale is Stale.NOTHING:
                 known = self._readers.get((vrs[0], len(vrs)))
@@ -281,7 +292,15 @@ class ComponentSlave(Fmi2Slave):
             return [math.nan] * len(vrs)
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
-        """Set real variables; a block of consecutive references is one slice of the buffer."""
+        """Set real variables; a block of consecutive references is one slice of the buffer.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+        values : list
+            A value for each.
+        """
         try:
             if vrs and self._phase is Phase.RUNNING:
                 known = self._writers.get((vrs[0], len(vrs)))
@@ -294,23 +313,61 @@ class ComponentSlave(Fmi2Slave):
 
     @_guarded(lambda vrs: [0] * len(vrs))
     def get_integer(self, vrs: list[int]) -> list[int]:
-        """Return integer and enumeration variables and the sizes."""
+        """Return integer and enumeration variables and the sizes.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+
+        Returns
+        -------
+        list of int
+            Values, 0 where the call is refused.
+        """
         others = iter(self._get(Kind.INTEGER, [r for r in vrs if r not in self._constants]))
         return [self._constants[r] if r in self._constants else int(next(others)) for r in vrs]
 
     @_nothing
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        """Set integer and enumeration variables."""
+        """Set integer and enumeration variables.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+        values : list
+            A value for each.
+        """
         self._set(Kind.INTEGER, vrs, values)
 
     @_guarded(lambda vrs: [False] * len(vrs))
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        """Return the values of boolean variables."""
+        """Return the values of boolean variables.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+
+        Returns
+        -------
+        list of bool
+            Values, False where the call is refused.
+        """
         return [bool(value) for value in self._get(Kind.BOOLEAN, vrs)]
 
     @_nothing
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
-        """Set variables of the type Boolean."""
+        """Set variables of the type Boolean.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+        values : list
+            A value for each.
+        """
         self._set(Kind.BOOLEAN, vrs, values)
 
     @_guarded(lambda vrs: [""] * len(vrs))
