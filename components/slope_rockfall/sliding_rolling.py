@@ -72,7 +72,7 @@ def sliding(loads, touch, across):
 
 @kernel
 def slip_of(u, spin):
-    """Return the speed (m/s) of the contact point, zero if it is rounding. spin: omega r.
+    """Return the speed (m/s) of the contact point, zero if it is rounding.
 
     Parameters
     ----------
