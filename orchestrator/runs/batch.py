@@ -5,30 +5,26 @@ Each process keeps its FMUs' code compiled from run to run.
 
 import os
 import signal
-import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from dataclasses import dataclass, field
-from multiprocessing import get_context
-from pathlib import Path
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import active_children, get_context, parent_process
 from typing import TYPE_CHECKING, Any
 
-from ..core.system.system import SystemSpec
+from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import prepare
+from .kept_runs import COMPLETE, KeptRuns, Order, Outcome
 from .request import Request
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from ..core.errors import RunFailed
     from ..core.results.reading import StoredRun
 
-COMPLETE = "complete"
 FAILED = "failed"
 INTERRUPTED = "interrupted"
 
@@ -120,57 +116,12 @@ class Task:
         )
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """Result of a task. A run that failed has the series until then, and no metrics.
-
-    Attributes
-    ----------
-    key : str
-        Key of the task.
-    status : str
-        ``complete``, ``failed`` or ``interrupted``.
-    error : str
-        Reason of a failure.
-    failed_at : float, optional
-        Time (s) of a failure in the run.
-    metrics : mapping of str to float
-        Values (SI) by the names of the metrics.
-    series : mapping of str to array, shape (rows,)
-        Columns of the results by name.
-    options : mapping
-        Parameters of sand and beam that make up the model.
-    fmus : mapping of str to str
-        SHA-256 by component.
-    wall_time : float
-        Seconds.
-    """
-
-    key: str
-    status: str
-    error: str = ""
-    failed_at: float | None = None
-    metrics: Mapping[str, float] = field(default_factory=dict)
-    series: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
-    options: Mapping[str, Any] = field(default_factory=dict)
-    fmus: Mapping[str, str] = field(default_factory=dict)
-    wall_time: float = 0.0
-
-
-@dataclass(frozen=True)
-class _Order:
-    """Run as it is sent to a process."""
-
-    key: str
-    system: SystemSpec
-    allow_unstable: bool
-
-
 def run_all(
     tasks: Sequence[Task],
     workers: int | None = None,
     note: Note = silent,
     counted: Counted = uncounted,
+    kept: KeptRuns | None = None,
 ) -> dict[str, Outcome]:
     """Carry out all tasks, each different one once.
 
@@ -184,6 +135,8 @@ def run_all(
         Called with a line for each FMU that is built.
     counted : callable
         Called with the number of runs that have ended, and of all.
+    kept : KeptRuns, optional
+        Runs that are there already and not made again; those made are added.
 
     Returns
     -------
@@ -196,12 +149,17 @@ def run_all(
         A task cannot be prepared.
     """
     orders = [_order(task, note) for task in {task.key: task for task in tasks}.values()]
-    outcomes: dict[str, Outcome] = {}
-    processes = min(workers or os.cpu_count() or 1, max(len(orders), 1))
+    outcomes = {order.key: made for order in orders if kept and (made := kept.read(order))}
+    if outcomes:
+        note(f"{len(outcomes)} of {len(orders)} runs are there already, from one that was ended")
+    missing = [order for order in orders if order.key not in outcomes]
+    processes = min(workers or os.cpu_count() or 1, max(len(missing), 1))
     try:
-        for outcome in _carry_out(orders, processes):
+        for order, outcome in _carry_out(missing, processes):
             outcomes[outcome.key] = outcome
             counted(len(outcomes), len(orders))
+            if kept:
+                kept.write(order, outcome)
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
     return {
@@ -233,7 +191,7 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
     return run_one(_order(task, note))
 
 
-def _order(task: Task, note: Note) -> _Order:
+def _order(task: Task, note: Note) -> Order:
     """Return the system of a task, with the recorded variables only and no states."""
     system = prepare(task.request, note).system
     components = {
@@ -245,11 +203,11 @@ def _order(task: Task, note: Note) -> _Order:
         "record": [column for column in COLUMNS if column.partition(".")[0] in components],
         "state_interval": None,
     }
-    return _Order(task.key, system.model_copy(update=changes), task.allow_unstable)
+    return Order(task.key, system.model_copy(update=changes), task.allow_unstable)
 
 
-def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
-    """Yield outcomes in the order in which they come.
+def _carry_out(orders: Sequence[Order], workers: int) -> Iterator[tuple[Order, Outcome]]:
+    """Yield runs and their outcomes in the order in which they come.
 
     An FMU may take its process with it: runs that are lost so are made again, each alone.
     """
@@ -262,13 +220,13 @@ def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
             if isinstance(future.exception(), BrokenProcessPool):
                 lost.append(futures[future])
             else:
-                yield future.result()
+                yield futures[future], future.result()
     for order in lost:
         with _processes(1) as pool:
-            yield _alone(pool.submit(run_one, order), order)
+            yield order, _alone(pool.submit(run_one, order), order)
 
 
-def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
+def _alone(future: "Future[Outcome]", order: Order) -> Outcome:
     try:
         return future.result()
     except BrokenProcessPool:
@@ -278,32 +236,44 @@ def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Yield processes that start afresh; left early, runs that have not begun are dropped."""
-    pool = ProcessPoolExecutor(
-        workers, mp_context=get_context("spawn"), initializer=_leave_interrupts_to_the_run
-    )
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin_worker)
     try:
         yield pool
+    except BaseException:
+        for child in active_children():  # only a terminal tells Ctrl-C to all processes
+            with suppress(OSError):
+                os.kill(child.pid or 0, signal.SIGINT)
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _leave_interrupts_to_the_run() -> None:
-    """Ignore Ctrl-C between two runs.
+def _begin_worker() -> None:
+    """Ignore Ctrl-C between two runs, and end when the parent does.
 
-    It reaches every process: a run takes it for itself while it goes on, between runs the parent.
+    Ctrl-C reaches every process: a run takes it for itself while it goes on, between runs the
+    parent.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
-def run_one(order: _Order) -> Outcome:
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def run_one(order: Order) -> Outcome:
     """Carry out one run in the process in which this is called."""
     from ..core.errors import InputRefused, RunFailed
     from ..core.results.reading import read_run
     from ..core.run import simulate
 
     began = time.perf_counter()
-    with tempfile.TemporaryDirectory(prefix="rockshed-") as folder:
-        place = Path(folder) / "run"
+    with TemporaryFolder("rockshed-") as folder:
+        place = folder / "run"
         failure = None
         try:
             run = simulate(order.system, place, allow_unstable=order.allow_unstable)
