@@ -1,4 +1,4 @@
-"""What comes before and beside the results of a command: foreign output, leftovers of killed runs."""
+"""Output of FMUs and leftovers of killed runs, which come beside the results of a command."""
 
 import ctypes
 import os

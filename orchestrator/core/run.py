@@ -44,8 +44,9 @@ def simulate(
 ) -> StoredRun:
     """Run a system and write its results into a folder.
 
-    Ctrl-C or SIGTERM ends the run and keeps what was computed. Everything happens in the calling process:
-    code of an FMU that crashes takes it along (the command ``rockshed run`` does not die of it).
+    Ctrl-C or SIGTERM ends the run and keeps what was computed. Everything happens in the calling
+    process: code of an FMU that crashes takes it along (the command ``rockshed run`` does not die
+    of it).
 
     Parameters
     ----------

@@ -3,7 +3,7 @@
 import os
 import shutil
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
@@ -13,7 +13,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
-from ..core.results.own_files import FILES, listed, own_files, refuse_foreign
+from ..core.results.own_files import is_foreign_picture, refuse_foreign
 from ..core.system.names import nearest
 from ..files import whole_file, write_file, write_json
 from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
@@ -177,9 +177,8 @@ def reproduce(
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
     outcomes = Outcomes(run_all(tasks, workers, note, counted, kept), quick)
-    own = own_files(folder)
     with TemporaryFolder() as drawn:
-        parts = [_part(study, outcomes, drawn, folder, own) for study in selected]
+        parts = [_part(study, outcomes, drawn, folder / FIGURES) for study in selected]
     facts = {
         "paper": PAPERS[paper],
         "started": started,
@@ -189,9 +188,7 @@ def reproduce(
         "versions": versions(*_PACKAGES),
     }
     content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, facts)
-    figures = [file for part in parts for file in part.figures]
-    files = {DATA, PAGE, *own, *listed(folder, figures)}
-    write_json(folder / DATA, {**content, FILES: sorted(files)})
+    write_json(folder / DATA, content)
     write_file(folder / PAGE, page(parts, content))
     made = Reproduction(parts, content, [folder / DATA, folder / PAGE])
     if not made.interrupted:
@@ -199,26 +196,17 @@ def reproduce(
     return made
 
 
-def _part(
-    study: Study, outcomes: Outcomes, drawn: Path, folder: Path, own: Collection[str]
-) -> Part:
+def _part(study: Study, outcomes: Outcomes, drawn: Path, figures: Path) -> Part:
     """Return the rows of a study, and its figures, which are drawn elsewhere first."""
     rows = study.rows(outcomes)
-    files = [
-        _put(file, folder / FIGURES / file.name, folder, own)
-        for file in study.draw(outcomes, rows, drawn)
-    ]
-    return Part(study, rows, files)
+    files = study.draw(outcomes, rows, drawn)
+    return Part(study, rows, [_put(file, figures / file.name) for file in files])
 
 
-def _put(file: Path, target: Path, folder: Path, own: Collection[str]) -> Path:
+def _put(file: Path, target: Path) -> Path:
     """Move a figure to its place, or beside a file of the user that is there."""
     names = (target.with_name(f"{target.stem}-{n}{target.suffix}") for n in count(2))
-    place = next(
-        path
-        for path in chain([target], names)
-        if path.relative_to(folder).as_posix() in own or not os.path.lexists(path)
-    )
+    place = next(path for path in chain([target], names) if not is_foreign_picture(path))
     with whole_file(place) as temporary:
         shutil.copyfile(file, temporary)
     return place

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import prepare
-from .kept_runs import COMPLETE, KeptRuns, Order, Outcome
+from .kept_runs import COMPLETE, KeptRuns, Outcome
+from .kept_runs import Order as _Order
 from .request import Request
 
 if TYPE_CHECKING:
@@ -152,14 +153,15 @@ def run_all(
     outcomes = {order.key: made for order in orders if kept and (made := kept.read(order))}
     if outcomes:
         note(f"{len(outcomes)} of {len(orders)} runs are there already, from one that was ended")
+    by_key = {order.key: order for order in orders}
     missing = [order for order in orders if order.key not in outcomes]
     processes = min(workers or os.cpu_count() or 1, max(len(missing), 1))
     try:
-        for order, outcome in _carry_out(missing, processes):
+        for outcome in _carry_out(missing, processes):
             outcomes[outcome.key] = outcome
             counted(len(outcomes), len(orders))
             if kept:
-                kept.write(order, outcome)
+                kept.write(by_key[outcome.key], outcome)
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
     return {
@@ -191,7 +193,7 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
     return run_one(_order(task, note))
 
 
-def _order(task: Task, note: Note) -> Order:
+def _order(task: Task, note: Note) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
     system = prepare(task.request, note).system
     components = {
@@ -203,11 +205,11 @@ def _order(task: Task, note: Note) -> Order:
         "record": [column for column in COLUMNS if column.partition(".")[0] in components],
         "state_interval": None,
     }
-    return Order(task.key, system.model_copy(update=changes), task.allow_unstable)
+    return _Order(task.key, system.model_copy(update=changes), task.allow_unstable)
 
 
-def _carry_out(orders: Sequence[Order], workers: int) -> Iterator[tuple[Order, Outcome]]:
-    """Yield runs and their outcomes in the order in which they come.
+def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
+    """Yield outcomes in the order in which they come.
 
     An FMU may take its process with it: runs that are lost so are made again, each alone.
     """
@@ -220,13 +222,13 @@ def _carry_out(orders: Sequence[Order], workers: int) -> Iterator[tuple[Order, O
             if isinstance(future.exception(), BrokenProcessPool):
                 lost.append(futures[future])
             else:
-                yield futures[future], future.result()
+                yield future.result()
     for order in lost:
         with _processes(1) as pool:
-            yield order, _alone(pool.submit(run_one, order), order)
+            yield _alone(pool.submit(run_one, order), order)
 
 
-def _alone(future: "Future[Outcome]", order: Order) -> Outcome:
+def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
     try:
         return future.result()
     except BrokenProcessPool:
@@ -265,7 +267,7 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def run_one(order: Order) -> Outcome:
+def run_one(order: _Order) -> Outcome:
     """Carry out one run in the process in which this is called."""
     from ..core.errors import InputRefused, RunFailed
     from ..core.results.reading import read_run

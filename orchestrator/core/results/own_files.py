@@ -1,7 +1,7 @@
 """Files of this program in a folder, told apart from those of the user by a list.
 
-The list is an entry of the file that describes the results: ``run.json``, ``calibration.json`` or
-``reproduction.json``. What it does not name is the user's, and is neither removed nor overwritten.
+The list is an entry of the file that describes the results: ``run.json`` or ``calibration.json``.
+What it does not name is the user's, and is neither removed nor overwritten.
 """
 
 import json
@@ -17,8 +17,10 @@ MARK = ".rockshed"
 """File in a folder in which this program works; its results do not have it."""
 FILES = "rockshed_files"
 """Entry with the list, paths relative to the folder."""
-_DESCRIPTIONS = ("run.json", "calibration.json", "reproduction.json")
+_DESCRIPTIONS = ("run.json", "calibration.json")
 """Files that may have the list."""
+_HEAD = 4096
+"""Bytes in which a picture says who has made it."""
 _EARLIER = (
     *("run.json", "summary.json", "columns.csv", "timeseries.parquet", "timeseries.csv"),
     *("states.h5", "timeseries.arrows", "states.arrows", "journal.bin", "journal.json"),
@@ -60,13 +62,23 @@ def own_files(folder: Path) -> set[str]:
 
 
 def _of_reproduction(folder: Path) -> set[str]:
-    """Return the files of a reproduction that has no list: earlier versions wrote none."""
-    content = read_data(folder / "reproduction.json")
-    if "format" not in content:
-        return set()
-    studies = [study for study in content.get("studies", []) if isinstance(study, dict)]
-    figures = {str(name) for study in studies for name in study.get("figures", [])}
-    return {"reproduction.json", "reproduction.html"} | figures
+    """Return the files of a reproduction; its pictures are known by themselves."""
+    is_own = {"format", "studies"} <= read_data(folder / "reproduction.json").keys()
+    return {"reproduction.json", "reproduction.html"} if is_own else set()
+
+
+def is_foreign_picture(file: Path) -> bool:
+    """Tell whether something is there that is no picture of this program.
+
+    Each picture of this program says so in its head.
+    """
+    if not os.path.lexists(file):
+        return False
+    try:
+        with file.open("rb") as stream:
+            return b"Software\0rockshed" not in stream.read(_HEAD)
+    except OSError:
+        return True
 
 
 def listed(folder: Path, files: Iterable[Path]) -> list[str]:
