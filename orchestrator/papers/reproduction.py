@@ -18,7 +18,6 @@ from ..core.system.names import nearest
 from ..files import whole_file, write_file, write_json
 from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
 from ..runs.building import Note, silent
-from ..runs.kept_runs import KeptRuns
 from ..tables import Table
 from ..temporary import TemporaryFolder
 from ..versions import versions
@@ -34,8 +33,6 @@ PAPERS = {
 }
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
-RUNS = ".rockshed-runs"
-"""Folder of the runs of a reproduction that was ended before it was complete."""
 _PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
 
@@ -172,11 +169,10 @@ def reproduce(
     refuse_foreign(folder, (DATA, PAGE), remedy)
     with refusing_unwritable(folder / FIGURES, remedy):
         (folder / FIGURES).mkdir(parents=True, exist_ok=True)
-    kept = KeptRuns(folder / RUNS)
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
-    outcomes = Outcomes(run_all(tasks, workers, note, counted, kept), quick)
+    outcomes = Outcomes(run_all(tasks, workers, note, counted), quick)
     with TemporaryFolder() as drawn:
         parts = [_part(study, outcomes, drawn, folder / FIGURES) for study in selected]
     facts = {
@@ -190,10 +186,7 @@ def reproduce(
     content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, facts)
     write_json(folder / DATA, content)
     write_file(folder / PAGE, page(parts, content))
-    made = Reproduction(parts, content, [folder / DATA, folder / PAGE])
-    if not made.interrupted:
-        kept.remove()
-    return made
+    return Reproduction(parts, content, [folder / DATA, folder / PAGE])
 
 
 def _part(study: Study, outcomes: Outcomes, drawn: Path, figures: Path) -> Part:

@@ -5,27 +5,29 @@ Each process keeps its FMUs' code compiled from run to run.
 
 import os
 import signal
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from multiprocessing import active_children, get_context, parent_process
+from dataclasses import dataclass, field
+from multiprocessing import active_children, get_context
 from typing import TYPE_CHECKING, Any
 
+from ..core.system.system import SystemSpec
 from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import prepare
-from .kept_runs import COMPLETE, KeptRuns, Outcome
-from .kept_runs import Order as _Order
 from .request import Request
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from ..core.errors import RunFailed
     from ..core.results.reading import StoredRun
 
+COMPLETE = "complete"
 FAILED = "failed"
 INTERRUPTED = "interrupted"
 
@@ -117,12 +119,57 @@ class Task:
         )
 
 
+@dataclass(frozen=True)
+class Outcome:
+    """Result of a task. A run that failed has the series until then, and no metrics.
+
+    Attributes
+    ----------
+    key : str
+        Key of the task.
+    status : str
+        ``complete``, ``failed`` or ``interrupted``.
+    error : str
+        Reason of a failure.
+    failed_at : float, optional
+        Time (s) of a failure in the run.
+    metrics : mapping of str to float
+        Values (SI) by the names of the metrics.
+    series : mapping of str to array, shape (rows,)
+        Columns of the results by name.
+    options : mapping
+        Parameters of sand and beam that make up the model.
+    fmus : mapping of str to str
+        SHA-256 by component.
+    wall_time : float
+        Seconds.
+    """
+
+    key: str
+    status: str
+    error: str = ""
+    failed_at: float | None = None
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    series: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
+    fmus: Mapping[str, str] = field(default_factory=dict)
+    wall_time: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Order:
+    """Run as it is sent to a process."""
+
+    key: str
+    system: SystemSpec
+    allow_unstable: bool
+
+
 def run_all(
     tasks: Sequence[Task],
     workers: int | None = None,
     note: Note = silent,
     counted: Counted = uncounted,
-    kept: KeptRuns | None = None,
 ) -> dict[str, Outcome]:
     """Carry out all tasks, each different one once.
 
@@ -136,8 +183,6 @@ def run_all(
         Called with a line for each FMU that is built.
     counted : callable
         Called with the number of runs that have ended, and of all.
-    kept : KeptRuns, optional
-        Runs that are there already and not made again; those made are added.
 
     Returns
     -------
@@ -150,18 +195,12 @@ def run_all(
         A task cannot be prepared.
     """
     orders = [_order(task, note) for task in {task.key: task for task in tasks}.values()]
-    outcomes = {order.key: made for order in orders if kept and (made := kept.read(order))}
-    if outcomes:
-        note(f"{len(outcomes)} of {len(orders)} runs are there already, from one that was ended")
-    by_key = {order.key: order for order in orders}
-    missing = [order for order in orders if order.key not in outcomes]
-    processes = min(workers or os.cpu_count() or 1, max(len(missing), 1))
+    outcomes: dict[str, Outcome] = {}
+    processes = min(workers or os.cpu_count() or 1, max(len(orders), 1))
     try:
-        for outcome in _carry_out(missing, processes):
+        for outcome in _carry_out(orders, processes):
             outcomes[outcome.key] = outcome
             counted(len(outcomes), len(orders))
-            if kept:
-                kept.write(by_key[outcome.key], outcome)
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
     return {
@@ -238,7 +277,9 @@ def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Yield processes that start afresh; left early, runs that have not begun are dropped."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin_worker)
+    pool = ProcessPoolExecutor(
+        workers, mp_context=get_context("spawn"), initializer=_leave_interrupts_to_the_run
+    )
     try:
         yield pool
     except BaseException:
@@ -250,21 +291,12 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
         pool.shutdown(cancel_futures=True)
 
 
-def _begin_worker() -> None:
-    """Ignore Ctrl-C between two runs, and end when the parent does.
+def _leave_interrupts_to_the_run() -> None:
+    """Ignore Ctrl-C between two runs.
 
-    Ctrl-C reaches every process: a run takes it for itself while it goes on, between runs the
-    parent.
+    It reaches every process: a run takes it for itself while it goes on, between runs the parent.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
 
 
 def run_one(order: _Order) -> Outcome:

@@ -61,7 +61,7 @@ def test_a_component_may_end_the_run_at_its_last_successful_time(tmp_path):
     kept = read_run(tmp_path / "out")
     assert kept.status == "complete"
     assert kept.time.tolist() == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.35])
-    assert kept["m.x"].tolist() == pytest.approx(kept.time.tolist())
+    assert list(kept["m.x"]) == pytest.approx(kept.time.tolist())
     assert kept.metrics["simulated_time"].value == pytest.approx(0.35)
 
 

@@ -13,8 +13,8 @@ from fmpy.util import read_csv
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.results.metric import Metric
-from rockshed.core.results.reading import add_metrics, read_run
 from rockshed.core.results.own_files import add_files
+from rockshed.core.results.reading import add_metrics, read_run
 from rockshed.core.results.run_folder import Column, RunFolder, running_folder
 from rockshed.core.run import simulate
 from tests.cosim.mocks import Mock, mass, out, spring, wired

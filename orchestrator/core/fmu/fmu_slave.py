@@ -11,6 +11,7 @@ import itertools
 import os
 import sys
 import weakref
+import zipfile
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from functools import lru_cache
