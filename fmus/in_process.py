@@ -207,6 +207,10 @@ class InProcessSlave:
         done, _ = self._call(self._slave.do_step, time, step)
         return OK if done else DISCARD
 
+    def terminated_at(self) -> float | None:
+        """No component of this house ends a run."""
+        return None
+
     def state(self) -> bytes:
         """Return the complete state, serialized; equal to that of the FMU."""
         return bytes(self._call(self._slave._get_fmu_state)[0])

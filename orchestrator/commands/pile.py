@@ -11,6 +11,7 @@ from ..sites.source import site_source
 from .analysis import show, stages
 from .options import RESULTS, Json, NoFigures, Quiet
 from .screen import COLD_START, opened
+from .streams import tell_leftovers
 
 _Site = Annotated[
     Path,
@@ -36,6 +37,7 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         folder = output_dir or RESULTS / site_source(site).name
+        tell_leftovers(folder, screen)
         if is_cold(["Hammer", "PileRod"]):
             screen.note(COLD_START)
         pictures = not no_figures

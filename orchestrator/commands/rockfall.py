@@ -15,6 +15,7 @@ from ..sites.source import site_source
 from .analysis import options_named, show, stages
 from .options import RESULTS, Json, NoFigures, Quiet
 from .screen import COLD_START, RUN_FAILED, opened
+from .streams import tell_leftovers
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
@@ -74,6 +75,7 @@ def command(
     with opened(quiet, as_json) as screen:
         count = _count(trials, preset)
         folder = output_dir or RESULTS / site_source(site).name
+        tell_leftovers(folder, screen)
         if is_cold(["SlopeRockfall"]):
             screen.note(COLD_START)
         if replay and animation is None and not can_write_mp4():

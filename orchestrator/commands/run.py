@@ -27,6 +27,7 @@ from .options import (
     Target,
 )
 from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
+from .streams import stdout_for_results, tell_leftovers
 
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
 _StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")]
@@ -107,9 +108,11 @@ def command(
     request = Request(
         target, values, sizes, coupling, options, in_process, load_cell, model, runtime
     )
+    announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
-        done = _simulate(request, problems, output_dir, allow_unstable, screen)
-        _show_run(done, screen, not no_figures)
+        with stdout_for_results():
+            done = _simulate(request, problems, output_dir, allow_unstable, screen)
+        show_run(done, screen, not no_figures)
 
 
 def _chosen(**options: Any) -> dict[str, Any]:
@@ -133,7 +136,7 @@ def _simulate(
         folder = output_dir or RESULTS / system.name
         if is_cold(system.job.components):
             progress.describe(COLD_START)
-        announce(folder)
+        tell_leftovers(folder, screen)
         try:
             return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
         except RunFailed as failure:
@@ -141,15 +144,31 @@ def _simulate(
             return done
 
 
-def _show_run(done: Run, screen: Screen, with_figures: bool) -> None:
+def show_run(done: Run, screen: Screen, with_figures: bool) -> None:
     """Draw and show a run; one that is not complete gives its exit code.
 
     Why a run failed is said before drawing, which takes its time and may be interrupted.
+
+    Parameters
+    ----------
+    done : Run
+        Complete or not.
+    screen : Screen
+        Of the command.
+    with_figures : bool
+        Whether pictures are drawn.
+
+    Raises
+    ------
+    typer.Exit
+        The run is not complete, or drawing was interrupted.
     """
     if done.status == "failed":
         screen.fail(str(done.error))
     if done.status == "interrupted":
-        reached = f"interrupted at t = {1e3 * done.time[-1]:g} ms"
+        reached = (
+            f"interrupted at t = {1e3 * done.time[-1]:g} ms" if done.time.size else "interrupted"
+        )
         screen.warn(f"{reached}; the results until then are kept")
     pictures: list[Path] = []
     drawn = True

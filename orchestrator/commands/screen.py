@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.padding import Padding
 
+from ..core.ending import asked_to_end, interrupt
 from ..core.errors import InputRefused, Problem
 from ..tables import Table
 
@@ -160,7 +161,8 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     """
     screen = Screen(quiet, as_json)
     try:
-        yield screen
+        with asked_to_end(interrupt):
+            yield screen
     except InputRefused as refusal:
         screen.refuse(refusal.problems)
         raise typer.Exit(REFUSED) from None

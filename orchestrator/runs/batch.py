@@ -5,18 +5,17 @@ Each process keeps its FMUs' code compiled from run to run.
 
 import os
 import signal
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from multiprocessing import get_context
-from pathlib import Path
+from multiprocessing import active_children, get_context
 from typing import TYPE_CHECKING, Any
 
 from ..core.system.system import SystemSpec
+from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import prepare
 from .request import Request
@@ -283,6 +282,11 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     )
     try:
         yield pool
+    except BaseException:
+        for child in active_children():  # only a terminal tells Ctrl-C to all processes
+            with suppress(OSError):
+                os.kill(child.pid or 0, signal.SIGINT)
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -302,8 +306,8 @@ def run_one(order: _Order) -> Outcome:
     from ..core.run import simulate
 
     began = time.perf_counter()
-    with tempfile.TemporaryDirectory(prefix="rockshed-") as folder:
-        place = Path(folder) / "run"
+    with TemporaryFolder("rockshed-") as folder:
+        place = folder / "run"
         failure = None
         try:
             run = simulate(order.system, place, allow_unstable=order.allow_unstable)
