@@ -11,14 +11,14 @@ from ..analyses.rockfall.run import rockfall
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold
-from ..sites.source import site_source
 from .analysis import options_named, show, stages
-from .options import RESULTS, Json, NoFigures, Quiet
+from .options import Json, NoFigures, Quiet
+from .results_place import folder_of_site
 from .screen import COLD_START, RUN_FAILED, opened
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
-_OPTIONS = ("replay", "animation", "workers", "scheduler")
+_OPTIONS = ("trials", "seed", "replay", "animation", "workers", "scheduler")
 """Arguments of the analysis that are options of the command."""
 
 _Site = Annotated[
@@ -73,7 +73,7 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         count = _count(trials, preset)
-        folder = output_dir or RESULTS / site_source(site).name
+        folder = output_dir or folder_of_site(site, "rockfall", screen)
         if is_cold(["SlopeRockfall"]):
             screen.note(COLD_START)
         if replay and animation is None and not can_write_mp4():
