@@ -1,6 +1,7 @@
 """The folder of the results that the user has named no folder for: it follows from a name."""
 
 import json
+import os
 import re
 from collections.abc import Callable, Mapping
 from itertools import count
@@ -16,8 +17,10 @@ from .screen import Screen
 
 LONGEST_NAME = 150
 """Bytes of the name of a folder, at most; file systems take 255, and a run needs some of them."""
-_FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f\x7f-\x9f]')
-"""Letters that a folder cannot have in its name on every system."""
+_FORBIDDEN = re.compile(
+    r'[/\\:*?"<>|\x00-\x1f\x7f-\x9f]' if os.name == "nt" else r"[/\\\x00-\x1f\x7f-\x9f]"
+)
+"""Letters that a folder cannot have in its name."""
 _DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 """Names that mean devices on Windows."""
 _OWN_ENDINGS = (".running", ".old", ".lock")
