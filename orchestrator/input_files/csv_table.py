@@ -199,8 +199,8 @@ def _field(path: Path, text: str, at: int, separator: str, line: int) -> tuple[s
         return _of_length(path, text[at:end].strip(), line), end
     quoted = _QUOTED.match(text, first)
     if quoted is None:
-        problem = Problem(f"{path}, line {line}", "a quote is not closed", 'write a " at its end')
-        raise InputRefused([problem])
+        unclosed = Problem(f"{path}, line {line}", "a quote is not closed", 'write a " at its end')
+        raise InputRefused([unclosed])
     end = _field_end(text, separator, quoted.end())
     behind = text[quoted.end() : end].strip()
     content = quoted.group(1).replace('""', '"').strip()

@@ -7,7 +7,7 @@ another.
 
 import logging
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -47,7 +47,7 @@ RETRIES = 2
 CONNECT_TIMEOUT = 5.0
 """Time (s) after which a scheduler counts as unreachable, and one without workers as useless."""
 _COMPONENT = "SlopeRockfall"
-_NO_PAGES = {
+_NO_PAGES: Mapping[str, Any] = {
     "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
     "distributed.nanny.http.routes": [],
