@@ -177,22 +177,27 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     except OSError as error:
         screen.fail(str(error))
         raise typer.Exit(RUN_FAILED) from error
+    except MemoryError as error:
+        screen.fail("there is not enough memory for it")
+        raise typer.Exit(RUN_FAILED) from error
 
 
 @contextmanager
 def without_warnings_of_libraries() -> Iterator[None]:
     """Keep from the screen what libraries say to programmers, unless Python was asked for it."""
-    loud = logging.getLogger("matplotlib")
-    before = loud.level
+    loud = [logging.getLogger(name) for name in ("matplotlib", "ezdxf")]
+    before = [logger.level for logger in loud]
     with warnings.catch_warnings():
         if not sys.warnoptions:
-            loud.setLevel(logging.ERROR)
+            for logger in loud:
+                logger.setLevel(logging.CRITICAL)
             for category in (UserWarning, RuntimeWarning, FutureWarning):
                 warnings.simplefilter("ignore", category)
         try:
             yield
         finally:
-            loud.setLevel(before)
+            for logger, level in zip(loud, before, strict=True):
+                logger.setLevel(level)
 
 
 class Screen:

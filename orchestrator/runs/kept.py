@@ -113,7 +113,9 @@ def _write(file: Path, outcome: "Outcome") -> None:
 
     facts = {name: value for name, value in asdict(outcome).items() if name != "series"}
     facts["columns"] = list(outcome.series)
-    arrays = {f"column-{i}": column for i, column in enumerate(outcome.series.values())}
+    arrays: dict[str, Any] = {
+        f"column-{i}": column for i, column in enumerate(outcome.series.values())
+    }
     words = np.frombuffer(json.dumps(facts).encode(), np.uint8)
     with whole_file(file) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, facts=words, **arrays)
