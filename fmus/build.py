@@ -16,6 +16,7 @@ from rockshed.components.catalogue import component as catalogued
 from rockshed.components.common.component import Component
 from rockshed.files import write_file
 
+from .description.documentation import documentation
 from .description.fmi2 import model_description
 from .native.fmu import native_files
 from .parts import (
@@ -27,7 +28,6 @@ from .parts import (
     archive,
     component_sources,
     digest,
-    documentation,
     picture,
 )
 from .places import FOLDER_VARIABLE, file_name, fmu_file, fmu_folder, folder_name, native_is_fresh

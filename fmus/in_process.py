@@ -39,7 +39,7 @@ class InProcess:
         return fmu_files(self.component, self.sizes)["modelDescription.xml"]
 
     def instantiate(self, name: str) -> "InProcessSlave":
-        """A new instance."""
+        """Return a new instance of the component."""
         return InProcessSlave(slave_class(self.component, self.sizes), name)
 
 
@@ -97,11 +97,11 @@ class InProcessSlave:
         return self._call(self._slave.setup_experiment, start, stop, None)[1]
 
     def enter_initialisation(self) -> int:
-        """Enter the initialization mode."""
+        """Enter the initialization mode; return the status."""
         return self._call(self._slave.enter_initialization_mode)[1]
 
     def exit_initialisation(self) -> int:
-        """Leave the initialization mode."""
+        """Leave the initialization mode; return the status."""
         return self._call(self._slave.exit_initialization_mode)[1]
 
     def step(self, time: float, step: float) -> int:
@@ -128,7 +128,7 @@ class InProcessSlave:
         return OK
 
     def terminate(self) -> int:
-        """End the run."""
+        """End the run; return the status."""
         return self._call(self._slave.terminate)[1]
 
     def free(self) -> None:

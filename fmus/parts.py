@@ -1,4 +1,4 @@
-"""What the FMUs of both runtimes have in common: their files, hashes of them, the archive, and what can go wrong."""
+"""Parts that both runtimes have in common: files of an FMU, hashes of them, the archive, errors."""
 
 import hashlib
 import io
@@ -8,7 +8,6 @@ from pathlib import Path
 
 from rockshed import components
 from rockshed.components.common.component import Component
-from rockshed.components.common.ports import Sizes
 
 COMPONENTS = Path(components.__file__).parent
 SHARED = COMPONENTS / "common"
@@ -20,7 +19,7 @@ Files = dict[str, bytes]
 
 
 class Runtime(StrEnum):
-    """What carries out an FMU's kernels."""
+    """Carriers of an FMU's kernels."""
 
     PYTHON = "python"
     NATIVE = "native"
@@ -54,13 +53,6 @@ def component_sources(component: Component) -> Files:
         if path.is_file() and path.suffix not in _NOT_FROZEN
     }
     return {name: path.read_bytes() for name, path in paths.items()}
-
-
-def documentation(component: Component, sizes: Sizes) -> Files:
-    """The documentation."""
-    from .description.documentation import index_html
-
-    return {"documentation/index.html": index_html(component, sizes).encode()}
 
 
 def picture(component: Component, name: str) -> Files:

@@ -50,7 +50,7 @@ def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
 
 
 def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
-    """``python``, ``native`` or ``native-fmi3``."""
+    """Return the folder's name: ``python``, ``native`` or ``native-fmi3``."""
     return runtime if fmi is Fmi.TWO else f"{runtime}-fmi{fmi}"
 
 

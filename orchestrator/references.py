@@ -1,4 +1,4 @@
-"""What others found for a metric: the data that a run is compared with, whoever compares."""
+"""References of metrics: values of others that a run is compared with, as data."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -78,7 +78,7 @@ class References:
 
         Returns
         -------
-        References
+        references : References
             Equal to those that were written.
         """
         known = {

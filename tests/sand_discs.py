@@ -1,4 +1,5 @@
-"""A few sand discs where a test wants them: small experiments with the sand cushion through its public side."""
+"""A few sand discs where a test wants them: small experiments with the sand cushion through its
+public side."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -29,11 +30,13 @@ EMPTY_SPACE = {
 }
 """No gravity; floor, walls and rock far away: discs on their own."""
 SMALL_BOX = {"base": "floor", "box.left": 0.0, "box.width": 0.1, "rock.position.y": 1.0}
-"""A box ten discs wide on the floor, the rock out of the way; the beam discs, if any, begin at its left wall."""
+"""A box ten discs wide on the floor, the rock out of the way; the beam discs, if any, begin at its
+left wall."""
 
 
 def cushion(parameters: Mapping[str, Any], discs: int = 60, elements: int = 4) -> Instance:
-    """An initialised cushion of ``discs`` sand discs; the rock is in the middle of the box and fits, unless told otherwise."""
+    """An initialised cushion of ``discs`` sand discs; the rock is in the middle of the box and
+    fits, unless told otherwise."""
     instance = COMPONENT.instance(discs=discs, elements=elements)
     for name, value in parameters.items():
         instance[name] = value
@@ -51,7 +54,8 @@ def discs_at(
     spins: Sequence[float] | NDArray[np.float64] | None = None,
     parameters: Mapping[str, Any] | None = None,
 ) -> Instance:
-    """Discs at given centres (m) with given velocities (m/s) and spins (rad/s), in empty space unless parameters say otherwise."""
+    """Discs at given centres (m) with given velocities (m/s) and spins (rad/s), in empty space
+    unless parameters say otherwise."""
     instance = cushion({**EMPTY_SPACE, **(parameters or {})}, len(positions))
     body = rows(instance)
     body[:, 0:2] = positions
@@ -73,7 +77,8 @@ def stirred(instance: Instance, speed: float, seed: int = 1) -> Instance:
 
 
 def rows(instance: Instance) -> NDArray[np.float64]:
-    """The sand discs' rows of the state, a view: x, y, vx, vy, omega * radius, radius, 1/mass, sqrt(mass) / 2."""
+    """The sand discs' rows of the state, a view: x, y, vx, vy, omega * radius, radius, 1/mass,
+    sqrt(mass) / 2."""
     view: NDArray[np.float64] = instance.state("body").reshape(-1, ROW)[: instance.sizes["discs"]]
     return view
 
@@ -90,7 +95,7 @@ def weight(instance: Instance) -> float:
 
 def sand_stiffness(instance: Instance) -> float:
     """k_n of two equal discs (N/m): eq. (1) of the paper with dD = R_ij0."""
-    return float(instance["stiffness_factor"] * instance["modulus"] * instance["depth"])
+    return float(instance["stiffness_factor"] * instance["modulus"] * instance["thickness"])
 
 
 def run(instance: Instance, duration: float, step: float | None = None) -> None:
@@ -106,7 +111,8 @@ def force_rebuild(instance: Instance) -> None:
 
 
 def restitution(damping_ratio: float) -> float:
-    """Rebound / approach speed of a linear spring and dashpot without tension: contact ends when the force is zero.
+    """Rebound / approach speed of a linear spring and dashpot without tension: contact ends when
+    the force is zero.
 
     Schwager and Poeschel (2007), Granular Matter 9, 465-469. damping_ratio = c / (2 sqrt(k m_eff)).
     """
@@ -124,7 +130,8 @@ def contact_duration(damping_ratio: float, frequency: float) -> float:
 
 
 class RockOnSand:
-    """A falling rock and a sand cushion that exchange every ``step`` (s), the sand first, inputs held: the paper's scheme."""
+    """A falling rock and a sand cushion that exchange every ``step`` (s), the sand first, inputs
+    held: the paper's scheme."""
 
     def __init__(
         self,

@@ -9,7 +9,8 @@ from rockshed.components.catalogue import component
 from rockshed.components.common.counter_random import stream
 from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.events import begin, happen, world
-from rockshed.components.slope_rockfall.trajectory import BARRIER, OUTCOME, PASSAGE, PEAK, trials
+from rockshed.components.slope_rockfall.records import BARRIER, OUTCOME, PASSAGE, PEAK
+from rockshed.components.slope_rockfall.trajectory import trials
 
 SLOPE = component("SlopeRockfall")
 G = 9.80665

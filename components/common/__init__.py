@@ -1,1 +1,1 @@
-"""What all components are made of: declarations, buffers, units, compilation."""
+"""Parts of all components: declarations, buffers, units, laws that several share, compilation."""

@@ -307,7 +307,7 @@ class Instance:
             raise ComponentError(self.component.name, [at + self.message(status)])
 
     def message(self, status: int) -> str:
-        """What a status of a kernel means, with the present values in it."""
+        """Return the message of a kernel's status, with the present values in it."""
         template = self.component.faults.get(status, UNKNOWN_STATUS % status)
         return re.sub(r"\{([^}]+)\}", lambda match: f"{self[match.group(1)]:.6g}", template)
 
@@ -357,7 +357,7 @@ def _on_cache_lines(length: int) -> Buffer:
 
 
 def value_problems(variable: Variable, name: str, value: float) -> list[str]:
-    """What is wrong with a value of the variable: not finite, out of range, not whole. Empty if nothing is."""
+    """Return what is wrong with a value: not finite, out of range, not whole; or nothing."""
     low = -np.inf if variable.minimum is None else variable.minimum
     high = np.inf if variable.maximum is None else variable.maximum
     if not np.isfinite(value):

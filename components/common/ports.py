@@ -1,16 +1,20 @@
 """Variables of a component, each declared once.
 
-Everything else derives from these declarations: the place of a value in the component's buffers, the indices that kernels
-use, the model description of the FMU, the checks of the orchestrator and the tables of the documentation.
+Everything else derives from these declarations: the place of a value in the component's buffers,
+the indices that kernels use, the model description of the FMU, the checks of the orchestrator and
+the tables of the documentation.
 
 A component keeps three flat buffers:
 
-``w``  float64, what the outside sees: parameters, inputs and outputs. **The FMI value reference of a variable is its index.**
-``x``  float64, hidden state (positions of sand discs, contact springs, ...).
-``k``  int64, hidden integers, beginning with a table of the arrays: two entries an array, its offset and its length.
+- ``w``, float64, what the outside sees: parameters, inputs and outputs. **The FMI value reference
+  of a variable is its index.**
+- ``x``, float64, hidden state (positions of sand discs, contact springs, ...).
+- ``k``, int64, hidden integers, beginning with a table of the arrays: two entries an array, its
+  offset and its length.
 
-Scalars stand first in ``w``, in the order of their declaration, so their index is a constant that a kernel may use. The place
-of an array depends on the sizes the component was built with; kernels find it with :func:`.kernels.view`.
+Scalars stand first in ``w``, in the order of their declaration, so their index is a constant that a
+kernel may use. The place of an array depends on the sizes the component was built with; kernels
+find it with :func:`.kernels.view`.
 """
 
 from collections import namedtuple
@@ -31,7 +35,7 @@ Start = float | Callable[[int, Sizes], float]
 
 
 class Causality(StrEnum):
-    """What a variable is to the outside, in the words of FMI."""
+    """The relation of a variable to the outside, in the words of FMI."""
 
     PARAMETER = "parameter"
     INPUT = "input"
@@ -39,7 +43,10 @@ class Causality(StrEnum):
 
 
 class Kind(StrEnum):
-    """FMI type of a variable. In the buffer ``w`` all of them are float64; an enumeration counts its choices from 1."""
+    """FMI type of a variable.
+
+    In the buffer ``w`` all of them are float64; an enumeration counts its choices from 1.
+    """
 
     REAL = "Real"
     INTEGER = "Integer"
@@ -70,10 +77,12 @@ class Variable:
     choices : tuple of str
         Words of an enumeration.
     size : str, optional
-        Name of the size that gives an array its length; None for a scalar. Elements are named ``name[1]``, ``name[2]``, ...
+        Name of the size that gives an array its length; None for a scalar. Elements are named
+        ``name[1]``, ``name[2]``, ...
     initial_dependencies : tuple of str, optional
-        For outputs, names of the parameters and inputs that the value at the end of the initialisation depends on. None
-        means: all of them. No output changes with an input between two steps.
+        For outputs, names of the parameters and inputs that the value at the end of the
+        initialisation depends on. None means: all of them. No output changes with an input between
+        two steps.
     source : str
         Paper and equation or table the variable or its start value comes from.
     role : Role, optional
@@ -116,7 +125,10 @@ class Variable:
         return float(self.start(number, sizes) if callable(self.start) else self.start)
 
     def element_names(self, sizes: Sizes) -> list[str]:
-        """Names as the outside sees them: the name itself, or ``name[1]``, ``name[2]``, ... for an array."""
+        """Names as the outside sees them: the name itself, or ``name[1]``, ``name[2]``, ...
+
+        for an array.
+        """
         if self.size is None:
             return [self.name]
         return [f"{self.name}[{i + 1}]" for i in range(sizes[self.size])]
@@ -130,7 +142,10 @@ def param(name: str, description: str, start: Start, unit: str = "1", **rest: An
 def choice(
     name: str, description: str, choices: Sequence[str], start: str, **rest: Any
 ) -> Variable:
-    """Declare a parameter that selects one of ``choices``; kernels see its number, counted from 1."""
+    """Declare a parameter that selects one of ``choices``.
+
+    Kernels see its number, counted from 1.
+    """
     number = float(choices.index(start) + 1)
     return Variable(
         name,
@@ -166,7 +181,10 @@ def inp(name: str, description: str, unit: str = "1", start: Start = 0.0, **rest
 
 
 def out(name: str, description: str, unit: str = "1", **rest: Any) -> Variable:
-    """Declare a real output. It has no start value: the component computes it when it is initialised."""
+    """Declare a real output.
+
+    It has no start value: the component computes it when it is initialised.
+    """
     return Variable(name, Causality.OUTPUT, description, unit, **rest)
 
 
@@ -186,12 +204,21 @@ BOND_MEMBERS = (
 
 @dataclass(frozen=True, slots=True)
 class Bond:
-    """A mechanical power bond to another component: the motion of a body, which one of them computes, and the force on it.
+    """A mechanical power bond to another component.
 
-    Its members are the inputs and outputs of the component that are named ``prefix`` + one of :data:`BOND_MEMBERS`, be they
-    scalars or arrays. Two components fit together if their bonds have the same members.
+    It carries the motion of a body, which one of both computes, and the force on it. Its members
+    are the inputs and outputs of the component that are named ``prefix`` + one of
+    :data:`BOND_MEMBERS`, be they scalars or arrays. Two components fit together if their bonds have
+    the same members.
 
-    name: of the terminal that FMI 3.0 makes of it.
+    Attributes
+    ----------
+    name : str
+        Name of the terminal that FMI 3.0 makes of it.
+    description : str
+        Body and force in words.
+    prefix : str
+        Beginning of the names of its members.
     """
 
     name: str
@@ -199,7 +226,13 @@ class Bond:
     prefix: str = ""
 
     def members(self, variables: Sequence[Variable]) -> dict[str, Variable]:
-        """The variables of the bond by member, in the order of :data:`BOND_MEMBERS`."""
+        """Return the variables of the bond by member, in the order of :data:`BOND_MEMBERS`.
+
+        Parameters
+        ----------
+        variables : sequence of Variable
+            Variables of the component.
+        """
         named = {v.name: v for v in variables if v.causality is not Causality.PARAMETER}
         return {
             member: named[self.prefix + member]
@@ -210,11 +243,18 @@ class Bond:
 
 @dataclass(frozen=True, slots=True)
 class NextEvent:
-    """Where a component tells when it meets its next event, so that a communication step may end there.
+    """The output by which a component announces its next event.
 
-    time: output (s). A step that ends at this time has the event behind it, and the results are the same, bit for bit, however
-        the time is divided into steps. Until the first step it counts from the start, which kernels do not know.
-    while_zero: inputs that must be zero for that to hold.
+    A communication step may end there.
+
+    Attributes
+    ----------
+    time : str
+        Output (s). A step that ends at this time has the event behind it, and the results are the
+        same, bit for bit, however the time is divided into steps. Until the first step it counts
+        from the start, which kernels do not know.
+    while_zero : tuple of str
+        Inputs that must be zero for that to hold.
     """
 
     time: str
@@ -232,11 +272,21 @@ class State:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the variables and hidden arrays of a component lie. Independent of the sizes it is built with.
+    """Places of the variables and hidden arrays of a component, whatever its sizes.
 
-    ``scalar``: a named tuple, index in ``w`` of each scalar; ``array``: a named tuple, place in ``k`` of the table entry of
-    each array, variables and hidden arrays alike. Dots in names become underscores: ``scalar.rock_position_x``.
-    Both are constants to numba.
+    Dots in names become underscores: ``scalar.rock_position_x``. Both tuples are constants to
+    numba.
+
+    Attributes
+    ----------
+    variables : tuple of Variable
+        In the order of their declaration.
+    states : tuple of State
+        Hidden arrays.
+    scalar : named tuple
+        Index in ``w`` of each scalar.
+    array : named tuple
+        Place in ``k`` of the table entry of each array, variables and hidden arrays alike.
     """
 
     variables: tuple[Variable, ...]
@@ -273,7 +323,20 @@ class Layout:
         ]
 
     def table(self, sizes: Sizes) -> tuple[list[int], int, int, int]:
-        """Offsets and lengths of all arrays, and the lengths of ``w``, ``x`` and ``k`` that they need."""
+        """Return offsets and lengths of all arrays, and the lengths of the buffers.
+
+        Parameters
+        ----------
+        sizes : mapping of str to int
+            Sizes that the component is built with.
+
+        Returns
+        -------
+        entries : list of int
+            Offset and length of each array.
+        w, x, k : int
+            Lengths of the buffers.
+        """
         entries: list[int] = []
         w = sum(v.size is None for v in self.variables)
         x, k = 0, 2 * len(self.array)
@@ -284,7 +347,10 @@ class Layout:
         for state in self.states:
             length = state.length(sizes)
             entries += [k if state.integer else x, length]
-            k, x = (k + length, x) if state.integer else (k, x + length)
+            if state.integer:
+                k += length
+            else:
+                x += length
         return entries, w, x, k
 
 

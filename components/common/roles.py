@@ -1,8 +1,8 @@
 """Roles: the meaning of a variable to those who know no component by name.
 
-Metrics, the balance of energy, tables and pictures of a run ask for variables by their role, so that a new component takes
-part in them by its declarations alone. Roles are ordered by their dots: whoever asks for ``energy.kinetic`` gets
-``energy.kinetic.striking`` too.
+Metrics, the balance of energy, tables and pictures of a run ask for variables by their role, so
+that a new component takes part in them by its declarations alone. Roles are ordered by their dots:
+whoever asks for ``energy.kinetic`` gets ``energy.kinetic.striking`` too.
 """
 
 from enum import StrEnum
@@ -14,7 +14,8 @@ class Role(StrEnum):
     KINETIC = "energy.kinetic"
     """Kinetic energy (J)."""
     STRIKING = "energy.kinetic.striking"
-    """Kinetic energy (J) of a body that strikes: at the start, or when it is handed over, it is the impact energy."""
+    """Kinetic energy (J) of a body that strikes: at the start, or when it is handed over, it is the
+    impact energy."""
     GRAVITY_ENERGY = "energy.gravity"
     """Potential energy (J) in gravity; its zero is arbitrary."""
     ELASTIC = "energy.elastic"
@@ -24,7 +25,8 @@ class Role(StrEnum):
     DISSIPATED = "energy.dissipated"
     """Energy (J) dissipated since the start."""
     LEFT_BEHIND = "energy.dissipated.on_the_way"
-    """Energy (J) dissipated on the way to the system, which may have begun before it; its zero is arbitrary."""
+    """Energy (J) dissipated on the way to the system, which may have begun before it; its zero is
+    arbitrary."""
     WORK_INSIDE = "energy.work.inside"
     """Work (J) that another component has done on this one through an interface."""
     WORK_OUTSIDE = "energy.work.outside"
@@ -32,7 +34,8 @@ class Role(StrEnum):
     MACHINE_WORK = "energy.work.outside.machine"
     """Work (J) of a machine that drives a body."""
     RESIDUAL = "energy.residual"
-    """Energies + dissipated - works of a component, less their sum at the start (J): the error of its balance."""
+    """Energies + dissipated - works of a component, less their sum at the start (J): the error of
+    its balance."""
 
     TRANSMITTED = "force.transmitted"
     """Force (N) of a cushion on what carries it, downwards."""

@@ -1,4 +1,7 @@
-"""Declarations of what is shown of a component: figures that follow from an output, and pictures as data."""
+"""Declarations of what is shown of a component.
+
+Figures that follow from an output, and pictures as data.
+"""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,7 +10,10 @@ from .units import SCREEN_UNITS
 
 
 class Statistic(StrEnum):
-    """How a figure follows from an output over time; of an array, the largest of its elements' figures is taken."""
+    """How a figure follows from an output over time.
+
+    Of an array, the largest of its elements' figures is taken.
+    """
 
     LARGEST = "largest"
     LEAST = "least"
@@ -107,7 +113,8 @@ class Picture:
     Attributes
     ----------
     name : str
-        Name of the file without its ending. Components that declare one name are drawn into one picture.
+        Name of the file without its ending. Components that declare one name are drawn into one
+        picture.
     panels : tuple of Panel
         From top to bottom.
     """

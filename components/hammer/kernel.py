@@ -184,7 +184,7 @@ def _cushioned(now, dt, w, x, k):
 
 @kernel
 def publish(w, x, k):
-    """Refresh cushion and energies."""
+    """Refresh the outputs of cushion and energies."""
     w[V.cushion_compression] = max(_compression(w), 0.0)
     w[V.energy_kinetic] = 0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
     w[V.energy_gravity] = -w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]

@@ -1,4 +1,6 @@
-"""What a stretch of time does to the ground, for each port and law. Quantities count downwards, loads include the preload.
+"""Motion of the ground in a stretch of time, for each port and law.
+
+Quantities count downwards, loads include the preload.
 
 Every function changes the state ``b``, books dissipated energies in ``w`` and returns the impulse of the load (N s) on the ground
 and its work (J), preload included.

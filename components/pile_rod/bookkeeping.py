@@ -1,4 +1,4 @@
-"""What every scheme keeps account of: soil, head, envelopes."""
+"""Accounts of every scheme: soil, head, envelopes."""
 
 from ..common.kernels import kernel, view
 from ..common.smith_soil import Soil, drag, stored, stretched

@@ -337,10 +337,11 @@ LAYOUT = Layout(
         ),
         out("exchange_step", "length of the last communication step", "s", initial_dependencies=()),
         out(
-            "lag",
+            "delay",
             "time by which everything that is computed lies before the end of the communication step",
             "s",
             initial_dependencies=(),
+            formerly=("lag",),
         ),
         out(
             "force",

@@ -56,7 +56,7 @@ def run(time, h, w, x, k):
         clock[CLOCK.waiting] += left
         clock[CLOCK.head_impulse] += on_head * left
         clock[CLOCK.toe_impulse] += on_toe * left
-    w[V.lag] = clock[CLOCK.waiting] + clock[CLOCK.behind]
+    w[V.delay] = clock[CLOCK.waiting] + clock[CLOCK.behind]
 
 
 @kernel

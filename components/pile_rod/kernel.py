@@ -80,7 +80,7 @@ def _clear(w, k):
     )
     w[V.energy_work_head], w[V.energy_work_toe], w[V.energy_work_gravity] = 0.0, 0.0, 0.0
     w[V.energy_head], w[V.energy_transferred], w[V.energy_start] = 0.0, 0.0, 0.0
-    w[V.head_contact_force], w[V.toe_contact_force], w[V.exchange_step], w[V.lag] = (
+    w[V.head_contact_force], w[V.toe_contact_force], w[V.exchange_step], w[V.delay] = (
         0.0,
         0.0,
         0.0,

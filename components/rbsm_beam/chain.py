@@ -163,7 +163,7 @@ def potential(c, w, x, k):
 
 @kernel
 def set_kicks(c, dt, x, k):
-    """What a force changes the rate of each disc by in a step dt (s), for :func:`move`."""
+    """Set the change of each disc's rate per force in a step dt (s), for :func:`move`."""
     mass, kick = view(x, k, A.mass), view(x, k, A.kick)
     for i in range(c.n):
         kick[i] = dt / mass[i]

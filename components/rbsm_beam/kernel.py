@@ -27,7 +27,7 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @kernel
 def initialise(w, x, k):
-    """What follows from the parameters alone."""
+    """Compute the state that follows from the parameters alone."""
     if not box_stands_on_beam(w):
         return BOX_OFF_BEAM
     c = chain(w, k)

@@ -71,8 +71,11 @@ def _flexibility(c, i):
 
 @kernel
 def _add_redundant_moments(c, rise, moment):
-    """What fixed supports add to the moments: constant + tilt * (n/2 - x/R), with which both ends stay level and the right one
-    stands higher by ``rise`` (m). Both are orthogonal, as the flexibilities are symmetric."""
+    """Add the moments of fixed supports: constant + tilt * (n/2 - x/R).
+
+    With them both ends stay level and the right one stands higher by ``rise`` (m). Both are
+    orthogonal, as the flexibilities are symmetric.
+    """
     if not c.fixed:
         return
     n, stiffness = c.n, c.bending * c.spacing

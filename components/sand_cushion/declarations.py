@@ -1,4 +1,7 @@
-"""Variables of the sand cushion. Equations, frame, signs and sources: README.md beside this file."""
+"""Variables and hidden state of the sand cushion.
+
+Equations, frame, signs and sources: README.md in this folder.
+"""
 
 import math
 from collections import namedtuple
@@ -27,7 +30,8 @@ SIZES = {
 }
 
 CALIBRATED_STIFFNESS_FACTOR = 0.37
-"""With locked rotation: fitted to table 5 and to the static test (fig. 13) of the paper, not derived."""
+"""Factor on the stiffness for locked rotation (1): fitted to table 5 and to the static test (fig.
+13) of the paper, not derived."""
 
 _BALL_RADIUS = 4.95 * cm
 _BEAM_RADIUS = 2.5 * cm
@@ -35,16 +39,17 @@ _TABLE_3 = "Sonoda et al. 1993, table 3"
 _EQ_1 = "Sonoda et al. 1993, eq. (1)"
 
 ROW = 8
-"""Numbers per body in ``body``, a cache line: x, y, vx, vy, surface speed omega * radius, radius, 1/mass, sqrt(mass) / 2.
-Rock and beam discs have their angle in the place of 1/mass."""
+"""Numbers per body in ``body``, a cache line: x, y (m), vx, vy, surface speed omega r (m/s), radius
+(m), 1/mass (1/kg), sqrt(mass)/2 (kg^0.5). Rock and beam discs have their angle (rad) in the place
+of 1/mass."""
 SPIN, RADIUS, INVERSE_MASS, ANGLE, HALF_ROOT = 4, 5, 6, 6, 7
 FORCE_ROW = 4
-"""Numbers per body in ``load``: force to the right, force upwards, torque / radius, nothing."""
+"""Numbers per body in ``load``: force to the right and upwards, torque / radius (N), nothing."""
 PARTNERS = 12
 """Room for contact candidates, per disc on average."""
 INDEX = 0x7FFFFFFF
-"""Larger than any index. A number masked with it is known not to be negative, and numba's handling of negative indices falls
-away; see forces.py."""
+"""Mask that leaves every index as it is. The compiler then knows that an index is not negative, and
+drops what serves negative ones."""
 BLOCK = 64
 """Pairs for which the law of contact is computed together."""
 UNBOUNDED = 1e30
@@ -52,36 +57,50 @@ UNBOUNDED = 1e30
 LANES = 8
 """Pairs that are in a vector."""
 MOTION = 8
-"""Numbers that add up over the discs of a step; see vector_rows.py."""
+"""Numbers that add up over the discs of a step; see vector/rows.py."""
 PART = 12_500
-"""Discs that are computed as one part, at least: threads share the parts. The division depends on the number of discs only, so the
-results do not depend on the number of threads."""
+"""Least number of discs in a part: threads share the parts. The division depends on the number of
+discs only, so that the results do not depend on the number of threads."""
 PLANES = 3
-"""Left wall, right wall, base."""
+"""Number of boundaries that are planes: left wall, right wall, base."""
 
 Kind = namedtuple("Kind", "sand rock base wall rock_base rock_wall")
 KIND = Kind(*range(6))
 """Kinds of contact; each has a row of :data:`LAW` numbers in ``law``."""
 Law = namedtuple(
     "Law",
-    "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge softness",
+    "normal damping tangential tangential_damping friction rolling unloading yielding pull bridge"
+    " compliance",
 )
 LAW = Law(*range(11))
-"""Numbers per kind of contact: k_n (N/m), 2 h sqrt(k_n) (c_n = that * sqrt(m)), k_s, 2 h sqrt(k_s), mu, rolling resistance,
-unloading stiffness (N/m), part of the overlap that stays, capillary force / distance of centres (N/m), longest bridge / distance
-of centres, 1/k_s."""
+"""Places of the constants of a kind of contact: k_n (N/m); 2 h sqrt(k_n), c_n being that times
+sqrt(m) (N^0.5 m^-0.5); k_s (N/m); 2 h sqrt(k_s); mu; rolling resistance mu_r; unloading stiffness K
+k_n (N/m); part 1 - 1/K of the overlap that stays; capillary force / distance of centres (N/m);
+longest bridge / distance of centres; 1/k_s (m/N)."""
+
+Boundary = namedtuple(
+    "Boundary", "geometry sand_contact rock_contact carrier transmits beam_mass side"
+)
+"""A boundary of the sand: its geometry, the kinds of its contacts with sand and with the rock, who
+carries the force on it, whether that force counts as transmitted (1 or 0), whether dashpots of sand
+on it take the mass of a beam disc (1 or 0), and for walls their side (-1 left, 1 right)."""
+BOUNDARY_ROW = len(Boundary._fields)
+"""Numbers per boundary in ``boundary``."""
 
 Column = namedtuple("Column", "x y vx vy spin reach root")
 COLUMN = Column(*range(7))
-"""Columns of the block of pairs. The law leaves force to the right and upwards, tangential and normal force in the first four."""
+"""Columns of the block of pairs: differences of positions (m) and velocities (m/s), sums of surface
+speeds (m/s), radii (m) and half roots of mass (kg^0.5). The law leaves force to the right and
+upwards, tangential and normal force (N) in the first four."""
 
 Tally = namedtuple(
     "Tally",
     "elastic stretched normal_dashpot tangential_dashpot sliding released plastic capillary",
 )
 TALLY = Tally(*range(8))
-"""Energies that add up over the pairs of a step, a number for each lane of the vectors: those of normal and tangential springs, of
-the dashpots, of sliding, of springs of contacts that opened, of yielding and of capillary bridges. Most are still to be scaled."""
+"""Energies that add up over the pairs of a step, a number for each lane of the vectors: those of
+normal and tangential springs, of the dashpots, of sliding, of springs of contacts that opened, of
+yielding and of capillary bridges. Most are still to be scaled."""
 
 Roll = namedtuple("Roll", "elastic lost")
 ROLL = Roll(*range(2))
@@ -89,21 +108,25 @@ ROLL = Roll(*range(2))
 
 Sum = namedtuple(
     "Sum",
-    "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam transmitted "
+    "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam "
+    "transmitted "
     "travelled beam_key",
 )
 SUM = Sum(*range(12))
-"""Running sums that a kernel keeps between two steps in ``sums``."""
+"""Places of the sums that go on from step to step in ``sums``: energies and works (J), transmitted
+force (N), way of the fastest disc since the list was made (m), key of the beam's place."""
 
 
 def _bodies(sizes: Sizes) -> int:
-    """Discs, rock, beam discs, and for each part a body far away that nothing touches: partner in pairs that fill up a
-    block. An even number."""
+    """Return the number of bodies: discs, rock, beam discs, and for each part one far away.
+
+    That one is the partner in pairs that fill up a block. The number is even.
+    """
     return (sizes["discs"] + 1 + sizes["elements"] + _parts(sizes) + 1) // 2 * 2
 
 
 def _parts(sizes: Sizes) -> int:
-    """Room for parts; small cushions are one part and leave the other one empty."""
+    """Return the room for parts; small cushions are one part and leave the other one empty."""
     return max(2, sizes["discs"] // PART)
 
 
@@ -137,7 +160,8 @@ LAYOUT = Layout(
         ),
         param(
             "box.wall_height",
-            "height of the side walls for the rock, above base.y, or above the beam's top where they stand on "
+            "height of the side walls for the rock, above base.y, or above the beam's top where "
+            "they stand on "
             "it; for sand they have no end",
             UNBOUNDED,
             "m",
@@ -148,7 +172,8 @@ LAYOUT = Layout(
         ),
         param(
             "base.y",
-            "y of the floor, used when base = floor; side walls fixed in space count their height from it",
+            "y of the floor, used when base = floor; side walls fixed in space count their height"
+            " from it",
             0.0,
             "m",
         ),
@@ -169,32 +194,36 @@ LAYOUT = Layout(
             maximum=0.5,
         ),
         param(
-            "depth",
-            "effective depth dL of the cushion, into the picture",
+            "thickness",
+            "effective thickness dL of the cushion, out of the plane",
             10 * cm,
             "m",
             minimum=1e-6,
             source="Sonoda et al. 1993, sec. 3 (2)",
+            formerly=("depth",),
         ),
         param(
-            "unit_weight",
-            "mass density of a disc, or of the layer with its voids (unit_weight_of)",
+            "density",
+            "density of a disc, or of the layer with its voids (density_of)",
             0.0018 * kgf / cm**3 / kgf,
             "kg/m3",
             minimum=1e-6,
             source=_TABLE_3,
+            formerly=("unit_weight",),
         ),
         choice(
-            "unit_weight_of",
-            "what unit_weight is the density of: a disc; or the layer, discs are then heavier by 1 / "
+            "density_of",
+            "body that density belongs to: a disc; or the layer, whose discs are heavier by 1 / "
             "solid_fraction",
             ("disc", "layer"),
             "disc",
+            formerly=("unit_weight_of",),
         ),
         param(
             "solid_fraction",
-            "part of the layer that discs fill: what packing = prepared is brought to; also used by cohesion "
-            "and unit_weight_of = layer. The default is that of a square lattice",
+            "part of the layer that discs fill: what packing = prepared is brought to; also used "
+            "by cohesion "
+            "and density_of = layer. The default is that of a square lattice",
             math.pi / 4.0,
             minimum=0.5,
             maximum=0.9,
@@ -209,14 +238,16 @@ LAYOUT = Layout(
         ),
         choice(
             "packing",
-            "arrangement of the discs at the start; random: as they settle, prepared: settled until they have "
+            "arrangement of the discs at the start; random: as they settle, prepared: settled "
+            "until they have "
             "solid_fraction",
             ("square", "hexagonal", "random", "prepared"),
             "square",
         ),
         param(
             "lattice_shift",
-            "square and hexagonal packing: each disc is moved at random by up to this part of its diameter",
+            "square and hexagonal packing: each disc is moved at random by up to this part of its"
+            " diameter",
             0.0,
             minimum=0.0,
             maximum=0.5,
@@ -246,13 +277,15 @@ LAYOUT = Layout(
         ),
         choice(
             "rotation",
-            "locked: a disc's rotation is left out (calibrated model); free: three freedoms a disc (literal model)",
+            "locked: a disc's rotation is left out (calibrated model); free: three freedoms a "
+            "disc (literal model)",
             ("free", "locked"),
             "locked",
         ),
         param(
             "stiffness_factor",
-            "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 is eq. (1) "
+            "factor on all contact stiffnesses of the sand; a calibration for locked rotation, 1 "
+            "is eq. (1) "
             "to the letter",
             CALIBRATED_STIFFNESS_FACTOR,
             minimum=1e-9,
@@ -276,13 +309,15 @@ LAYOUT = Layout(
         ),
         param(
             "rolling_resistance",
-            "rolling friction: largest rolling moment / (normal force * radius); with free rotation",
+            "rolling friction: largest rolling moment / (normal force * radius); with free "
+            "rotation",
             0.0,
             minimum=0.0,
         ),
         param(
             "unloading_ratio",
-            "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); 1 is elastic",
+            "unloading stiffness / loading stiffness of the contacts of sand (Walton and Braun); "
+            "1 is elastic",
             1.0,
             minimum=1.0,
             maximum=1e3,
@@ -339,14 +374,17 @@ LAYOUT = Layout(
         # what the cushion rests on and between
         choice(
             "base",
-            "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's discs as discs",
+            "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's "
+            "discs as discs",
             ("floor", "beam_surface", "beam_discs"),
             "beam_discs",
         ),
         choice(
             "base.shape",
-            "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, the beam's top being flat and "
-            "its discs those of the computation; round: with the radius of the beam discs (base = beam_discs)",
+            "how eq. (1) is read for the base. flat: k_n = E_bar dL, as on a plate, the beam's top"
+            " being flat and "
+            "its discs those of the computation; round: with the radius of the beam discs (base ="
+            " beam_discs)",
             ("flat", "round"),
             "flat",
         ),
@@ -367,7 +405,8 @@ LAYOUT = Layout(
         param("beam.radius", "radius of a beam disc", _BEAM_RADIUS, "m", minimum=1e-6),
         param(
             "beam.disc_mass",
-            "mass of a beam disc, for the dashpots of its contacts with sand; 0 takes the sand disc's there",
+            "mass of a beam disc, for the dashpots of its contacts with sand; 0 takes the sand "
+            "disc's there",
             0.0,
             "kg",
             minimum=0.0,
@@ -376,21 +415,24 @@ LAYOUT = Layout(
         internal_step(1e-5),
         count(
             "threads",
-            "threads that share the work of a step; their number changes no bit. Of use from some 50,000 discs on",
+            "threads that share the work of a step; their number changes no bit. Of use from some"
+            " 50,000 discs on",
             1,
             minimum=1,
             maximum=MOST_THREADS,
         ),
         choice(
             "kinematics",
-            "motion of rock and beam within a communication step: as given (held), or going on with the velocity "
+            "motion of rock and beam within a communication step: as given (held), or going on "
+            "with the velocity "
             "given (linear)",
             ("held", "linear"),
             "held",
         ),
         choice(
             "forces",
-            "forces returned: those of the last internal step, or the mean over the communication step, which keeps "
+            "forces returned: those of the last internal step, or the mean over the communication "
+            "step, which keeps "
             "the impulse",
             ("last", "mean"),
             "last",
@@ -443,14 +485,16 @@ LAYOUT = Layout(
         ),
         out(
             "transmitted_force",
-            "force of sand and rock on base (and on walls that stand on the beam), positive downwards",
+            "force of sand and rock on base (and on walls that stand on the beam), positive "
+            "downwards",
             "N",
             source="Sonoda et al. 1993, eq. (4)",
             role=Role.TRANSMITTED,
         ),
         out(
             "penetration",
-            "depth of the rock's lowest point under the sand's surface at the start; negative above it",
+            "depth of the rock's lowest point under the sand's surface at the start; negative "
+            "above it",
             "m",
             role=Role.PENETRATION,
         ),
@@ -462,7 +506,8 @@ LAYOUT = Layout(
         ),
         out(
             "layer.solid_fraction",
-            "part of the layer that discs fill at the start; its height is twice that of their centre of "
+            "part of the layer that discs fill at the start; its height is twice that of their "
+            "centre of "
             "gravity",
             "1",
         ),
@@ -472,10 +517,11 @@ LAYOUT = Layout(
             "m",
         ),
         out(
-            "unrest",
-            "how far the sand was from rest at the start: largest acceleration of a disc in g, or speed in sqrt(g r) if "
-            "that is more; settling ends at 1e-6, or when settling.time is over",
+            "unbalanced_force_ratio",
+            "largest unbalanced force on a disc at the start / its weight, or largest speed in "
+            "sqrt(g r) if that is more; settling ends at 1e-6, or when settling.time is over",
             role=Role.UNBALANCED,
+            formerly=("unrest",),
         ),
         stable_step(),
         out(
@@ -529,7 +575,8 @@ LAYOUT = Layout(
         ),
         out(
             "energy.plastic",
-            "energy lost in contacts that do not spring back, less what their capillary bridges gained",
+            "energy lost in contacts that do not spring back, less what their capillary bridges "
+            "gained",
             "J",
             role=Role.DISSIPATED,
             label="lost in yielding contacts",
@@ -555,7 +602,8 @@ LAYOUT = Layout(
         ),
         out(
             "energy.residual",
-            "kinetic + elastic + capillary + gravity + dissipated - work, minus the sum at the start",
+            "kinetic + elastic + capillary + gravity + dissipated - work, minus the sum at the "
+            "start",
             "J",
             role=Role.RESIDUAL,
         ),
@@ -585,6 +633,7 @@ LAYOUT = Layout(
         State("law", lambda n: len(KIND) * len(LAW)),
         State("sums", lambda n: len(SUM)),
         State("boundary_reference", lambda n: 2 * (n["elements"] + 1)),
+        State("boundary", lambda n: BOUNDARY_ROW * (n["elements"] + 1 + PLANES), True),
         State("part", lambda n: _parts(n) + 1, integer=True),
         State("row", lambda n: n["discs"] + 1, integer=True),
         State("row_before", lambda n: n["discs"] + 1, integer=True),

@@ -13,7 +13,8 @@ _OPTIONAL = (
     ("unloading_ratio", "unloading ratio", 1.0, 1.0, ""),
     ("cohesion", "cohesion", 0.0, kgf / cm**2, " kgf/cm²"),
 )
-"""Parameters that are named where they are not idle: name, words, idle value, unit in SI, its name."""
+"""Parameters that are named where they are not idle: name, words, idle value, unit in SI, its
+name."""
 
 
 def contact_frequency(parameters: Parameters) -> float:
@@ -31,9 +32,9 @@ def contact_frequency(parameters: Parameters) -> float:
     """
     factor, modulus, density, radius, solid = (
         float(parameters[name])
-        for name in ("stiffness_factor", "modulus", "unit_weight", "disc.radius", "solid_fraction")
+        for name in ("stiffness_factor", "modulus", "density", "disc.radius", "solid_fraction")
     )
-    if parameters["unit_weight_of"] == "layer":
+    if parameters["density_of"] == "layer":
         density /= solid
     return math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
 

@@ -1,4 +1,4 @@
-"""Models of the sand by name: sets of parameters of the sand cushion that were calibrated together."""
+"""Models of the sand by name: sets of parameters that were calibrated together."""
 
 import math
 from collections.abc import Mapping
@@ -28,7 +28,8 @@ class SandModel:
 
 
 ONE_LAW_MODULUS = 35.0
-"""Fictitious modulus E_bar (kgf/cm2) of the one law: calibrated to twelve tests in the laboratory and to table 6."""
+"""Fictitious modulus E_bar (kgf/cm2) of the one law: calibrated to twelve tests in the laboratory
+and to table 6."""
 ONE_LAW_UNLOADING = 3.0
 """Unloading stiffness / loading stiffness of the one law, calibrated with its modulus."""
 ROLLING = 0.3
@@ -55,7 +56,7 @@ MODELS: Mapping[str, SandModel] = {
             "disc.spread": SPREAD,
             "rolling_resistance": ROLLING,
             "unloading_ratio": ONE_LAW_UNLOADING,
-            "unit_weight_of": "layer",
+            "density_of": "layer",
         },
         prepared=True,
     ),

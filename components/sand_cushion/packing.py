@@ -1,79 +1,70 @@
-"""Where the discs lie before they settle: square and hexagonal lattices, and a loose random heap."""
+"""Places of the discs before they settle: square and hexagonal lattices, a loose random heap."""
 
 import math
 
 from ..common.counter_random import uniform
-from ..common.kernels import kernel, view
-from .contact_search import base_top, beam_count, disc_count
-from .declarations import (
-    BEAM_DISCS,
-    HALF_ROOT,
-    HEXAGONAL,
-    INVERSE_MASS,
-    LAYER,
-    LAYOUT,
-    RADIUS,
-    RANDOM,
-    ROW,
-    SPIN,
-)
+from ..common.kernels import kernel
+from .bodies import bodies_of
+from .contact_search import base_top
+from .declarations import BEAM_DISCS, HEXAGONAL, LAYER, LAYOUT, RANDOM
 
-V, A = LAYOUT.scalar, LAYOUT.array
+V = LAYOUT.scalar
 
 _FIT = 1e-9
-"""A disc fits into a gap that is too narrow by this part of its diameter."""
+"""Part of its diameter by which a disc may be wider than a gap, and still fit into it."""
 _LOOSE = 1.05
 """Spacing of the random heap before it falls, in largest diameters."""
 
 
 @kernel
 def disc_mass(radius, w):
-    """Mass (kg) of a disc: a cylinder of the cushion's depth."""
-    density = w[V.unit_weight] / (w[V.solid_fraction] if w[V.unit_weight_of] == LAYER else 1.0)
-    return density * math.pi * radius * radius * w[V.depth]
+    """Return the mass (kg) of a disc, a cylinder as long as the cushion is thick."""
+    density = w[V.density] / (w[V.solid_fraction] if w[V.density_of] == LAYER else 1.0)
+    return density * math.pi * radius * radius * w[V.thickness]
 
 
 @kernel
-def set_disc(body, i, x, y, radius, w):
-    """Place disc i at rest."""
+def set_disc(bodies, i, x, y, radius, w):
+    """Place disc i at rest, with centre and radius in m."""
     mass = disc_mass(radius, w)
-    body[ROW * i], body[ROW * i + 1] = x, y
-    body[ROW * i + 2], body[ROW * i + 3], body[ROW * i + SPIN] = 0.0, 0.0, 0.0
-    body[ROW * i + RADIUS], body[ROW * i + INVERSE_MASS], body[ROW * i + HALF_ROOT] = (
-        radius,
-        1.0 / mass,
-        0.5 * math.sqrt(mass),
-    )
+    bodies.x[i], bodies.y[i] = x, y
+    bodies.vx[i], bodies.vy[i], bodies.spin[i] = 0.0, 0.0, 0.0
+    bodies.radius[i] = radius
+    bodies.inverse_mass[i] = 1.0 / mass
+    bodies.half_root[i] = 0.5 * math.sqrt(mass)
 
 
 @kernel
 def columns_of(width, diameter):
-    """Number of discs side by side in a row of ``width`` (m); at least 1."""
+    """Return the number of discs side by side in a row of ``width`` (m); at least 1."""
     return max(1, int(width / diameter * (1.0 + _FIT)))
 
 
 @kernel
-def foundation(w, body, n, m):
-    """Height (m) on which the lowest row is placed."""
+def mean_base(w, x, k):
+    """Return the mean height (m) of the base; between beam discs it lies deeper than their tops."""
+    valleys = 0.0
     if w[V.base] == BEAM_DISCS:
-        top = -math.inf
-        for b in range(n + 1, n + m + 1):
-            top = max(top, body[ROW * b + 1] + body[ROW * b + RADIUS])
-        return top
-    return base_top(w, body, n, m)
+        valleys = (1.0 - 0.25 * math.pi) * w[V.beam_radius]
+    return base_top(w, x, k) - valleys
 
 
 @kernel
-def mean_base(w, body, n, m):
-    """Mean height (m) of what the sand lies on; between beam discs it lies deeper than their tops."""
-    valleys = (1.0 - 0.25 * math.pi) * w[V.beam_radius] if w[V.base] == BEAM_DISCS else 0.0
-    return foundation(w, body, n, m) - valleys
+def square_lattice(w, bodies, bottom, stiffness, base_stiffness):
+    """Place columns of discs, each compressed by its own weight: at rest on a flat base.
 
-
-@kernel
-def square_lattice(w, body, n, bottom, stiffness, base_stiffness):
-    """Columns of discs, each compressed by its own weight: at rest when they stand on a flat base."""
-    radius = w[V.disc_radius]
+    Parameters
+    ----------
+    w : ndarray of float64
+        Parameters.
+    bodies : Bodies
+        Columns of all bodies.
+    bottom : float
+        Height of the base (m).
+    stiffness, base_stiffness : float
+        k_n between two discs, and of a disc on the base (N/m).
+    """
+    n, radius = bodies.rock, w[V.disc_radius]
     columns = columns_of(w[V.box_width], 2.0 * radius)
     margin = 0.5 * (w[V.box_width] - columns * 2.0 * radius)
     weight = disc_mass(radius, w) * w[V.gravity]
@@ -83,63 +74,71 @@ def square_lattice(w, body, n, bottom, stiffness, base_stiffness):
         y = bottom + radius - height * weight / base_stiffness
         for below in range(1, line + 1):
             y += 2.0 * radius - (height - below) * weight / stiffness
-        set_disc(body, i, w[V.box_left] + margin + (2 * column + 1) * radius, y, radius, w)
+        set_disc(bodies, i, w[V.box_left] + margin + (2 * column + 1) * radius, y, radius, w)
 
 
 @kernel
-def hexagonal_lattice(w, body, n, bottom):
-    """Rows of c and c - 1 discs in turn."""
+def hexagonal_lattice(w, bodies, bottom):
+    """Place rows of c and c - 1 discs in turn on the height ``bottom`` (m)."""
     radius = w[V.disc_radius]
     columns = columns_of(w[V.box_width], 2.0 * radius)
     margin = 0.5 * (w[V.box_width] - columns * 2.0 * radius)
     line, column = 0, 0
-    for i in range(n):
+    for i in range(bodies.rock):
         odd = line % 2
         x = w[V.box_left] + margin + (2 * column + 1 + odd) * radius
-        set_disc(body, i, x, bottom + radius * (1.0 + math.sqrt(3.0) * line), radius, w)
+        set_disc(bodies, i, x, bottom + radius * (1.0 + math.sqrt(3.0) * line), radius, w)
         column += 1
         if column >= max(1, columns - odd):
-            line, column = line + 1, 0
+            line += 1
+            column = 0
 
 
 @kernel
-def random_heap(w, body, n, bottom):
-    """Discs of random size, loosely spread over a grid wide enough for the largest."""
+def random_heap(w, bodies, bottom):
+    """Spread discs of random size loosely over a grid wide enough for the largest."""
     largest = w[V.disc_radius] * (1.0 + w[V.disc_spread])
-    cell = 2.0 * largest * _LOOSE
+    cell, seed = 2.0 * largest * _LOOSE, w[V.seed]
     columns = columns_of(w[V.box_width], cell)
     pitch = w[V.box_width] / columns
-    for i in range(n):
-        radius = w[V.disc_radius] * (
-            1.0 + w[V.disc_spread] * (2.0 * uniform(w[V.seed], 3 * i) - 1.0)
-        )
+    for i in range(bodies.rock):
+        size = 1.0 + w[V.disc_spread] * (2.0 * uniform(seed, 3 * i) - 1.0)
+        radius = w[V.disc_radius] * size
         slack_x, slack_y = 0.5 * pitch - radius, 0.5 * cell - radius
-        x = (i % columns + 0.5) * pitch + slack_x * (2.0 * uniform(w[V.seed], 3 * i + 1) - 1.0)
-        y = (i // columns + 0.5) * cell + slack_y * (2.0 * uniform(w[V.seed], 3 * i + 2) - 1.0)
-        set_disc(body, i, w[V.box_left] + x, bottom + y, radius, w)
+        x = (i % columns + 0.5) * pitch + slack_x * (2.0 * uniform(seed, 3 * i + 1) - 1.0)
+        y = (i // columns + 0.5) * cell + slack_y * (2.0 * uniform(seed, 3 * i + 2) - 1.0)
+        set_disc(bodies, i, w[V.box_left] + x, bottom + y, radius, w)
 
 
 @kernel
-def shift(w, body, n):
+def shift(w, bodies):
     """Move each disc of a lattice by up to ``lattice_shift`` diameters in both directions."""
     reach = 2.0 * w[V.disc_radius] * w[V.lattice_shift]
-    for i in range(n):
-        body[ROW * i] += reach * (2.0 * uniform(w[V.seed], 2 * i) - 1.0)
-        body[ROW * i + 1] += reach * (2.0 * uniform(w[V.seed], 2 * i + 1) - 1.0)
+    for i in range(bodies.rock):
+        bodies.x[i] += reach * (2.0 * uniform(w[V.seed], 2 * i) - 1.0)
+        bodies.y[i] += reach * (2.0 * uniform(w[V.seed], 2 * i + 1) - 1.0)
 
 
 @kernel
 def pack(w, x, k, stiffness, base_stiffness):
-    """Place all discs as the parameter ``packing`` says; k_n between discs and of the base (N/m) give a lattice its overlaps."""
-    n, m = disc_count(k), beam_count(k)
-    body = view(x, k, A.body)
-    bottom = foundation(w, body, n, m)
+    """Place all discs as the parameter ``packing`` says.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Parameters and state.
+    k : ndarray of int64
+        Integer state.
+    stiffness, base_stiffness : float
+        k_n between two discs, and of a disc on the base (N/m); they give a lattice its overlaps.
+    """
+    bodies, bottom = bodies_of(x, k), base_top(w, x, k)
     if w[V.packing] >= RANDOM:
-        random_heap(w, body, n, bottom)
+        random_heap(w, bodies, bottom)
         return
     if w[V.packing] == HEXAGONAL:
-        hexagonal_lattice(w, body, n, bottom)
+        hexagonal_lattice(w, bodies, bottom)
     else:
-        square_lattice(w, body, n, bottom, stiffness, base_stiffness)
+        square_lattice(w, bodies, bottom, stiffness, base_stiffness)
     if w[V.lattice_shift] > 0.0:
-        shift(w, body, n)
+        shift(w, bodies)

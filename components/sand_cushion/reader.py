@@ -1,6 +1,7 @@
-"""What a serialized state of the sand cushion looks like: bodies, box and contacts, for pictures and inspection.
+"""Geometry of a serialized state of the sand cushion: bodies, box and contacts.
 
-Nothing is simulated here: positions are those of the state, and forces follow from them and from the springs it holds.
+Nothing is simulated here: positions are those of the state, and forces follow from them and from
+the springs that it holds.
 """
 
 import math
@@ -13,33 +14,35 @@ from numpy.typing import NDArray
 from ..common.component import HEADER, MAGIC, ComponentError, Instance
 from ..common.kernels import kernel, view
 from . import COMPONENT
-from .contact_search import base_top, beam_count, disc_count, first_of, second_of
-from .declarations import (
-    ANGLE,
-    BEAM_DISCS,
-    FLOOR,
-    KIND,
-    LAW,
-    LAYOUT,
-    ON_BEAM,
-    RADIUS,
-    ROW,
-    UNBOUNDED,
-)
-from .forces import kind_of, touch
+from .bodies import bodies_of
+from .boundaries import boundary_of, contact_kind, touch, touch_disc
+from .contact_search import base_top, first_of, second_of
+from .declarations import ANGLE, FLOOR, KIND, LAYOUT, ON_BEAM, ROW, UNBOUNDED
+from .laws import law_of
 
-V, A = LAYOUT.scalar, LAYOUT.array
+A = LAYOUT.array
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _COLUMNS = 9
-"""Numbers per contact that :func:`list_contacts` writes: bodies, both points, overlap, normal and tangential force."""
+"""Numbers per contact that :func:`list_contacts` writes: bodies, both points (m), overlap (m),
+normal and tangential force (N)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Discs:
-    """Discs of one kind: centres (m), radii (m), angles (rad, counter-clockwise) and velocities (m/s), an array each."""
+    """Discs of one kind, an array each.
+
+    Attributes
+    ----------
+    x, y : ndarray of shape (n,)
+        Centres (m).
+    radius, angle : ndarray of shape (n,)
+        Radii (m) and angles (rad, counter-clockwise).
+    velocity_x, velocity_y : ndarray of shape (n,)
+        Velocities (m/s).
+    """
 
     x: Floats
     y: Floats
@@ -51,8 +54,17 @@ class Discs:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """The box (m): inner face of the left wall, distance of the walls, height of the base's highest point; upper end (infinite if
-    there is none) and thickness of the walls, for the rock."""
+    """The box of the sand (m).
+
+    Attributes
+    ----------
+    left, width : float
+        Inner face of the left wall, and distance of the walls.
+    base : float
+        Height of the base's highest point.
+    wall_top, wall_thickness : float
+        Upper end (infinite if there is none) and thickness of the walls, for the rock.
+    """
 
     left: float
     width: float
@@ -65,12 +77,22 @@ class Box:
 class Contacts:
     """Contacts that touch, an array each.
 
-    first, second: numbers of the bodies: sand discs from 0, then the rock, the beam discs, left wall, right wall, base.
-    x1, y1: centre of the first body (m). x2, y2: centre of the second, or the foot on a plane (m).
-    overlap: in m, positive.
-    normal_force: k_n * overlap (N), the elastic part: the dashpot's depends on the step. Compression is positive.
-    tangential_force: force of the tangential spring (N) at the last internal step; positive when it turns the first body
-        counter-clockwise.
+    Attributes
+    ----------
+    first, second : ndarray of shape (n,)
+        Numbers of the bodies: sand discs from 0, rock, beam discs, left wall, right wall, base.
+    x1, y1 : ndarray of shape (n,)
+        Centre of the first body (m).
+    x2, y2 : ndarray of shape (n,)
+        Centre of the second body, or the foot on a plane (m).
+    overlap : ndarray of shape (n,)
+        Overlap (m), positive.
+    normal_force : ndarray of shape (n,)
+        k_n times the overlap (N), the elastic part: the dashpot's depends on the step. Compression
+        is positive.
+    tangential_force : ndarray of shape (n,)
+        Force of the tangential spring (N) at the last internal step; positive when it turns the
+        first body counter-clockwise.
     """
 
     first: Integers
@@ -86,7 +108,7 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True)
 class SandState:
-    """A sand cushion at one instant. ``rock`` holds one disc."""
+    """A sand cushion at one instant; ``rock`` holds one disc."""
 
     discs: Discs
     rock: Discs
@@ -96,10 +118,24 @@ class SandState:
 
 
 def read(content: bytes, sizes: Mapping[str, int]) -> SandState:
-    """Decode what :meth:`rockshed.components.common.component.Instance.to_bytes` wrote for a cushion of these ``sizes``.
+    """Decode a serialized state of a cushion, see :meth:`..common.component.Instance.to_bytes`.
 
-    Raises:
-        ComponentError: not such a state, of another component or other sizes, or cut short.
+    Parameters
+    ----------
+    content : bytes
+        The state.
+    sizes : mapping of str to int
+        Sizes of the cushion.
+
+    Returns
+    -------
+    SandState
+        Its geometry.
+
+    Raises
+    ------
+    ComponentError
+        Not such a state, of another component or other sizes, or cut short.
     """
     instance = COMPONENT.instance(**sizes)
     instance.from_bytes(content)
@@ -107,7 +143,18 @@ def read(content: bytes, sizes: Mapping[str, int]) -> SandState:
 
 
 def snapshot(instance: Instance) -> SandState:
-    """The present state of a cushion. The arrays are copies."""
+    """Return the present geometry of a cushion, in copies.
+
+    Parameters
+    ----------
+    instance : Instance
+        The cushion.
+
+    Returns
+    -------
+    SandState
+        Its geometry.
+    """
     discs = instance.sizes["discs"]
     body = instance.state("body").reshape(-1, ROW)
     body = body[: discs + 1 + instance.sizes["elements"]]
@@ -127,7 +174,8 @@ def _discs(body: Floats, angle: Floats, which: slice) -> Discs:
 
 
 def _box(instance: Instance) -> Box:
-    base, height = float(_base(instance.w, instance.x, instance.k)), instance["box.wall_height"]
+    base = float(base_top(instance.w, instance.x, instance.k))
+    height = instance["box.wall_height"]
     foot = base if instance["walls"] == ON_BEAM else instance["base.y"]
     return Box(
         instance["box.left"],
@@ -146,59 +194,66 @@ def _contacts(instance: Instance) -> Contacts:
 
 
 @kernel
-def _base(w, x, k):
-    """Highest point (m) of whatever carries the sand."""
-    n, m = disc_count(k), beam_count(k)
-    body = view(x, k, A.body)
-    if w[V.base] != BEAM_DISCS:
-        return base_top(w, body, n, m)
-    top = body[ROW * (n + 1) + 1]
-    for b in range(n + 1, n + m + 1):
-        top = max(top, body[ROW * b + 1])
-    return top + w[V.beam_radius]
-
-
-@kernel
 def list_contacts(w, x, k, table):
-    """Write a row of ``table`` for each contact that touches; returns their number. The lists of candidates have room for all."""
-    found, pair, spring = 0, view(k, k, A.pair), view(x, k, A.spring)
-    for p in range(view(k, k, A.across)[disc_count(k)]):
-        if second_of(pair[p]) < disc_count(k):  # else it fills up a block
-            found = _list(found, first_of(pair[p]), second_of(pair[p]), spring[p], w, x, k, table)
-    owner, partner, spring = (
-        view(k, k, A.edge_body),
-        view(k, k, A.edge_partner),
-        view(x, k, A.edge_spring),
-    )
-    for p in range(view(k, k, A.edge_row)[disc_count(k) + 1]):
-        found = _list(found, owner[p], partner[p], spring[p], w, x, k, table)
-    return found
+    """Write a row of ``table`` for each contact that touches; returns their number.
+
+    The lists of candidates have room for all.
+    """
+    bodies = bodies_of(x, k)
+    pair, spring = view(k, k, A.pair), view(x, k, A.spring)
+    sand = law_of(KIND.sand, 1.0, view(x, k, A.law))
+    rows = 0
+    for p in range(view(k, k, A.across)[bodies.rock]):
+        i, j = first_of(pair[p]), second_of(pair[p])
+        if j < bodies.rock:  # else it fills up a block
+            surface = touch_disc(i, j, bodies)
+            forces = (-sand.normal * surface.gap, spring[p])
+            rows = _write((i, j), surface, bodies.radius[j], forces, bodies, table, rows)
+    owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
+    spring = view(x, k, A.edge_spring)
+    for p in range(view(k, k, A.edge_row)[bodies.rock + 1]):
+        i, b = owner[p], partner[p]
+        boundary = boundary_of(b, bodies.rock, view(k, k, A.boundary))
+        law = law_of(contact_kind(i, boundary, bodies), 1.0, view(x, k, A.law))
+        surface = touch(i, b, boundary, w, bodies)
+        radius = bodies.radius[b] if b < bodies.end else 0.0
+        forces = (-law.normal * surface.gap, spring[p])
+        rows = _write((i, b), surface, radius, forces, bodies, table, rows)
+    return rows
 
 
 @kernel
-def _list(found, i, j, tangential, w, x, k, table):
-    """Write a pair behind the rows found before, if it touches. Returns the number of rows."""
-    n, m = disc_count(k), beam_count(k)
-    body, law = view(x, k, A.body), view(x, k, A.law)
-    nx, ny, gap, _, _ = touch(i, j, w, body, n, m)
-    if gap >= 0.0:
-        return found
-    reach = body[ROW * i + RADIUS] + gap
-    if j <= n + m:
-        reach += body[ROW * j + RADIUS]
-    stiffness = law[(KIND.sand if j < n else kind_of(i, j, n, m)) * len(LAW) + LAW.normal]
-    table[found, 0], table[found, 1] = i, j
-    table[found, 2], table[found, 3] = body[ROW * i], body[ROW * i + 1]
-    table[found, 4], table[found, 5] = body[ROW * i] + nx * reach, body[ROW * i + 1] + ny * reach
-    table[found, 6], table[found, 7], table[found, 8] = -gap, -stiffness * gap, tangential
-    return found + 1
+def _write(pair, surface, radius, forces, bodies, table, rows):
+    """Write a contact behind the rows that are there, if it touches; return their number."""
+    if surface.gap >= 0.0:
+        return rows
+    i, j = pair
+    x, y, reach = bodies.x[i], bodies.y[i], bodies.radius[i] + surface.gap + radius
+    table[rows, 0], table[rows, 1] = i, j
+    table[rows, 2], table[rows, 3] = x, y
+    table[rows, 4], table[rows, 5] = x + surface.nx * reach, y + surface.ny * reach
+    table[rows, 6] = -surface.gap
+    table[rows, 7], table[rows, 8] = forces
+    return rows + 1
 
 
 def sizes_of(content: bytes) -> dict[str, int]:
-    """The sizes of the cushion that a state is of, for :func:`read`: the state's table of arrays tells them.
+    """Return the sizes of the cushion that a state belongs to, from its table of arrays.
 
-    Raises:
-        ComponentError: not the state of a component, or cut short.
+    Parameters
+    ----------
+    content : bytes
+        Serialized state.
+
+    Returns
+    -------
+    dict of str to int
+        Sizes for :func:`read`.
+
+    Raises
+    ------
+    ComponentError
+        Not the state of a component, or cut short.
     """
     if len(content) < HEADER.size or len(content) != HEADER.size + 8 * sum(
         HEADER.unpack_from(content)[2:]

@@ -14,8 +14,8 @@ RELATIVE, ABSOLUTE = 1, 2
 NORMAL, UNIFORM, LOGNORMAL, TRIANGULAR = 1, 2, 3, 4
 FLIGHT, ROLLING, SLIDING, SPINNING, REST, RECEIVED = range(1, 7)
 IMPACT, NODE, TAKE_OFF, GRIP, HALT, ENTER, LEAVE = range(1, 8)
-"""What ends a stretch of motion: impact on a cell, passing to the next cell, limit speed, end of slip, end of motion or spin,
-entering and leaving the receiver."""
+"""Events that end a stretch of motion: impact on a cell, passing to the next cell, limit speed, end
+of slip, end of motion or spin, entering and leaving the receiver."""
 
 SIZES = {"cells": Size(15, 1, 5000, "straight cells of the slope")}
 
@@ -41,7 +41,7 @@ GROUND = Ground(*range(9))
 Body = namedtuple(
     "Body",
     "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction roughness sin "
-    "cos pressure shear drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
+    "cos normal_force shear_force drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
     " handovers handover_time seed trial",
 )
 BODY = Body(*range(35))

@@ -39,7 +39,7 @@ from .geometry import height_above, line_below, path_y
 from .receiver import departure, entrance, inside
 from .restitution import collide, restitution
 from .sampling import normal_tail, variate
-from .sliding_rolling import law, slip_of, start
+from .sliding_rolling import Loads, Touch, law, slip_of, start
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -63,8 +63,8 @@ World = namedtuple(
     "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean limit_deviation "
     "limit_kind roughness_kind tilt_kind tail hypercube receiver left right bottom top",
 )
-"""What does not change during a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated normal.
-hypercube: trials of a Latin hypercube, or 0."""
+"""Constants of a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated
+normal. hypercube: trials of a Latin hypercube, or 0."""
 
 
 @kernel
@@ -272,35 +272,29 @@ def run_along(world, j, u, b):
     weight = world.mass * world.gravity
     along, normal = weight * world.path[at + PATH.sin], weight * world.path[at + PATH.cos]
     drag = math.pi * world.radius * world.radius * world.ground[on + GROUND.resistance]
-    friction, omega = world.ground[on + GROUND.friction], b[BODY.omega]
     s, c = math.sqrt(0.5 * b[BODY.roughness]), math.sqrt(1.0 - 0.5 * b[BODY.roughness])
+    friction = world.ground[on + GROUND.friction]
+    touch = Touch(world.mass, world.radius, world.ratio, friction, s, c)
     if u == 0.0:
-        d, mode, acceleration, p, shear = start(
-            omega, along, normal, drag, friction, world.mass, world.radius, s, c, world.ratio
-        )
+        d, motion = start(b[BODY.omega], Loads(along, normal, drag), touch)
     else:
         d = 1.0 if u > 0.0 else -1.0
-        mode, acceleration, p, shear = law(
-            abs(u),
-            d * omega,
-            d * along,
-            normal,
-            drag,
-            friction,
-            world.mass,
-            world.radius,
-            s,
-            c,
-            world.ratio,
-        )
-    b[BODY.line], b[BODY.mode], b[BODY.direction], b[BODY.sin], b[BODY.cos] = j, mode, d, s, c
-    b[BODY.pressure], b[BODY.shear], b[BODY.drag] = p, shear, drag
+        motion = law(abs(u), d * b[BODY.omega], Loads(d * along, normal, drag), touch)
+    b[BODY.line], b[BODY.mode], b[BODY.direction], b[BODY.sin], b[BODY.cos] = (
+        j,
+        motion.mode,
+        d,
+        s,
+        c,
+    )
+    b[BODY.normal_force], b[BODY.shear_force] = motion.normal_force, motion.shear_force
+    b[BODY.drag] = drag
     set_velocity(world, j, u, 0.0, b)
     b[BODY.ax], b[BODY.ay] = (
-        d * acceleration * world.path[at + PATH.cos],
-        -d * acceleration * world.path[at + PATH.sin],
+        d * motion.acceleration * world.path[at + PATH.cos],
+        -d * motion.acceleration * world.path[at + PATH.sin],
     )
-    b[BODY.alpha] = -d * shear / (world.ratio * world.mass * world.radius)
+    b[BODY.alpha] = -d * motion.shear_force / (world.ratio * world.mass * world.radius)
 
 
 @kernel
@@ -353,7 +347,11 @@ def end_of_line_motion(world, b):
     if b[BODY.mode] == SLIDING and slip * rate < 0.0 and -slip / rate < wait:
         event, wait = GRIP, -slip / rate
     limit = take_off_speed(world, c, b)
-    reaches = 0.0 if u >= limit else ((limit - u) / acceleration if acceleration > 0.0 else NEVER)
+    reaches = NEVER
+    if u >= limit:
+        reaches = 0.0
+    elif acceleration > 0.0:
+        reaches = (limit - u) / acceleration
     if reaches < wait:
         event, wait = TAKE_OFF, reaches
     return event, wait
@@ -548,8 +546,8 @@ def losses(world, span, b):
     way = span * (along + 0.5 * span * d * (b[BODY.ax] * c - b[BODY.ay] * s))
     turned = d * world.radius * span * (b[BODY.omega] + 0.5 * span * b[BODY.alpha])
     return (
-        b[BODY.shear] * (way + turned),
-        (b[BODY.pressure] * b[BODY.sin] - b[BODY.shear] * (1.0 - b[BODY.cos])) * way,
+        b[BODY.shear_force] * (way + turned),
+        (b[BODY.normal_force] * b[BODY.sin] - b[BODY.shear_force] * (1.0 - b[BODY.cos])) * way,
         b[BODY.drag] * way,
     )
 

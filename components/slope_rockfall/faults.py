@@ -15,7 +15,7 @@ RULES = {
     ROUGHNESS_SIGN: "only a positive roughness has a lognormal distribution: choose another roughness.distribution",
     TILT_SIGN: "only a positive tilt has a lognormal distribution: choose another tilt.distribution",
 }
-"""What is wrong with a cell that has a fault, and what to do."""
+"""Message of each fault of a cell: its reason, and the remedy."""
 _FACTS = {
     FOLDED: "end.x[{fault.cell}] = {fault.value} m",
     STEEP: "end.x[{fault.cell}] = {fault.value} m",

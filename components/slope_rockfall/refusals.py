@@ -1,4 +1,4 @@
-"""What the initialisation refuses: profiles, materials and starts that the model has no answer for."""
+"""Refusals of the initialisation: profiles, materials and starts that the model cannot answer."""
 
 import math
 from typing import TYPE_CHECKING

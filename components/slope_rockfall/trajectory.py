@@ -5,7 +5,6 @@ of threads; each needs its own ``body``.
 """
 
 import math
-from collections import namedtuple
 
 from ..common.counter_random import stream
 from ..common.kernels import kernel, released
@@ -13,30 +12,22 @@ from .declarations import BODY, LAYOUT, NEVER, PATH, REST
 from .events import begin, happen, world
 from .flight import passing
 from .geometry import height_above, line_below
+from .records import (
+    BARRIER,
+    BELOW,
+    OUTCOME,
+    PASSAGE,
+    PASSED_LEFT,
+    PASSED_RIGHT,
+    PEAK,
+    RESTED,
+    STOPPED,
+    UNFINISHED,
+)
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-RESTED, PASSED_RIGHT, PASSED_LEFT, UNFINISHED, BELOW, STOPPED = range(6)
-"""How a trial ends: at rest, beyond the right or left end, not within :data:`MOST_EVENTS`, not at all for it starts below, or
-stopped by a barrier."""
 MOST_EVENTS = 100_000
-
-Passage = namedtuple("Passage", "time x y height speed omega kinetic count")
-PASSAGE = Passage(*range(8))
-"""What is kept of the first passage of a search line, and the number of passages."""
-Barrier = namedtuple("Barrier", "reach capacity")
-BARRIER = Barrier(*range(2))
-"""What makes a search line a barrier: it stops a rock that passes it not farther than ``reach`` (m) from its first point, with no
-more kinetic energy than its capacity (J). A negative reach: it stops none."""
-Peak = namedtuple("Peak", "height speed kinetic")
-PEAK = Peak(*range(3))
-"""Largest values at a station; negative where the rock did not come by."""
-Outcome = namedtuple(
-    "Outcome", "end x y time impacts events height speed kinetic limit_speed barrier"
-)
-OUTCOME = Outcome(*range(11))
-"""Of a trial: how and where it ended, numbers of impacts and events, the largest values on the way, V_lim, and the number of the
-search line that stopped it, or -1."""
 
 
 @kernel
@@ -93,7 +84,7 @@ def trial(
 
 @kernel
 def clear_records(passages, peaks, outcome):
-    """Nothing has happened yet."""
+    """Set all records to those of a rock that has not moved."""
     for i in range(passages.shape[0]):
         for q in range(passages.shape[1]):
             passages[i, q] = 0.0

@@ -3,10 +3,10 @@
 from collections.abc import Iterable
 from html import escape
 
-from markdown_it import MarkdownIt
-
 from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
+
+from ..parts import Files
 
 _STYLE = (
     "body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
@@ -14,6 +14,19 @@ _STYLE = (
     "padding:.2em .5em;text-align:left;vertical-align:top}"
     "pre{background:#f4f4f4;padding:.5em;overflow-x:auto}"
 )
+
+
+def documentation(component: Component, sizes: Sizes) -> Files:
+    """Return the files of the documentation inside an FMU.
+
+    Parameters
+    ----------
+    component : Component
+        Declarations and README.
+    sizes : mapping of str to int
+        Sizes with which the FMU is built.
+    """
+    return {"documentation/index.html": index_html(component, sizes).encode()}
 
 
 def index_html(component: Component, sizes: Sizes) -> str:
@@ -26,6 +39,8 @@ def index_html(component: Component, sizes: Sizes) -> str:
     sizes : mapping of str to int
         Sizes that the FMU is built with.
     """
+    from markdown_it import MarkdownIt
+
     body = MarkdownIt("commonmark").enable("table").render(component.documentation())
     body += "<h2>Variables</h2>\n" + _table(
         ("name", "causality", "unit", "start", "range", "description", "source"),

@@ -1,1 +1,1 @@
-"""FMUs of machine code."""
+"""FMUs of machine code, without Python in them."""

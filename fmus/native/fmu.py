@@ -26,6 +26,7 @@ from rockshed.components.common.ports import Sizes
 from rockshed.files import write_file
 from rockshed.versions import version_of
 
+from ..description.documentation import documentation
 from ..parts import (
     DESCRIPTION,
     BuildError,
@@ -34,7 +35,6 @@ from ..parts import (
     Runtime,
     component_sources,
     digest,
-    documentation,
     picture,
 )
 from .header import Baseline, model_header

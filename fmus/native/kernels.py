@@ -31,7 +31,7 @@ TRIPLES = {
     "win64": "x86_64-w64-windows-gnu",
     "darwin64": "x86_64-apple-macosx11.0",
 }
-"""What LLVM calls the platforms of FMI."""
+"""Names that LLVM has for the platforms of FMI."""
 
 ENTRIES = {name: f"rockshed_{name}" for name in ("initialise", "evaluate", "step")}
 """Names of the C functions by kernel."""
@@ -68,7 +68,7 @@ def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
 def compile_problems(
     component: Component, kinds: Mapping[str, tuple[Any, ...]], folder: Path
 ) -> list[str]:
-    """What keeps kernels from being compiled at all."""
+    """Return what keeps kernels from being compiled at all, with lines of the sources."""
     problems = []
     for name, signature in kinds.items():
         kernel: Any = getattr(component, name)

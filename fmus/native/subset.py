@@ -1,4 +1,4 @@
-"""What kernels may need when they run without Python, and where one needs more."""
+"""Functions that kernels may need when they run without Python, and where one needs more."""
 
 import os
 import re
@@ -27,7 +27,7 @@ UNKNOWN_PLACE = "at an unknown place"
 
 
 def foreign_symbols(module: Any) -> list[str]:
-    """What an LLVM module needs from outside and may not."""
+    """Return the symbols that an LLVM module needs from outside and may not."""
     needed = [
         f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")
     ]
@@ -91,7 +91,7 @@ def _field(node: str, name: str) -> str:
 
 
 def error_problem(error: "NumbaError", name: str, kernel: Any, folder: Path) -> str:
-    """What numba finds wrong with a kernel of a component, with the line as far as numba knows it."""
+    """Return what numba finds wrong with a kernel, with the line as far as numba knows it."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
     reasons = [
         line.strip()

@@ -1,1 +1,1 @@
-"""FMUs with Python inside."""
+"""FMUs with Python inside, as pythonfmu makes them."""

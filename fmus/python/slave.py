@@ -268,12 +268,12 @@ class ComponentSlave(Fmi2Slave):
 
     @_guarded(lambda vrs: [False] * len(vrs))
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        """Values of boolean variables."""
+        """Return the values of boolean variables."""
         return [bool(value) for value in self._get(Kind.BOOLEAN, vrs)]
 
     @_nothing
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
-        """Set boolean variables."""
+        """Set variables of the type Boolean."""
         self._set(Kind.BOOLEAN, vrs, values)
 
     @_guarded(lambda vrs: [""] * len(vrs))
@@ -330,14 +330,9 @@ class ComponentSlave(Fmi2Slave):
         for reference, value in zip(vrs, values):
             self._values[reference] = value
         if self._phase is not Phase.RUNNING:
-            stale = (
-                Stale.STATE
-                if Causality.PARAMETER in changed
-                else Stale.OUTPUTS
-                if changed
-                else Stale.NOTHING
-            )
-            self._stale, self._previewed = max(self._stale, stale), self._previewed and not changed
+            for causality in changed:
+                needs = Stale.STATE if causality is Causality.PARAMETER else Stale.OUTPUTS
+                self._stale, self._previewed = max(self._stale, needs), False
         elif vrs and all(
             variable.minimum is None and variable.maximum is None for _, variable in variables
         ):

@@ -11,9 +11,9 @@ from time import thread_time
 from rockshed.fmus.build import BuildError, Runtime, build_if_needed
 from rockshed.fmus.native.fmu import CPU
 
-from ..cases.sonoda1993 import Coupling, lab_system, tests
+from ..cases.sonoda1993 import lab_system, tests
 from ..core.run import simulate
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 from .interleave import Contestant
 from .monolithic import from_system
 from .peer import Peer
@@ -22,7 +22,7 @@ END = 0.02
 """Simulated time (s)."""
 
 
-def lab(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> System:
+def lab(coupling: str, runtime: Runtime = Runtime.PYTHON) -> SystemSpec:
     """Return test 4 of the laboratory for 20 ms.
 
     Rows of results every 0.1 ms as usual, but no states for pictures, which the one program has
@@ -60,7 +60,7 @@ def one_program() -> Contestant:
     return work
 
 
-def co_simulation(coupling: Coupling, runtime: Runtime = Runtime.PYTHON) -> Contestant:
+def co_simulation(coupling: str, runtime: Runtime = Runtime.PYTHON) -> Contestant:
     """Return the exchanges of a co-simulation as a contestant.
 
     Rows of results in memory count; its preparation and writing files do not.

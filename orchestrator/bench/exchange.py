@@ -18,7 +18,7 @@ from ..core.loop.exchange import ExchangeLoop
 from ..core.loop.initialisation import free, initialise, instantiate
 from ..core.run import sources_of
 from ..core.system.planning import make_plan
-from ..core.system.system import System, system_from
+from ..core.system.system import SystemSpec, system_from
 from ..versions import version_of
 from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
@@ -115,7 +115,7 @@ class Pair:
 
         return work
 
-    def _system(self, measurements: int) -> System:
+    def _system(self, measurements: int) -> SystemSpec:
         wires = [f"{one}.y[1..{INPUTS}] -> {other}.u[1..{INPUTS}]" for one, other in ("ab", "ba")]
         return system_from(
             {

@@ -1,7 +1,9 @@
-"""The laboratory impact as one program: rock, sand and beam in one loop over shared positions, without ports, FMI or master.
+"""The laboratory impact as one program, without ports, FMI or master.
 
-This is the reference that the co-simulation is compared with. It uses the components' physics (contact forces, motion of discs,
-rock and beam) but its own loop: forces at the positions of the moment, then everything moves, the beam in shorter steps.
+This is the reference that the co-simulation is compared with: rock, sand and beam in one loop over
+shared positions. It uses the components' physics (contact forces, motion of discs, rock and beam)
+but its own loop: forces at the positions of the moment, then everything moves, the beam in shorter
+steps.
 """
 
 from collections.abc import Mapping
@@ -20,12 +22,12 @@ from rockshed.components.rbsm_beam import COMPONENT as BEAM
 from rockshed.components.rbsm_beam import kernel as beam_kernel
 from rockshed.components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
 from rockshed.components.sand_cushion import COMPONENT as SAND
-from rockshed.components.sand_cushion import contact_search
-from rockshed.components.sand_cushion import kernel as sand_kernel
-from rockshed.components.sand_cushion.declarations import ANGLE, FORCE_ROW, RADIUS, ROW, SPIN, SUM
+from rockshed.components.sand_cushion import start as sand_start
+from rockshed.components.sand_cushion.bodies import bodies_of
 from rockshed.components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
+from rockshed.components.sand_cushion.declarations import SUM
 
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 
 RV, SV, BV = ROCK_LAYOUT.scalar, SAND_LAYOUT.scalar, BEAM_LAYOUT.scalar
 SA, BA = SAND_LAYOUT.array, BEAM_LAYOUT.array
@@ -42,7 +44,10 @@ COLUMNS = (
 
 @dataclass
 class Monolith:
-    """The three subsystems in one program, initialised; ``history`` has a row of :data:`COLUMNS` for every step."""
+    """Three subsystems in one program, initialised.
+
+    ``history`` has a row of :data:`COLUMNS` for every step.
+    """
 
     rock: Instance
     sand: Instance
@@ -52,7 +57,7 @@ class Monolith:
     history: NDArray[np.float64]
 
     def run(self) -> None:
-        """All steps."""
+        """Make all steps, from the start to the stop time."""
         inertia = float(rock_kernel.inertia(self.rock.w))
         rock, sand, beam = self.rock, self.sand, self.beam
         status = _run(
@@ -77,9 +82,9 @@ class Monolith:
 
 
 def from_system(
-    system: System, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6
+    system: SystemSpec, stop_time: float, dt: float = 1e-5, beam_step: float = 1e-6
 ) -> Monolith:
-    """The monolithic program of a laboratory system: same parameters, same start."""
+    """Return the monolithic program of a laboratory system: same parameters, same start."""
     instances = {
         name: component.instance(**_sizes(name, system))
         for name, component in (("rock", ROCK), ("sand", SAND), ("beam", BEAM))
@@ -110,62 +115,58 @@ def from_system(
     )
 
 
-def _sizes(name: str, system: System) -> Mapping[str, int]:
+def _sizes(name: str, system: SystemSpec) -> Mapping[str, int]:
     width = system.components["sand"].parameters["box.width"]
     return {"rock": {}, "sand": {"discs": round(float(width) / 0.01) * 10}, "beam": {}}[name]
 
 
 @kernel
 def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history):
-    n, m = contact_search.disc_count(sk), contact_search.beam_count(sk)
-    body, load, sums = view(sx, sk, SA.body), view(sx, sk, SA.load), view(sx, sk, SA.sums)
+    bodies, sums = bodies_of(sx, sk), view(sx, sk, SA.sums)
+    rock = bodies.rock
     fx, fy, torque = view(bw, bk, BA.force_x), view(bw, bk, BA.force_y), view(bw, bk, BA.torque)
     for s in range(history.shape[0]):
-        status, _, _ = sand_kernel.advance(dt, sw, sx, sk)
+        status, _, _ = sand_start.advance(dt, sw, sx, sk)
         if status != 0:
             return status
-        at = FORCE_ROW * n
-        history[s, 0], history[s, 1] = sums[SUM.transmitted], load[at + 1]
-        rock_y = rw[RV.position_y]
+        rock_fx, rock_fy = bodies.force_x[rock], bodies.force_y[rock]
+        rock_torque = bodies.turn[rock] * sw[SV.rock_radius]
+        rock_x, rock_y, rock_angle = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
+        history[s, 0], history[s, 1] = sums[SUM.transmitted], rock_fy
         history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
-        rock_x, rock_angle = rw[RV.position_x], rw[RV.angle]
-        rock_torque = load[at + 2] * sw[SV.rock_radius]
-        rock_kernel.move(Load(load[at], load[at + 1], rock_torque), inertia, dt, rw)
+        rock_kernel.move(Load(rock_fx, rock_fy, rock_torque), inertia, dt, rw)
         history[s, 4] = (
-            load[at] * (rw[RV.position_x] - rock_x)
-            + load[at + 1] * (rw[RV.position_y] - rock_y)
+            rock_fx * (rw[RV.position_x] - rock_x)
+            + rock_fy * (rw[RV.position_y] - rock_y)
             + rock_torque * (rw[RV.angle] - rock_angle)
         )
-        for b in range(m):
-            at = FORCE_ROW * (n + 1 + b)
-            fx[b], fy[b], torque[b] = load[at], load[at + 1], load[at + 2] * sw[SV.beam_radius]
+        for q in range(fx.size):
+            b = rock + 1 + q
+            fx[q], fy[q] = bodies.force_x[b], bodies.force_y[b]
+            torque[q] = bodies.turn[b] * sw[SV.beam_radius]
         before = bw[BV.energy_work_contact]
         beam_kernel.advance(beam_steps, beam_step, bw, bx, bk)
         status = beam_kernel.publish(bw, bx, bk)
         if status != 0:
             return status
         history[s, 3], history[s, 5] = bw[BV.energy_elastic], bw[BV.energy_work_contact] - before
-        _share(n, m, rw, bw, bk, body)
+        _share(rw, bw, bk, bodies)
     return 0
 
 
 @kernel
-def _share(n, m, rw, bw, bk, body):
-    """Rock and beam discs are where they are for the sand too."""
-    at = ROW * n
-    body[at], body[at + 1], body[at + ANGLE] = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
-    body[at + 2], body[at + 3], body[at + SPIN] = (
-        rw[RV.velocity_x],
-        rw[RV.velocity_y],
-        rw[RV.angular_velocity] * body[at + RADIUS],
-    )
+def _share(rw, bw, bk, bodies):
+    """Move rock and beam discs of the sand to where rock and beam are."""
+    rock = bodies.rock
+    bodies.x[rock], bodies.y[rock] = rw[RV.position_x], rw[RV.position_y]
+    bodies.vx[rock], bodies.vy[rock] = rw[RV.velocity_x], rw[RV.velocity_y]
+    bodies.angle[rock] = rw[RV.angle]
+    bodies.spin[rock] = rw[RV.angular_velocity] * bodies.radius[rock]
     px, py, angle = view(bw, bk, BA.position_x), view(bw, bk, BA.position_y), view(bw, bk, BA.angle)
-    vx, vy, omega = (
-        view(bw, bk, BA.velocity_x),
-        view(bw, bk, BA.velocity_y),
-        view(bw, bk, BA.angular_velocity),
-    )
-    for b in range(m):
-        at = ROW * (n + 1 + b)
-        body[at], body[at + 1], body[at + ANGLE] = px[b], py[b], angle[b]
-        body[at + 2], body[at + 3], body[at + SPIN] = vx[b], vy[b], omega[b] * body[at + RADIUS]
+    vx, vy = view(bw, bk, BA.velocity_x), view(bw, bk, BA.velocity_y)
+    omega = view(bw, bk, BA.angular_velocity)
+    for q in range(px.size):
+        b = rock + 1 + q
+        bodies.x[b], bodies.y[b], bodies.angle[b] = px[q], py[q], angle[q]
+        bodies.vx[b], bodies.vy[b] = vx[q], vy[q]
+        bodies.spin[b] = omega[q] * bodies.radius[b]

@@ -23,7 +23,7 @@ from .peer import Peer, answers
 
 
 @dataclass(frozen=True)
-class Measurement:
+class BenchmarkRow:
     """One measured value.
 
     Attributes
@@ -56,24 +56,24 @@ _DISC_GOALS = {370: 0.13, 10_000: 0.13, 100_000: 0.09}
 """Largest ratio to the time of LAMMPS, by the number of discs."""
 
 
-def disc_rows(rounds: int) -> Iterator[Measurement]:
+def disc_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure the time per disc and step on one core, LAMMPS, and two threads."""
     with Peer(discs.LAMMPS) if answers(discs.LAMMPS) else nullcontext() as peer:
         times = interleave(discs.contestants(peer), rounds)
     for number in discs.WIDTHS:
         ours = discs.per_disc_and_step(times.median(f"ours {number}"), number)
-        yield Measurement(f"sand kernel, {number} discs", ours, "ns per disc and step", goal=30.0)
+        yield BenchmarkRow(f"sand kernel, {number} discs", ours, "ns per disc and step", goal=30.0)
         if peer is not None:
             theirs = discs.per_disc_and_step(times.median(f"lammps {number}"), number)
-            yield Measurement(f"LAMMPS, {number} discs", theirs, "ns per disc and step")
-            yield Measurement(
+            yield BenchmarkRow(f"LAMMPS, {number} discs", theirs, "ns per disc and step")
+            yield BenchmarkRow(
                 f"sand kernel, {number} discs",
                 times.ratio(f"ours {number}", f"lammps {number}"),
                 "ratio",
                 "LAMMPS",
                 _DISC_GOALS[number],
             )
-    yield Measurement(
+    yield BenchmarkRow(
         f"sand kernel, {discs.THREADED} discs, 2 threads, by the clock on the wall",
         times.ratio("2 threads", "1 threads"),
         "ratio",
@@ -81,12 +81,12 @@ def disc_rows(rounds: int) -> Iterator[Measurement]:
     )
 
 
-def coupling_rows(rounds: int) -> Iterator[Measurement]:
+def coupling_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure the processor time of the co-simulated laboratory impact, and of the one program."""
     with Peer(coupling.BASELINE, coupling.AS_NATIVE) as baseline:
         contestants = coupling.contestants(baseline)
         times = interleave(contestants, rounds)
-    yield Measurement(
+    yield BenchmarkRow(
         "one program, 20 ms of the laboratory impact", times.median("one program") * 1e3, "ms"
     )
     for name, title, goal in (
@@ -97,7 +97,7 @@ def coupling_rows(rounds: int) -> Iterator[Measurement]:
     ):
         if name in contestants:
             native = name.endswith("native")
-            yield Measurement(
+            yield BenchmarkRow(
                 title,
                 times.ratio(name, "one program"),
                 "ratio",
@@ -105,7 +105,7 @@ def coupling_rows(rounds: int) -> Iterator[Measurement]:
                 None if native else goal,
             )
             if native:
-                yield Measurement(
+                yield BenchmarkRow(
                     title,
                     times.ratio(name, "one program, baseline"),
                     "ratio",
@@ -114,30 +114,30 @@ def coupling_rows(rounds: int) -> Iterator[Measurement]:
                 )
 
 
-def exchange_rows(rounds: int) -> Iterator[Measurement]:
+def exchange_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure a macro step of two FMUs, 50 inputs and 150 outputs each, in all tools."""
     for runtime in (Runtime.NATIVE, Runtime.PYTHON):
         what = f"macro step, two {runtime} FMUs, 50 inputs and 150 outputs each"
         try:
             pair = Pair(runtime, rounds + 2)
         except BuildError as error:
-            yield Measurement(what, None, str(error))
+            yield BenchmarkRow(what, None, str(error))
             continue
         with pair:
             times = interleave(pair.contestants, rounds)
         for tool in (OURS, *PEERS):
             if tool in pair.missing:
-                yield Measurement(f"{what}: {tool}", None, pair.missing[tool])
+                yield BenchmarkRow(f"{what}: {tool}", None, pair.missing[tool])
                 continue
-            yield Measurement(f"{what}: {tool}", times.median(tool) / pair.steps * 1e6, "us")
+            yield BenchmarkRow(f"{what}: {tool}", times.median(tool) / pair.steps * 1e6, "us")
             if tool != BARE and BARE in pair.contestants:
                 goal = 0.4 if (tool, runtime) == (OURS, Runtime.NATIVE) else None
-                yield Measurement(
+                yield BenchmarkRow(
                     f"{what}: {tool}", times.ratio(tool, BARE), "ratio", "bare ctypes loop", goal
                 )
 
 
-def start_rows(rounds: int) -> Iterator[Measurement]:
+def start_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure a warm start of the command, to the first exchange and to its end."""
     first: list[float] = []
     whole: list[float] = []
@@ -147,8 +147,10 @@ def start_rows(rounds: int) -> Iterator[Measurement]:
             first.append(to_first_exchange)
             whole.append(to_end)
     name = "rockshed run lab-impact, warm"
-    yield Measurement(f"{name}: to the first exchange", statistics.median(first[1:]), "s", goal=0.5)
-    yield Measurement(
+    yield BenchmarkRow(
+        f"{name}: to the first exchange", statistics.median(first[1:]), "s", goal=0.5
+    )
+    yield BenchmarkRow(
         f"{name}: the whole command without pictures", statistics.median(whole[1:]), "s", goal=1.0
     )
 
@@ -168,25 +170,25 @@ def _timed_start(folder: Path) -> tuple[float, float]:
     return datetime.fromisoformat(facts["started"]).timestamp() - began, took
 
 
-def rockfall_rows(rounds: int) -> Iterator[Measurement]:
+def rockfall_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure the CPU time of a trial on one core, and of one of pyrockfall."""
     with Peer(rockfall.PYROCKFALL) if answers(rockfall.PYROCKFALL) else nullcontext() as peer:
         others = {"pyrockfall": peer.contestant(str(rockfall.PEER_TRIALS))} if peer else {}
         times = interleave({"ours": rockfall.own_kernel(), **others}, rounds)
     took = times.median("ours") / rockfall.TRIALS
-    yield Measurement(
+    yield BenchmarkRow(
         "rockfall trial, 15 cells and 3 search lines", took * 1e6, "us of one core", goal=10.0
     )
     if peer is not None:
         theirs = times.median("pyrockfall") / rockfall.PEER_TRIALS
-        yield Measurement("pyrockfall, the same profile", theirs * 1e6, "us of one core")
+        yield BenchmarkRow("pyrockfall, the same profile", theirs * 1e6, "us of one core")
         share = times.ratio("ours", "pyrockfall") * rockfall.PEER_TRIALS / rockfall.TRIALS
-        yield Measurement(
+        yield BenchmarkRow(
             "rockfall trial, 15 cells and 3 search lines", share, "ratio", "pyrockfall"
         )
 
 
-def cluster_rows(rounds: int) -> Iterator[Measurement]:
+def cluster_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure the wall time of a campaign on one and on two local Dask workers.
 
     Two idle cores are needed.
@@ -196,8 +198,8 @@ def cluster_rows(rounds: int) -> Iterator[Measurement]:
     with rockfall.dask_campaigns() as contestants:
         times = interleave(contestants, rounds)
     one = times.median("1 workers")
-    yield Measurement("rockfall, 1,000,000 trials on one Dask worker", one, "s")
-    yield Measurement(
+    yield BenchmarkRow("rockfall, 1,000,000 trials on one Dask worker", one, "s")
+    yield BenchmarkRow(
         "rockfall, 1,000,000 trials on two Dask workers",
         2.0 * times.ratio("2 workers", "1 workers"),
         "ratio",
@@ -206,7 +208,7 @@ def cluster_rows(rounds: int) -> Iterator[Measurement]:
     )
 
 
-PARTS: Mapping[str, Callable[[int], Iterator[Measurement]]] = {
+PARTS: Mapping[str, Callable[[int], Iterator[BenchmarkRow]]] = {
     "discs": disc_rows,
     "coupling": coupling_rows,
     "exchange": exchange_rows,

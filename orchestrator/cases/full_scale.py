@@ -8,28 +8,25 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, cm2, cm4, kgf, kN
 
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..references import Known, Reference, References
-from .sand_models import FULL_SCALE_SOIL, Layer
+from .sand_models import FULL_SCALE_SOIL, SandLayer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
-
-Coupling = Literal["paper", "impulse"]
-"""Schemes of exchange.
-
-paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first,
-kinematics extrapolated, mean forces, exchange every 0.2 ms.
-"""
 
 _COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "paper": ("sequential", 5e-5, "held", "last"),
     "impulse": ("sequential", 2e-4, "linear", "mean"),
 }
+"""Master, exchange step (s), kinematics and forces of the sand by scheme of exchange.
+
+paper: sand first, inputs held, exchange every 0.05 ms, the sand's own step. impulse: sand first,
+kinematics extrapolated, mean forces, exchange every 0.2 ms.
+"""
 
 ROCK_MASS = 1000.0
 ROCK_RADIUS = 45.6 * cm
@@ -60,7 +57,7 @@ class Impact:
         Fictitious modulus E_bar (Pa).
     width : float
         Of the box (m).
-    depth : float
+    thickness : float
         Effective thickness dL of the sand out of the plane (m).
     stop_time : float
         End of the run (s), after the rock has turned.
@@ -72,7 +69,7 @@ class Impact:
     summary: str
     modulus: float
     width: float
-    depth: float
+    thickness: float
     stop_time: float
     span: float = 0.0
 
@@ -90,13 +87,13 @@ class Impact:
         return round(self.span / ELEMENT) if self.span else 1
 
 
-RIGID_DEPTH = 2 * ROCK_RADIUS * 10.0 / 9.9
+RIGID_THICKNESS = 2 * ROCK_RADIUS * 10.0 / 9.9
 """Effective thickness on the rigid base (m), which the paper does not give.
 
 As in the laboratory, 10 cm for a ball of 9.9 cm.
 """
-GIRDER_DEPTH = 170 * cm
-"""Distance of the girders, which the paper takes as the effective depth."""
+GIRDER_THICKNESS = 170 * cm
+"""Distance of the girders, which the paper takes as the effective thickness."""
 
 ELEMENT = 20 * cm
 """Length of a beam element (m): a disc twice a sand disc, with a stable step of 2e-5 s.
@@ -137,7 +134,7 @@ def impacts() -> dict[str, Impact]:
             f"1 tf from 10 m on 90 cm of {words} on a rigid base, E_bar {modulus:g} kgf/cm²",
             modulus * kgf / cm2,
             4.0,
-            RIGID_DEPTH,
+            RIGID_THICKNESS,
             stop,
         )
         for name, words, modulus, stop in _SANDS
@@ -149,7 +146,7 @@ def impacts() -> dict[str, Impact]:
             f"1 tf from 10 m on 90 cm of crushed sand on two H-300x400 girders of {span:g} m",
             _GIRDER_SAND * kgf / cm2,
             3.0,
-            GIRDER_DEPTH,
+            GIRDER_THICKNESS,
             _GIRDER_STOP,
             span,
         )
@@ -161,10 +158,10 @@ def impacts() -> dict[str, Impact]:
 def full_scale_system(
     fmus: Mapping[str, str],
     impact: Impact,
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int | None = None,
-) -> System:
+) -> SystemSpec:
     """Return an impact at full scale as a co-simulation of rock, sand and, on girders, beam.
 
     The origin is the left support on the girders, the left wall on the rigid base.
@@ -183,7 +180,7 @@ def full_scale_system(
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     master, exchange, kinematics, forces = _COUPLINGS[coupling]
@@ -198,7 +195,7 @@ def full_scale_system(
         spacing = impact.span / (elements or impact.elements)
         components["beam"] = _girders(fmus["beam"], impact, spacing)
         watch += ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"]
-    return System(
+    return SystemSpec(
         name=impact.name,
         description=f"Sonoda et al. 1993, full scale: {impact.summary}",
         components=components,
@@ -219,7 +216,7 @@ def full_scale_system(
 def _sand(fmu: str, impact: Impact, kinematics: str, forces: str) -> ComponentSpec:
     parameters: dict[str, Value] = {
         "modulus": impact.modulus,
-        "depth": impact.depth,
+        "thickness": impact.thickness,
         "disc.radius": DISC_RADIUS,
         "base": "beam_discs" if impact.span else "floor",
         "kinematics": kinematics,
@@ -279,7 +276,7 @@ def _middle(impact: Impact) -> float:
     return 0.5 * (impact.span or impact.width)
 
 
-def cushion_weight(system: System, discs: int) -> float:
+def cushion_weight(system: SystemSpec, discs: int) -> float:
     """Return the weight of the sand on girders, under which they start bent, at rest.
 
     Radii that differ are uniform within radius (1 - spread, 1 + spread): on average discs are
@@ -287,7 +284,7 @@ def cushion_weight(system: System, discs: int) -> float:
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         With the parameters of the sand.
     discs : int
         Number of discs.
@@ -303,15 +300,15 @@ def cushion_weight(system: System, discs: int) -> float:
         if v.size is None
     }
     sand = {**given, **system.components["sand"].parameters}
-    density = float(sand["unit_weight"]) / (
-        float(sand["solid_fraction"]) if sand.get("unit_weight_of") == "layer" else 1.0
+    density = float(sand["density"]) / (
+        float(sand["solid_fraction"]) if sand.get("density_of") == "layer" else 1.0
     )
     spread = float(sand["disc.spread"]) if sand["packing"] in ("random", "prepared") else 0.0
     area = math.pi * float(sand["disc.radius"]) ** 2 * (1.0 + spread**2 / 3.0)
-    return discs * density * area * float(sand["depth"]) * float(sand["gravity"])
+    return discs * density * area * float(sand["thickness"]) * float(sand["gravity"])
 
 
-def layer(impact: Impact, dropped: bool = True) -> Layer:
+def layer(impact: Impact, dropped: bool = True) -> SandLayer:
     """Return the sand of an impact, for the models of it.
 
     Parameters
@@ -323,10 +320,10 @@ def layer(impact: Impact, dropped: bool = True) -> Layer:
 
     Returns
     -------
-    Layer
+    SandLayer
         The layer.
     """
-    return Layer(
+    return SandLayer(
         impact.width,
         LAYER,
         DISC_RADIUS,
@@ -412,7 +409,7 @@ def references(impact: Impact, changed: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         What is known, and why something is not compared.
     """
     if others := [

@@ -12,13 +12,13 @@ from rockshed.components.common.component import Component
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
-from ..core.system.system import System, Value
+from ..core.system.system import SystemSpec, Value
 from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test
-from .sand_models import Changes, Layer, Soil, changes, sand_model
+from .sand_models import Changes, SandLayer, Soil, changes, sand_model
 
-Sizes = Mapping[str, Mapping[str, int]]
+ComponentSizes = Mapping[str, Mapping[str, int]]
 """Sizes by component of the system: ``{"sand": {"discs": 370}}``."""
 
 
@@ -44,7 +44,7 @@ class Case:
     derived : callable
         ``derived(system, sizes)`` returns values, by ``component.parameter``, that follow from
         others where they are not given.
-    layer : Layer or None
+    layer : SandLayer or None
         The sand, for the models of it.
     references : callable
         ``references(changed)`` returns what others found, for a run with other values or sizes by
@@ -56,12 +56,12 @@ class Case:
     name: str
     summary: str
     models: Mapping[str, str]
-    sizes: Sizes
+    sizes: ComponentSizes
     couplings: Mapping[str, str]
-    make: Callable[[Mapping[str, str], Sizes, str], System]
+    make: Callable[[Mapping[str, str], ComponentSizes, str], SystemSpec]
     one_size: tuple[str, ...] = ()
-    derived: Callable[[System, Sizes], Mapping[str, Value]] = lambda system, sizes: {}
-    layer: Layer | None = None
+    derived: Callable[[SystemSpec, ComponentSizes], Mapping[str, Value]] = lambda system, sizes: {}
+    layer: SandLayer | None = None
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     other_names: tuple[str, ...] = ()
 
@@ -134,7 +134,8 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
     """
     if name is None:
         return Changes()
-    model, layer = sand_model(name), chosen.layer
+    model = sand_model(name)
+    layer = chosen.layer
     if layer is None:
         raise InputRefused(
             [
@@ -154,7 +155,11 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
 
 
 def differences(
-    chosen: Case, base: System, given: Mapping[str, Value], sizes: Sizes, own: Sizes
+    chosen: Case,
+    base: SystemSpec,
+    given: Mapping[str, Value],
+    sizes: ComponentSizes,
+    own: ComponentSizes,
 ) -> dict[str, Value]:
     """Return what a run has other than its case.
 
@@ -162,7 +167,7 @@ def differences(
     ----------
     chosen : Case
         The case that is run.
-    base : System
+    base : SystemSpec
         The system of the case in the sizes of the run, before any value is changed.
     given : mapping of str to Value
         Values by ``component.parameter`` or name of a shared value, and keys of the system.
@@ -200,16 +205,16 @@ def references(chosen: Case, differing: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         What is known, and why something is not compared.
     """
-    keys = System.model_fields
+    keys = SystemSpec.model_fields
     return chosen.references({name: value for name, value in differing.items() if name not in keys})
 
 
-def _own_value(chosen: Case, system: System, name: str) -> Value | None:
+def _own_value(chosen: Case, system: SystemSpec, name: str) -> Value | None:
     """Return the value of a parameter or a shared value in a case; None if there is none."""
-    if name in System.model_fields:
+    if name in SystemSpec.model_fields:
         return cast(Value | None, getattr(system, name))
     for key, entry in system.shared.items():
         if name == key or name in entry.targets:
@@ -240,16 +245,17 @@ def _same(one: Value, other: Value | None) -> bool:
 
 
 def _laboratory(test: sonoda1993.Test) -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return sonoda1993.lab_system(
             fmus,
             test,
-            cast(sonoda1993.Coupling, coupling),
+            coupling,
             sizes["sand"]["discs"],
             sizes["beam"]["elements"],
         )
 
-    name, numbered = sonoda1993.case_name(test.number), f"lab-impact-{test.number}"
+    name = sonoda1993.case_name(test.number)
+    numbered = f"lab-impact-{test.number}"
     return Case(
         name,
         f"Sonoda et al. 1993, laboratory, test {test.number}: {test.state}",
@@ -272,7 +278,7 @@ def _laboratory(test: sonoda1993.Test) -> Case:
 
 
 def _static_test() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return static_test.static_system(fmus, coupling, sizes["sand"]["discs"])
 
     return Case(
@@ -292,12 +298,12 @@ def _static_test() -> Case:
 
 
 def _shed_on_piles() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return shed_on_piles.shed_system(
             fmus, sizes["sand"]["discs"], sizes["sand"]["elements"], sizes["rod_left"]["segments"]
         )
 
-    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+    def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
         with suppress(
             ValueError, ZeroDivisionError
         ):  # a value that is no number, or 0: its FMU says so
@@ -333,10 +339,10 @@ def _shed_on_piles() -> Case:
 
 
 def _spt() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return spt.spt_system(fmus, coupling)
 
-    def derived(system: System, sizes: Sizes) -> Mapping[str, Value]:
+    def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
         with suppress(
             ValueError, ZeroDivisionError
         ):  # a value that is no number, or 0: its FMU says so
@@ -364,7 +370,7 @@ _FULL_SCALE_COUPLINGS = {
 }
 
 
-def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
+def _weight_on_beam(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
     """Return the weight of the sand, under which a beam starts bent."""
     with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
         return (
@@ -376,11 +382,11 @@ def _weight_on_beam(system: System, sizes: Sizes) -> Mapping[str, Value]:
 
 
 def _full_scale(impact: full_scale.Impact) -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return full_scale.full_scale_system(
             fmus,
             impact,
-            cast(full_scale.Coupling, coupling),
+            coupling,
             sizes["sand"]["discs"],
             sizes["sand"]["elements"],
         )
@@ -402,10 +408,10 @@ def _full_scale(impact: full_scale.Impact) -> Case:
 
 
 def _slope_to_cushion() -> Case:
-    def make(fmus: Mapping[str, str], sizes: Sizes, coupling: str) -> System:
+    def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return slope_to_cushion.slope_system(
             fmus,
-            cast(full_scale.Coupling, coupling),
+            coupling,
             sizes["sand"]["discs"],
             sizes["sand"]["elements"],
         )

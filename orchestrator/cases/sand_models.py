@@ -38,7 +38,7 @@ class Soil:
 
 
 @dataclass(frozen=True)
-class Layer:
+class SandLayer:
     """The layer of sand of a case, and the rock that meets it.
 
     Attributes
@@ -134,14 +134,14 @@ def sand_model(name: str) -> SandModel:
 
 
 @cache
-def discs_of(layer: Layer, solid_fraction: float) -> int:
+def discs_of(layer: SandLayer, solid_fraction: float) -> int:
     """Return the number of discs of many sizes that fill a layer.
 
     The mean of r^2 is r^2 (1 + spread^2 / 3).
 
     Parameters
     ----------
-    layer : Layer
+    layer : SandLayer
         The layer.
     solid_fraction : float
         Part of it that the discs fill.
@@ -171,7 +171,7 @@ def model_values(name: str) -> dict[str, Value]:
     return {f"sand.{key}": value for key, value in MODELS[name].parameters.items()}
 
 
-def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes:
+def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Changes:
     """Return what is other in a case with a model of the sand.
 
     The surface of a prepared layer is uneven and known only when it has settled: the rock starts
@@ -181,7 +181,7 @@ def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes
     ----------
     model : SandModel
         The model.
-    layer : Layer
+    layer : SandLayer
         The layer of the case.
     soil : Soil, optional
         Another state of the soil than the case's.
@@ -194,7 +194,8 @@ def changes(model: SandModel, layer: Layer, soil: Soil | None = None) -> Changes
     values: dict[str, Value] = {f"sand.{name}": value for name, value in model.parameters.items()}
     if not model.prepared:
         return Changes(values)
-    state, largest = soil or layer.soil, 2.0 * layer.disc_radius * (1.0 + SPREAD)
+    state = soil or layer.soil
+    largest = 2.0 * layer.disc_radius * (1.0 + SPREAD)
     clearance = 1.5 * largest
     gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
     values |= {

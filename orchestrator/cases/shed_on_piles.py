@@ -11,7 +11,7 @@ gravity is 0 in them.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..core.system.system import ComponentSpec, Connection, PowerBond, System, Value
+from ..core.system.system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from . import full_scale
 from .spt import toe_bond, toe_connections
 
@@ -70,7 +70,7 @@ PILE = Pile()
 
 def shed_system(
     fmus: Mapping[str, str], discs: int, elements: int, segments: int = PILE.segments
-) -> System:
+) -> SystemSpec:
     """Return the shed as a co-simulation of impact, two rods and the ground under each.
 
     The components are ``sand``, ``rock``, ``beam``, ``rod_left``, ``ground_left``, ``rod_right``
@@ -85,7 +85,7 @@ def shed_system(
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     base = full_scale.full_scale_system(
@@ -192,14 +192,14 @@ def support_connections(beam: str, number: int, rod: str) -> list[Connection]:
     ]
 
 
-def derived(system: System, discs: int, elements: int) -> dict[str, Value]:
+def derived(system: SystemSpec, discs: int, elements: int) -> dict[str, Value]:
     """Return the weights at rest, and the stiffness of the girders' end, 4 EI/R3.
 
     The rods must know that stiffness for their limit.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         The shed.
     discs, elements : int
         Sizes of sand and beam.

@@ -15,17 +15,15 @@ from rockshed.components.common.component import Instance
 from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
-from ..core.system.system import ComponentSpec, System, Value
-from ..sites.rockfall.preparation import prepare
-from .full_scale import GIRDER_DEPTH, Coupling, Impact, full_scale_system, layer
-from .sand_models import Layer
+from ..core.system.system import ComponentSpec, SharedValue, SystemSpec, Value
+from .full_scale import GIRDER_THICKNESS, Impact, full_scale_system, layer
+from .sand_models import SandLayer
 
 SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
-LINE, SHARE = "cushion", 0.95
-"""Search line that the rocks pass as they land on the cushion, and the percentile there.
-
-The percentile is that of their kinetic energy.
-"""
+LINE = "cushion"
+"""Search line that the rocks pass as they land on the cushion."""
+SHARE = 0.95
+"""Percentile of the kinetic energy of the rocks there."""
 TRIAL = 7649
 """The trial at this percentile in the site's 10,000; a test finds it again."""
 
@@ -34,7 +32,7 @@ IMPACT = Impact(
     "95th-percentile rock of a 35 m slope on 90 cm of crushed sand on H-300x400 girders of 10 m",
     100.0 * kgf / cm2,
     10.0,
-    GIRDER_DEPTH,
+    GIRDER_THICKNESS,
     0.6,
     10.0,
 )
@@ -74,6 +72,8 @@ def cells() -> int:
 @cache
 def _site() -> Instance:
     """Return the site as an initialised component, as its campaign has it."""
+    from ..sites.rockfall.preparation import prepare  # imports numba, which other cases need not
+
     return prepare(SITE).instance
 
 
@@ -134,10 +134,10 @@ def receiver(radius: float) -> dict[str, Value]:
 
 def slope_system(
     fmus: Mapping[str, str],
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int | None = None,
-) -> System:
+) -> SystemSpec:
     """Return slope, sand and girders as a co-simulation.
 
     The origin is the left support, below the surface of the beam.
@@ -153,29 +153,15 @@ def slope_system(
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     system = full_scale_system(fmus, IMPACT, coupling, discs, elements)
-    site, sand, beam = _site(), system.components["sand"], system.components["beam"]
-    shared = {
-        name: value.model_copy(update={"value": site[name.removeprefix("rock_")]})
-        if name.startswith("rock_")
-        else value
-        for name, value in system.shared.items()
-    }
-    given = {
-        name: value
-        for name, value in site_parameters(site).items()
-        if name not in ("mass", "radius")
-    }
-    rock = {
-        **given,
-        "trial": TRIAL,
-        "lead_time": LEAD_TIME,
-        **receiver(site["radius"]),
-        "internal_step": system.components["rock"].parameters["internal_step"],
-    }
+    site = _site()
+    sand = system.components["sand"]
+    beam = system.components["beam"]
+    step = system.components["rock"].parameters["internal_step"]
+    rock = {**_rock_parameters(site), "internal_step": step}
     roof = {
         "base": "beam_surface",
         "box.wall_height": WALL_HEIGHT,
@@ -184,7 +170,7 @@ def slope_system(
     return system.model_copy(
         update={
             "description": IMPACT.summary,
-            "shared": shared,
+            "shared": _shared(system, site),
             "components": {
                 **system.components,
                 "rock": ComponentSpec(fmu=fmus["rock"], parameters=rock),
@@ -197,6 +183,23 @@ def slope_system(
     )
 
 
-def sand_layer() -> Layer:
+def _shared(system: SystemSpec, site: Instance) -> dict[str, SharedValue]:
+    """Return the shared values of the impact, those of the rock as the site has them."""
+    return {
+        name: value.model_copy(update={"value": site[name.removeprefix("rock_")]})
+        if name.startswith("rock_")
+        else value
+        for name, value in system.shared.items()
+    }
+
+
+def _rock_parameters(site: Instance) -> dict[str, Value]:
+    """Return the parameters of the rock on its slope; mass and radius are shared values."""
+    own = site_parameters(site)
+    slope = {name: own[name] for name in own if name not in ("mass", "radius")}
+    return {**slope, "trial": TRIAL, "lead_time": LEAD_TIME, **receiver(site["radius"])}
+
+
+def sand_layer() -> SandLayer:
     """Return the sand of the roof, for the models of it."""
     return layer(IMPACT, dropped=False)

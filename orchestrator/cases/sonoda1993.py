@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Literal
 
 from rockshed.components.common.units import cm, kgf, mm
 
@@ -21,11 +20,11 @@ from ..core.system.system import (
     EnergyAlarm,
     PowerBond,
     SharedValue,
-    System,
+    SystemSpec,
     Value,
 )
 from ..references import Known, Reference, References
-from .sand_models import DENSE, LOOSE, Layer, Soil
+from .sand_models import DENSE, LOOSE, SandLayer, Soil
 
 _DATA = Path(__file__).parent / "data"
 
@@ -38,18 +37,16 @@ _BEAM_ENERGY = "peak beam energy from the midspan strain"
 STATIC_RATIO = 1.29
 """k (kgf/cm) / E_bar (kgf/cm2) of table 4; gives E_bar for the tests that table 4 leaves out."""
 
-Coupling = Literal["paper", "impulse", "jacobi"]
-"""Schemes of exchange.
-
-paper: sand first, inputs held, exchange 1e-5 s. impulse: sand first, kinematics extrapolated, mean
-forces, 1e-4 s. jacobi: all at once, inputs held, 1e-4 s.
-"""
-
 _COUPLINGS: Mapping[str, tuple[Scheme, float, str, str]] = {
     "paper": ("sequential", 1e-5, "held", "last"),
     "impulse": ("sequential", 1e-4, "linear", "mean"),
     "jacobi": ("jacobi", 1e-4, "held", "last"),
 }
+"""Master, exchange step (s), kinematics and forces of the sand by scheme of exchange.
+
+paper: sand first, inputs held, exchange 1e-5 s. impulse: sand first, kinematics extrapolated, mean
+forces, 1e-4 s. jacobi: all at once, inputs held, 1e-4 s.
+"""
 
 
 @dataclass(frozen=True)
@@ -253,10 +250,10 @@ def discs_in(box: int) -> int:
 def lab_system(
     fmus: Mapping[str, str],
     test: Test,
-    coupling: Coupling = "paper",
+    coupling: str = "paper",
     discs: int | None = None,
     elements: int = ELEMENTS,
-) -> System:
+) -> SystemSpec:
     """Return the laboratory impact of fig. 14 as a co-simulation of rock, sand and beam.
 
     Parameters
@@ -273,12 +270,12 @@ def lab_system(
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     master, exchange, kinematics, forces = _COUPLINGS[coupling]
     spacing = SPAN / elements
-    return System(
+    return SystemSpec(
         name=case_name(test.number),
         description=f"Sonoda et al. 1993, test {test.number}: 4 kgf ball at 8 m/s on 10 cm of sand "
         f"on an H-100x50x7 beam of 120 cm; {test.state}",
@@ -342,7 +339,7 @@ def _ball(fmu: str, test: Test, discs: int) -> ComponentSpec:
     return ComponentSpec(fmu=fmu, parameters=parameters)
 
 
-def layer(test: Test) -> Layer:
+def layer(test: Test) -> SandLayer:
     """Return the sand of a test, for the models of it.
 
     Parameters
@@ -352,10 +349,10 @@ def layer(test: Test) -> Layer:
 
     Returns
     -------
-    Layer
+    SandLayer
         The layer.
     """
-    return Layer(
+    return SandLayer(
         BOX_WIDTH[test.box],
         LAYER,
         DISC_RADIUS,
@@ -472,13 +469,13 @@ def known_of(test: Test) -> dict[str, Known]:
 
 SAND = ("sand.modulus", "sand.damping")
 """Parameters that the paper varies in table 5 for the system of the tests."""
-_TESTED = ("box.", "rock.", "beam.", "base.y", "depth", "disc.radius", "unit_weight", "gravity")
+_TESTED = ("box.", "rock.", "beam.", "base.y", "thickness", "disc.radius", "density", "gravity")
 """Beginnings of the sand's parameters that describe the test.
 
 Those of :data:`_SUPPORT` are whole names. The others are choices of the model.
 """
 _SUPPORT = ("base", "walls")
-_READINGS = ("beam.disc_mass", "unit_weight_of")
+_READINGS = ("beam.disc_mass", "density_of")
 """Parameters that read the paper in another way, whatever they begin with."""
 
 
@@ -498,7 +495,7 @@ def references(test: Test, changed: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         What is known, and why something is not compared.
     """
     if others := [name for name in changed if of_the_test(name)]:

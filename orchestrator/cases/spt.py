@@ -6,14 +6,19 @@ is assumed, and Smith's quake and damping.
 """
 
 from collections.abc import Mapping
-from typing import Literal
 
 from rockshed.components.common.units import cm, cm2, mm
 
-from ..core.system.system import ComponentSpec, Connection, EnergyAlarm, PowerBond, System, Value
+from ..core.system.system import (
+    ComponentSpec,
+    Connection,
+    EnergyAlarm,
+    PowerBond,
+    SystemSpec,
+    Value,
+)
 
 NAME = "spt"
-Coupling = Literal["waves", "plain"]
 COUPLINGS: Mapping[str, tuple[str, float]] = {
     "waves": ("waves", 1e-4),
     "plain": ("kinematics", 1e-5),
@@ -32,7 +37,7 @@ RESISTANCE, QUAKE, DAMPING = 20e3, 2.5 * mm, 0.5
 STOP = 0.03
 
 
-def spt_system(fmus: Mapping[str, str], coupling: str = "waves") -> System:
+def spt_system(fmus: Mapping[str, str], coupling: str = "waves") -> SystemSpec:
     """Return the test as a co-simulation of ``hammer``, ``ground`` and ``rod``.
 
     The rod comes last, so that it makes a step with the forces that its partners had in it.
@@ -47,11 +52,11 @@ def spt_system(fmus: Mapping[str, str], coupling: str = "waves") -> System:
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     port, exchange = COUPLINGS[coupling]
-    return System(
+    return SystemSpec(
         name=NAME,
         description="standard penetration test, 63.5 kg from 75 cm on a rod of 10.24 m "
         "(Uto et al., table 1)",
@@ -194,12 +199,12 @@ def toe_bond(rod: str, ground: str) -> PowerBond:
     )
 
 
-def partner_stiffness(system: System) -> dict[str, Value]:
+def partner_stiffness(system: SystemSpec) -> dict[str, Value]:
     """Return the stiffness R_u/Q of the ground, which a rod with a plain toe has to know.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         With the resistance (N) and the quake (m) of the ground.
 
     Returns

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from rockshed.components.common.units import cm, kgf
 
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, System, Value
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..references import Known, Reference, References
-from .sand_models import Layer
+from .sand_models import SandLayer
 from .sonoda1993 import (
     BALL_MASS,
     BALL_RADIUS,
@@ -58,7 +58,7 @@ E_BAR = (20.0, 40.0, 60.0, 80.0, 100.0)
 """Fictitious moduli of fig. 13 (kgf/cm2)."""
 
 
-LAYER_OF_SAND = Layer(
+LAYER_OF_SAND = SandLayer(
     _WIDTH,
     LAYER,
     DISC_RADIUS,
@@ -88,7 +88,9 @@ def rock_height(surface: float) -> float:
     return surface + BALL_RADIUS + GAP
 
 
-def static_system(fmus: Mapping[str, str], coupling: str = "impulse", discs: int = DISCS) -> System:
+def static_system(
+    fmus: Mapping[str, str], coupling: str = "impulse", discs: int = DISCS
+) -> SystemSpec:
     """Return the static test as a co-simulation of ``rock`` and ``sand``, with the sand of test 4.
 
     The origin is the left wall's foot.
@@ -105,12 +107,12 @@ def static_system(fmus: Mapping[str, str], coupling: str = "impulse", discs: int
 
     Returns
     -------
-    System
+    SystemSpec
         The co-simulation.
     """
     master, exchange, kinematics, forces = COUPLINGS[coupling]
     modulus = tests()[DEFAULT_TEST].modulus
-    return System(
+    return SystemSpec(
         name=NAME,
         description="Sonoda et al. 1993, fig. 12: static loading test",
         master=master,
@@ -189,7 +191,7 @@ def references(changed: Mapping[str, Value]) -> References:
 
     Returns
     -------
-    References
+    references : References
         With every E_bar, but only of this test.
     """
     others = [

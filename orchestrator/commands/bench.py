@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..bench.table import PARTS, Measurement
+from ..bench.table import PARTS, BenchmarkRow
 from ..core.errors import InputRefused, Problem
 from ..tables import Table
 from .options import Json, Quiet
@@ -38,7 +38,7 @@ def command(
         ]
         if problems:
             raise InputRefused(problems)
-        rows: list[Measurement] = []
+        rows: list[BenchmarkRow] = []
         for name in wanted:
             with screen.busy(f"measuring: {name}"):
                 rows += PARTS[name](rounds)
@@ -50,7 +50,7 @@ def command(
             raise typer.Exit(CHECK_FAILED)
 
 
-def _table(rows: Sequence[Measurement]) -> Table:
+def _table(rows: Sequence[BenchmarkRow]) -> Table:
     titles = ("figure", "measured", "unit", "as a multiple of", "goal")
     table = Table(titles, right=("measured",))
     for row in rows:

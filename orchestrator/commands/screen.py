@@ -430,7 +430,7 @@ def printable(text: str, ends: str = "\n") -> str:
     Returns
     -------
     str
-        With ``\\n``, ``\\x1b`` in the place of the others.
+        With escapes in the place of the others, as Python writes them.
     """
     return "".join(
         letter

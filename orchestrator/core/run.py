@@ -18,28 +18,28 @@ from .loop.master import Interruption, Master, Progress
 from .loop.recording import Recorder
 from .results.metric import Metric
 from .results.provenance import describe_run
-from .results.reading import Run, read_run
+from .results.reading import StoredRun, read_run
 from .results.run_folder import RunFolder
 from .system.clock import to_seconds
 from .system.plan import Plan
 from .system.planning import make_plan
-from .system.system import System
+from .system.system import SystemSpec
 
 
-def sources_of(system: System) -> dict[str, Source]:
+def sources_of(system: SystemSpec) -> dict[str, Source]:
     """Return the FMU files of a system by component."""
     return {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
 
 
 def simulate(
-    system: System,
+    system: SystemSpec,
     folder: Path,
     *,
     sources: Mapping[str, Source] | None = None,
     allow_unstable: bool = False,
     progress: Progress | None = None,
     facts: Mapping[str, Any] | None = None,
-) -> Run:
+) -> StoredRun:
     """Run a system and write its results into a folder.
 
     Ctrl-C ends the run and keeps what was computed. Everything happens in the calling process:
@@ -47,7 +47,7 @@ def simulate(
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Components, connections and times.
     folder : Path
         Folder of the run. An earlier run in it is replaced at the end.
@@ -62,7 +62,7 @@ def simulate(
 
     Returns
     -------
-    Run
+    StoredRun
         Complete or interrupted.
 
     Raises

@@ -6,17 +6,17 @@ from typing import Any
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import ms
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from . import contents
 from .roles import parameter, parameters
 
 
-def caption(run: Run) -> list[str]:
+def caption(run: StoredRun) -> list[str]:
     """Return the caption of a run.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -34,12 +34,12 @@ def caption(run: Run) -> list[str]:
     ]
 
 
-def models(run: Run) -> list[str]:
+def models(run: StoredRun) -> list[str]:
     """Return a line on each component that was computed by one of several models; equal lines once.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     lines = [
@@ -50,12 +50,12 @@ def models(run: Run) -> list[str]:
     return list(dict.fromkeys(lines))
 
 
-def scheme(run: Run) -> str:
+def scheme(run: StoredRun) -> str:
     """Return how values were exchanged, and with which steps.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     facts, system = run.provenance, run.provenance["system"]
@@ -67,7 +67,7 @@ def scheme(run: Run) -> str:
     return f"{coupling}: steps in ms: exchange {system['exchange_step'] / ms:g}{shown}"
 
 
-def _step(run: Run, component: str, system: Mapping[str, Any]) -> float:
+def _step(run: StoredRun, component: str, system: Mapping[str, Any]) -> float:
     """Return the longest internal step (ms) of a component; 0 if it names none.
 
     It is never longer than the communication step.

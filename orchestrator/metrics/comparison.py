@@ -7,7 +7,7 @@ from typing import Any
 from rockshed.components.common.units import SCREEN_UNITS
 
 from ..core.results.metric import Beside, Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..references import Known, References
 from ..tables import Table
 from . import names
@@ -88,7 +88,7 @@ _STILL = (
 
 
 @dataclass(frozen=True)
-class Row:
+class ComparedRow:
     """A metric as it is shown.
 
     Text per column, deviations (computed / reference - 1) as numbers.
@@ -105,12 +105,12 @@ class Row:
     handbook_deviation: float | None = None
 
 
-def known_of(run: Run) -> Mapping[str, Known]:
+def known_of(run: StoredRun) -> Mapping[str, Known]:
     """Return the references of a run, as its preparation has written them down.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -121,16 +121,16 @@ def known_of(run: Run) -> Mapping[str, Known]:
     return {} if still_sinking(run) else _references(run).known
 
 
-def _references(run: Run) -> References:
+def _references(run: StoredRun) -> References:
     return References.from_data(run.provenance.get("references", {}))
 
 
-def figures(run: Run, known: Mapping[str, Known]) -> list[Metric]:
+def figures(run: StoredRun, known: Mapping[str, Known]) -> list[Metric]:
     """Return every headline metric of a run with its references.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.
@@ -146,19 +146,19 @@ def _compared(metric: Metric, known: Known) -> Metric:
     return replace(metric, references=references)
 
 
-def rows(run: Run, known: Mapping[str, Known]) -> list[Row]:
+def rows(run: StoredRun, known: Mapping[str, Known]) -> list[ComparedRow]:
     """Return the rows of the table.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.
 
     Returns
     -------
-    list of Row
+    list of ComparedRow
         In the order in which a designer asks for them; of a system without any of them, its
         summary.
     """
@@ -180,19 +180,19 @@ def rows(run: Run, known: Mapping[str, Known]) -> list[Row]:
     return shown + list(_couplings(run))
 
 
-def _plain(metric: Metric) -> Row:
+def _plain(metric: Metric) -> ComparedRow:
     value = metric.value if isinstance(metric.value, str) else f"{metric.value:.6g}"
-    return Row(metric.name, "" if metric.unit == "1" else metric.unit, value)
+    return ComparedRow(metric.name, "" if metric.unit == "1" else metric.unit, value)
 
 
-def _headline_rows(metric: Metric, name: str) -> Iterator[Row]:
+def _headline_rows(metric: Metric, name: str) -> Iterator[ComparedRow]:
     """Yield the rows of a headline metric; of one among several, with the name of its component."""
     label, scales = _ROWS[name]
     owner = metric.name.removesuffix(name)
     return _rows(f"{owner}{label}", scales, metric)
 
 
-def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[Row]:
+def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[ComparedRow]:
     """Yield one row for each unit; the deviations stand in the first."""
     for number, scale in enumerate(scales):
         first = number == 0
@@ -201,7 +201,9 @@ def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[Row]:
             beside[who] = ("≈ " if found.note else "") + _written(found.value, scale)
             beside[f"{who}_deviation"] = found.deviation if first else None
         unit = "" if scale.unit == "1" else scale.unit
-        yield Row(label if first else "", unit, _written(float(metric.value), scale), **beside)
+        yield ComparedRow(
+            label if first else "", unit, _written(float(metric.value), scale), **beside
+        )
 
 
 def _written(value: float, scale: Scale) -> str:
@@ -211,26 +213,26 @@ def _written(value: float, scale: Scale) -> str:
     return f"{shown:{scale.sign}.3g}"
 
 
-def _couplings(run: Run) -> Iterator[Row]:
+def _couplings(run: StoredRun) -> Iterator[ComparedRow]:
     """Yield the energy that each coupling has made, as a share of the impact energy."""
     impact = impact_energy(run)
     for column, values in run.series.items():
         if column.startswith("coupling.") and column.endswith(".energy"):
             bond = column.removeprefix("coupling.").removesuffix(".energy").replace("_", "-")
             if impact:
-                yield Row(
+                yield ComparedRow(
                     f"coupling {bond} / E0", "%", _written(values[-1] / impact, Scale("%", 3))
                 )
             else:
-                yield Row(f"coupling {bond}", "J", f"{values[-1]:.4g}")
+                yield ComparedRow(f"coupling {bond}", "J", f"{values[-1]:.4g}")
 
 
-def notes(run: Run, known: Mapping[str, Known]) -> list[str]:
+def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     """Return what a reader of the table has to know.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.
@@ -254,12 +256,12 @@ def notes(run: Run, known: Mapping[str, Known]) -> list[str]:
     return remarks + list(dict.fromkeys(origins)) + still
 
 
-def table(run: Run, known: Mapping[str, Known]) -> Table:
+def table(run: StoredRun, known: Mapping[str, Known]) -> Table:
     """Return the rows as a table, without the columns that nothing stands in.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     known : mapping of str to Known
         References by the name of the metric, from :func:`known_of`.

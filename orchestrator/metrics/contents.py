@@ -12,7 +12,7 @@ from typing import Any
 
 from rockshed.components.common.component import ComponentError
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 
 
 class ForeignStateError(ValueError):
@@ -53,12 +53,12 @@ def register(contents: str, reader: Reader) -> None:
     _READERS[contents] = reader
 
 
-def reader_of(run: Run, component: str) -> Reader | None:
+def reader_of(run: StoredRun, component: str) -> Reader | None:
     """Return the reader of a component; None if nobody knows its contents.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.
@@ -66,12 +66,12 @@ def reader_of(run: Run, component: str) -> Reader | None:
     return _READERS.get(run.provenance["components"][component].get("contents", ""))
 
 
-def measures(run: Run, component: str) -> ModuleType | None:
+def measures(run: StoredRun, component: str) -> ModuleType | None:
     """Return the module that measures a component by its parameters; None if there is none.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.
@@ -80,17 +80,17 @@ def measures(run: Run, component: str) -> ModuleType | None:
     return None if reader is None else import_module(reader.measures)
 
 
-def decoded(run: Run, component: str, state: bytes) -> Any:
+def decoded(run: StoredRun, component: str, state: bytes) -> Any:
     """Return the geometry in a recorded state of a component that has a reader.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.
     state : bytes
-        A state from :meth:`~rockshed.core.results.reading.Run.states`.
+        A state from :meth:`~rockshed.core.results.reading.StoredRun.states`.
 
     Raises
     ------

@@ -2,21 +2,16 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rockshed.components.common.roles import Role
 
 from ..core.results.metric import Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from . import contents, names
 from .energy import driven
 from .filtering import load_cell, low_pass
 from .load_curve import DEPTH, LoadCurve, driven_curve
 from .roles import column, elements, members, owners, parameters
-from .values import extreme, integral, of_each
-
-Values = NDArray[np.float64]
+from .values import Samples, extreme, integral, of_each
 
 SETTLING = 0.5
 """Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one
@@ -25,29 +20,29 @@ CONTACT_SHARE = 0.01
 """Part of its peak above which the force on the rock counts towards its duration."""
 
 
-def cushions(run: Run) -> list[str]:
+def cushions(run: StoredRun) -> list[str]:
     """Return the components that are cushions: those that transmit a force.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     return owners(run, Role.TRANSMITTED)
 
 
-def of_cushions(run: Run) -> Iterator[Metric]:
+def of_cushions(run: StoredRun) -> Iterator[Metric]:
     """Yield the metrics of each cushion.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     return of_each(run, cushions(run), _of_cushion)
 
 
-def _of_cushion(run: Run, cushion: str) -> Iterator[Metric]:
+def _of_cushion(run: StoredRun, cushion: str) -> Iterator[Metric]:
     if driven(run):
         yield from _static(run, cushion)
     else:
@@ -57,12 +52,12 @@ def _of_cushion(run: Run, cushion: str) -> Iterator[Metric]:
     yield from _way(run, cushion)
 
 
-def both_forces(run: Run, cushion: str) -> tuple[str, str] | None:
+def both_forces(run: StoredRun, cushion: str) -> tuple[str, str] | None:
     """Return the columns of the transmitted force and of the force on the striking body.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -77,12 +72,12 @@ def both_forces(run: Run, cushion: str) -> tuple[str, str] | None:
     return (transmitted, on_body) if transmitted and on_body else None
 
 
-def curve_of(run: Run, cushion: str) -> LoadCurve | None:
+def curve_of(run: StoredRun, cushion: str) -> LoadCurve | None:
     """Return the load on a driven body over its penetration; None if it was not recorded.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -91,7 +86,7 @@ def curve_of(run: Run, cushion: str) -> LoadCurve | None:
     return driven_curve(run.series[depth], run.series[load]) if depth and load else None
 
 
-def _static(run: Run, cushion: str) -> Iterator[Metric]:
+def _static(run: StoredRun, cushion: str) -> Iterator[Metric]:
     """Yield load and secant spring constant at 4 cm."""
     curve = curve_of(run, cushion)
     if curve is not None and curve.reaches(DEPTH):
@@ -101,7 +96,7 @@ def _static(run: Run, cushion: str) -> Iterator[Metric]:
         yield Metric(names.STATIC_DEPARTURE, curve.departure(DEPTH))
 
 
-def _forces(run: Run, cushion: str) -> Iterator[Metric]:
+def _forces(run: StoredRun, cushion: str) -> Iterator[Metric]:
     """Yield peaks, impulses and duration."""
     columns = both_forces(run, cushion)
     if columns is None:
@@ -124,7 +119,7 @@ def _forces(run: Run, cushion: str) -> Iterator[Metric]:
         yield Metric(names.DURATION, float(touching[-1] - touching[0]), "s")
 
 
-def _through_load_cell(run: Run, cushion: str) -> Iterator[Metric]:
+def _through_load_cell(run: StoredRun, cushion: str) -> Iterator[Metric]:
     """Yield the peak through the load cell that the run was asked to have."""
     cut_off = run.provenance.get("load_cell")
     transmitted = column(run, cushion, Role.TRANSMITTED)
@@ -134,7 +129,7 @@ def _through_load_cell(run: Run, cushion: str) -> Iterator[Metric]:
         yield Metric(names.LOAD_CELL_CUT_OFF, cut_off, "1/s")
 
 
-def cut_off(run: Run, cushion: str) -> float | None:
+def cut_off(run: StoredRun, cushion: str) -> float | None:
     """Return the cut-off frequency of the settled forces.
 
     Discs that meet, or are struck one by one, give spikes at the natural frequency of a disc: they
@@ -142,7 +137,7 @@ def cut_off(run: Run, cushion: str) -> float | None:
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -158,12 +153,12 @@ def cut_off(run: Run, cushion: str) -> float | None:
     return SETTLING * float(known.contact_frequency(parameters(run, cushion)))
 
 
-def settled(run: Run, cushion: str, name: str) -> Values | None:
+def settled(run: StoredRun, cushion: str, name: str) -> Samples | None:
     """Return an output of a cushion without what is faster than its cut-off.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -179,7 +174,7 @@ def settled(run: Run, cushion: str, name: str) -> Values | None:
     return None if fastest is None else low_pass(run.series["time"], run.series[name], fastest)
 
 
-def _settled(run: Run, cushion: str) -> Iterator[Metric]:
+def _settled(run: StoredRun, cushion: str) -> Iterator[Metric]:
     """Yield the largest forces without their spikes."""
     columns, fastest = both_forces(run, cushion), cut_off(run, cushion)
     if columns is None or fastest is None:
@@ -196,7 +191,7 @@ def _settled(run: Run, cushion: str) -> Iterator[Metric]:
     yield Metric(names.SETTLED_CUT_OFF, fastest, "1/s")
 
 
-def _way(run: Run, cushion: str) -> Iterator[Metric]:
+def _way(run: StoredRun, cushion: str) -> Iterator[Metric]:
     """Yield penetration and the least distance of rock and base."""
     penetration = column(run, cushion, Role.PENETRATION)
     if penetration is None:
@@ -208,12 +203,12 @@ def _way(run: Run, cushion: str) -> Iterator[Metric]:
         yield Metric(names.CLEARANCE, float(run.series[surface][0]) - base - depth, "m")
 
 
-def base_height(run: Run, cushion: str) -> float | None:
+def base_height(run: StoredRun, cushion: str) -> float | None:
     """Return the height of what a cushion rests on, at the start.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -234,12 +229,12 @@ def base_height(run: Run, cushion: str) -> float | None:
     return float(known.base_height(parameters(run, cushion), axis))
 
 
-def still_in_contact(run: Run) -> bool:
+def still_in_contact(run: StoredRun) -> bool:
     """Return whether a force on a striking body has not ended with the run.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -253,12 +248,12 @@ def still_in_contact(run: Run) -> bool:
     )
 
 
-def still_sinking(run: Run) -> bool:
+def still_sinking(run: StoredRun) -> bool:
     """Return whether a body had not come to a stop when the run ended.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns

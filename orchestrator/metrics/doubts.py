@@ -6,7 +6,7 @@ from rockshed.components.common.roles import Role
 from rockshed.components.common.units import kN, mm
 
 from ..core.results.metric import Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from . import names
 from .cushion import cushions
 from .energy import driven, structures
@@ -21,12 +21,12 @@ _WEIGHT_LIMIT = 0.1
 """Random packs differ from their mean weight, and walls carry some of it."""
 
 
-def warnings(run: Run) -> list[str]:
+def warnings(run: StoredRun) -> list[str]:
     """Return the warnings of a run and the doubts about its metrics.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -44,11 +44,13 @@ def warnings(run: Run) -> list[str]:
     ]
 
 
-def _open_balance(run: Run, found: list[Metric]) -> Iterator[str]:
+def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
     """Doubt an energy balance that does not close."""
-    name, whole = names.RESIDUAL_SHARE, "impact energy"
+    name = names.RESIDUAL_SHARE
+    whole = "impact energy"
     if driven(run):
-        name, whole = names.RESIDUAL_WORK_SHARE, "work of the machine"
+        name = names.RESIDUAL_WORK_SHARE
+        whole = "work of the machine"
     share = next((float(metric.value) for metric in found if metric.name == name), None)
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
         yield (
@@ -57,7 +59,7 @@ def _open_balance(run: Run, found: list[Metric]) -> Iterator[str]:
         )
 
 
-def _other_weight(run: Run, structure: str) -> Iterator[str]:
+def _other_weight(run: StoredRun, structure: str) -> Iterator[str]:
     """Doubt a structure that was bent by another weight than that of the cushion on it."""
     pressing = [
         float(run.series[name][0])
@@ -74,7 +76,7 @@ def _other_weight(run: Run, structure: str) -> Iterator[str]:
     )
 
 
-def _restless(run: Run, cushion: str) -> Iterator[str]:
+def _restless(run: StoredRun, cushion: str) -> Iterator[str]:
     """Doubt a cushion that was moving before the impact."""
     name = column(run, cushion, Role.UNBALANCED)
     if name is None or not parameter(run, cushion, Role.GRAVITY):  # it is counted in gravity
@@ -88,7 +90,7 @@ def _restless(run: Run, cushion: str) -> Iterator[str]:
         )
 
 
-def _bottomed_out(run: Run, cushion: str, found: list[Metric]) -> Iterator[str]:
+def _bottomed_out(run: StoredRun, cushion: str, found: list[Metric]) -> Iterator[str]:
     """Warn of a body that comes nearer to the base than a grain is thick."""
     radius = parameter(run, cushion, Role.GRAIN_RADIUS)
     wanted = (names.CLEARANCE, names.of_component(cushion, names.CLEARANCE))

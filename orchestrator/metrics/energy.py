@@ -3,38 +3,33 @@
 from collections.abc import Iterator
 from functools import partial
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rockshed.components.common.roles import Role
 
 from ..core.results.metric import Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from . import names
 from .roles import column, owners, parameter, recorded
-from .values import extreme, of_each
-
-Values = NDArray[np.float64]
+from .values import Samples, extreme, of_each
 
 
-def driven(run: Run) -> bool:
+def driven(run: StoredRun) -> bool:
     """Return whether a machine moves a body: a static test, no impact.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     values = [parameter(run, owner, Role.DRIVEN) for owner in owners(run, Role.DRIVEN)]
     return any(value in ("driven", True) for value in values)
 
 
-def machine_work(run: Run) -> Values | None:
+def machine_work(run: StoredRun) -> Samples | None:
     """Return the work of the machines on driven bodies since the start.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -46,7 +41,7 @@ def machine_work(run: Run) -> Values | None:
     return sum(works[1:], works[0]) if works and driven(run) else None
 
 
-def system_residual(run: Run) -> Values | None:
+def system_residual(run: StoredRun) -> Samples | None:
     """Return the energy that the whole system has made since the start.
 
     That is what is stored and dissipated less what came in. A component's residual is the change of
@@ -58,7 +53,7 @@ def system_residual(run: Run) -> Values | None:
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -79,12 +74,12 @@ def system_residual(run: Run) -> Values | None:
     return total if total is None or carried is None else total - carried
 
 
-def carried_work(run: Run) -> Values | None:
+def carried_work(run: StoredRun) -> Samples | None:
     """Return the work of loads at rest that no component counts.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -99,12 +94,12 @@ def carried_work(run: Run) -> Values | None:
     return sum(works[1:], works[0]) if works else None
 
 
-def load_at_rest(run: Run, component: str) -> float:
+def load_at_rest(run: StoredRun, component: str) -> float:
     """Return the load that a component carries at rest and leaves out of its balance.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.
@@ -117,12 +112,12 @@ def load_at_rest(run: Run, component: str) -> float:
     return float(parameter(run, component, Role.LOAD_AT_REST) or 0.0)
 
 
-def impact_energy(run: Run) -> float | None:
+def impact_energy(run: StoredRun) -> float | None:
     """Return the kinetic energy of what strikes, at the start or when it is handed over.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -136,35 +131,35 @@ def impact_energy(run: Run) -> float | None:
     return sum(float(run.series[m.column][_handed_over(run, m.component)]) for m in striking)
 
 
-def _handed_over(run: Run, component: str) -> int:
+def _handed_over(run: StoredRun, component: str) -> int:
     """Return the row in which a body is handed over to the system; the first one if it is there."""
     received = column(run, component, Role.HANDED_OVER)
     return 0 if received is None else int(run.series[received].argmax())
 
 
-def structures(run: Run) -> list[str]:
+def structures(run: StoredRun) -> list[str]:
     """Return the components that are structures: those with a deflection.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     return owners(run, Role.DEFLECTION)
 
 
-def of_structures(run: Run) -> Iterator[Metric]:
+def of_structures(run: StoredRun) -> Iterator[Metric]:
     """Yield deflection and energies of each structure.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     return of_each(run, structures(run), _of_structure)
 
 
-def _of_structure(run: Run, structure: str) -> Iterator[Metric]:
+def _of_structure(run: StoredRun, structure: str) -> Iterator[Metric]:
     deflection = column(run, structure, Role.DEFLECTION)
     if deflection is not None:
         yield Metric(names.DEFLECTION, extreme(run, deflection)[0], "m")
@@ -172,7 +167,7 @@ def _of_structure(run: Run, structure: str) -> Iterator[Metric]:
         yield Metric(name, energy, "J")
 
 
-def _structure_energies(run: Run, structure: str) -> Iterator[tuple[str, float]]:
+def _structure_energies(run: StoredRun, structure: str) -> Iterator[tuple[str, float]]:
     """Yield the largest energies (J) that the impact has put in, by the springs and by the strain.
 
     That of the springs counts beyond the start, under dead load.
@@ -191,12 +186,12 @@ _SHARES = {
 }
 
 
-def of_system(run: Run) -> Iterator[Metric]:
+def of_system(run: StoredRun) -> Iterator[Metric]:
     """Yield impact energy, residual of the balance, and the shares of the impact energy.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     impact, residual = impact_energy(run), system_residual(run)
@@ -211,12 +206,12 @@ def of_system(run: Run) -> Iterator[Metric]:
     yield from of_each(run, structures(run), partial(_structure_shares, impact))
 
 
-def _structure_shares(impact: float, run: Run, structure: str) -> Iterator[Metric]:
+def _structure_shares(impact: float, run: StoredRun, structure: str) -> Iterator[Metric]:
     for name, energy in _structure_energies(run, structure):
         yield Metric(_SHARES[name], energy / impact)
 
 
-def largest(values: Values) -> float:
+def largest(values: Samples) -> float:
     """Return the value that is farthest from zero.
 
     Parameters

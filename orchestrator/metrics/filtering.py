@@ -1,9 +1,8 @@
 """Forces as slower instruments show them: without spikes, and through a load cell."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
+from .values import Samples
 
 _ORDER = 4
 """Order of the low-pass filter; applied forwards and backwards."""
@@ -13,7 +12,7 @@ LOAD_CELL_ROWS = 5.0
 """Rows for each period of a load cell's cut-off that are needed at least."""
 
 
-def low_pass(time: Values, values: Values, cut_off: float) -> Values | None:
+def low_pass(time: Samples, values: Samples, cut_off: float) -> Samples | None:
     """Return values without what is faster than a cut-off.
 
     A Butterworth low-pass filter run forwards and backwards, so that nothing is delayed: it divides
@@ -50,7 +49,7 @@ def low_pass(time: Values, values: Values, cut_off: float) -> Values | None:
     return np.interp(time, even, filtered)
 
 
-def load_cell(time: Values, force: Values, cut_off: float) -> Values:
+def load_cell(time: Samples, force: Samples, cut_off: float) -> Samples:
     """Return the reading of a load cell.
 
     A Butterworth low-pass of second order (scipy.signal), the response of an oscillator with the
@@ -84,5 +83,5 @@ def load_cell(time: Values, force: Values, cut_off: float) -> Values:
             f"{rate / LOAD_CELL_ROWS:.4g} Hz, not {cut_off:g}"
         )
     sections = butter(_LOAD_CELL_ORDER, cut_off, fs=rate, output="sos")
-    shown: Values = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]
+    shown: Samples = sosfilt(sections, force, zi=force[0] * sosfilt_zi(sections))[0]
     return shown

@@ -7,19 +7,19 @@ a metric whose variable is missing is left out.
 from collections.abc import Iterator
 
 from ..core.results.metric import Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from . import names
 from .cushion import of_cushions
 from .energy import largest, machine_work, of_structures, of_system, system_residual
 from .reported import reported
 
 
-def headlines(run: Run) -> list[Metric]:
+def headlines(run: StoredRun) -> list[Metric]:
     """Return every headline metric that the results give.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -32,12 +32,12 @@ def headlines(run: Run) -> list[Metric]:
     return [*cushions, *machine, *of_structures(run), *declared, *of_system(run)]
 
 
-def headline(run: Run, name: str) -> float | None:
+def headline(run: StoredRun, name: str) -> float | None:
     """Return the value of a headline metric; None if the results do not give it.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     name : str
         Name in words.
@@ -45,7 +45,7 @@ def headline(run: Run, name: str) -> float | None:
     return next((float(m.value) for m in headlines(run) if m.name == name), None)
 
 
-def _of_machine(run: Run) -> Iterator[Metric]:
+def _of_machine(run: StoredRun) -> Iterator[Metric]:
     """Yield the work of the machine on a driven body, and the residual as a share of it."""
     work = machine_work(run)
     if work is None:

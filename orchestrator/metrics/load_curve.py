@@ -4,24 +4,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockshed.components.common.units import cm, mm
+
+from .values import Samples
 
 DEPTH = 4 * cm
 """Penetration (m) at which the load is read: Sonoda et al. 1993, sec. 2 (2) and fig. 13."""
 WINDOW = 0.5 * mm
 """A load is the mean over so much penetration (m): discs that slip let it jump."""
 
-Values = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class LoadCurve:
     """Load (N) on the rock, upwards, at rising penetrations (m)."""
 
-    depth: Values
-    load: Values
+    depth: Samples
+    load: Samples
 
     def reaches(self, depth: float) -> bool:
         """Whether the load at a penetration (m) can be told."""
@@ -29,7 +28,7 @@ class LoadCurve:
             self.depth[0] <= depth - 0.5 * WINDOW and depth + 0.5 * WINDOW <= self.depth[-1]
         )
 
-    def at(self, depth: Values | float) -> Values:
+    def at(self, depth: Samples | float) -> Samples:
         """Return the load at penetrations, as the mean over the :data:`WINDOW` around them.
 
         Parameters
@@ -72,7 +71,7 @@ class LoadCurve:
         )
 
 
-def load_curve(series: Mapping[str, Values], sand: str) -> LoadCurve | None:
+def load_curve(series: Mapping[str, Samples], sand: str) -> LoadCurve | None:
     """Return the load curve of a sand cushion from the columns of a run.
 
     Parameters
@@ -91,7 +90,7 @@ def load_curve(series: Mapping[str, Values], sand: str) -> LoadCurve | None:
     return None if depth is None or load is None else driven_curve(depth, load)
 
 
-def driven_curve(depth: Values, load: Values) -> LoadCurve:
+def driven_curve(depth: Samples, load: Samples) -> LoadCurve:
     """Return the load curve of a driven body from the rows in which it sinks.
 
     Parameters

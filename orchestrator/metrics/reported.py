@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.results.metric import Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from .names import of_component
 from .roles import elements
 from .values import extreme
@@ -33,12 +33,12 @@ class ReportedMetric:
     decimals: int
 
 
-def reported(run: Run) -> Iterator[ReportedMetric]:
+def reported(run: StoredRun) -> Iterator[ReportedMetric]:
     """Yield the figures that the components declare, as far as the results have the outputs.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     units = {column.name.partition("[")[0]: column.unit for column in run.columns}
@@ -53,7 +53,7 @@ def reported(run: Run) -> Iterator[ReportedMetric]:
                     yield ReportedMetric(metric, figure["unit"], figure["decimals"])
 
 
-def _value(run: Run, name: str, statistic: str) -> float | None:
+def _value(run: StoredRun, name: str, statistic: str) -> float | None:
     """Return a statistic of an output; of an array, the largest of its elements'."""
     if name in run.series and statistic == "largest":
         return extreme(run, name)[0]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockshed.components.common.roles import Role
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,12 @@ class Member:
         return f"{self.component}.{self.variable}"
 
 
-def members(run: Run, role: Role) -> list[Member]:
+def members(run: StoredRun, role: Role) -> list[Member]:
     """Return the variables that are declared with a role, or with a kind of it.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     role : Role
         The role that is asked for.
@@ -66,12 +66,12 @@ def members(run: Run, role: Role) -> list[Member]:
     ]
 
 
-def recorded(run: Run, role: Role) -> list[Member]:
+def recorded(run: StoredRun, role: Role) -> list[Member]:
     """Return the scalar outputs with a role that the results have.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     role : Role
         The role that is asked for.
@@ -79,12 +79,12 @@ def recorded(run: Run, role: Role) -> list[Member]:
     return [member for member in members(run, role) if member.column in run.series]
 
 
-def column(run: Run, component: str, role: Role) -> str | None:
+def column(run: StoredRun, component: str, role: Role) -> str | None:
     """Return the first recorded output of a component with a role; None if there is none.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.
@@ -94,12 +94,12 @@ def column(run: Run, component: str, role: Role) -> str | None:
     return next((m.column for m in recorded(run, role) if m.component == component), None)
 
 
-def owners(run: Run, role: Role) -> list[str]:
+def owners(run: StoredRun, role: Role) -> list[str]:
     """Return the components that declare a variable with a role, each once.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     role : Role
         The role that is asked for.
@@ -107,12 +107,12 @@ def owners(run: Run, role: Role) -> list[str]:
     return list(dict.fromkeys(member.component for member in members(run, role)))
 
 
-def elements(run: Run, name: str) -> list[NDArray[np.float64]]:
+def elements(run: StoredRun, name: str) -> list[NDArray[np.float64]]:
     """Return the series of an array's elements, as far as they were recorded.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     name : str
         ``component.variable`` of the array, without the number of an element.
@@ -125,12 +125,12 @@ def elements(run: Run, name: str) -> list[NDArray[np.float64]]:
     return [values for key, values in run.series.items() if key.startswith(f"{name}[")]
 
 
-def parameters(run: Run, component: str) -> dict[str, Any]:
+def parameters(run: StoredRun, component: str) -> dict[str, Any]:
     """Return the values of a component's parameters by name.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.
@@ -139,12 +139,12 @@ def parameters(run: Run, component: str) -> dict[str, Any]:
     return {name: entry["value"] for name, entry in told.items()}
 
 
-def parameter(run: Run, component: str, role: Role) -> Any:
+def parameter(run: StoredRun, component: str, role: Role) -> Any:
     """Return the value of a component's parameter with a role; None if it has none.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     component : str
         Name of the component in the system.

@@ -3,17 +3,23 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..core.results.metric import Metric
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from .names import of_component
 
+Samples = NDArray[np.float64]
+"""Values of a variable over time, shape (rows,)."""
 
-def extreme(run: Run, column: str) -> tuple[float, float]:
+
+def extreme(run: StoredRun, column: str) -> tuple[float, float]:
     """Return the largest value of an output and its time.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     column : str
         ``component.output``.
@@ -32,12 +38,12 @@ def extreme(run: Run, column: str) -> tuple[float, float]:
     return float(run.series[column][at]), float(run.series["time"][at])
 
 
-def integral(run: Run, column: str) -> float:
+def integral(run: StoredRun, column: str) -> float:
     """Return the integral of an output over the time.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     column : str
         ``component.output``.
@@ -56,13 +62,13 @@ def integral(run: Run, column: str) -> float:
 
 
 def of_each(
-    run: Run, components: Sequence[str], measure: Callable[[Run, str], Iterable[Metric]]
+    run: StoredRun, components: Sequence[str], measure: Callable[[StoredRun, str], Iterable[Metric]]
 ) -> Iterator[Metric]:
     """Yield the metrics of each component; among several, each under the name of its component.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     components : sequence of str
         Names of the components in the system.

@@ -9,14 +9,14 @@ from tempfile import TemporaryFile
 from rockshed.components.common.roles import Role
 
 from ..core.errors import InputRefused, refusing_unwritable
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..metrics.comparison import known_of
 from ..metrics.contents import ForeignStateError, reader_of
 from ..metrics.cushion import cushions
 from ..metrics.energy import driven
 from ..metrics.roles import members
 from .declared import declared_pictures
-from .references import References
+from .references import KnownMetrics
 
 Tell = Callable[[str], None]
 """Shows a line to the user."""
@@ -31,7 +31,7 @@ class _Picture:
     columns: Sequence[str]
     states_of: str | None = None
 
-    def missing(self, run: Run) -> list[str]:
+    def missing(self, run: StoredRun) -> list[str]:
         """Return the columns and states that the results do not have."""
         absent = [column for column in self.columns if column not in run.series]
         if self.states_of and next(run.states(self.states_of), None) is None:
@@ -40,7 +40,7 @@ class _Picture:
 
 
 def draw_all(
-    run: Run, folder: Path, note: Tell = lambda text: None, warn: Tell = lambda text: None
+    run: StoredRun, folder: Path, note: Tell = lambda text: None, warn: Tell = lambda text: None
 ) -> list[Path]:
     """Draw every picture that the results of a run allow.
 
@@ -48,7 +48,7 @@ def draw_all(
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     folder : Path
         Folder of the PNG files.
@@ -93,7 +93,7 @@ def draw_all(
     return drawn
 
 
-def _pictures(run: Run) -> list[_Picture]:
+def _pictures(run: StoredRun) -> list[_Picture]:
     """Return the pictures of the components that take part."""
     from .energy import energy  # matplotlib is imported when something is drawn
 
@@ -113,7 +113,7 @@ def _pictures(run: Run) -> list[_Picture]:
     return of_cushions + of_components + balance
 
 
-def _of_cushion(run: Run, cushion: str, known: References) -> list[_Picture]:
+def _of_cushion(run: StoredRun, cushion: str, known: KnownMetrics) -> list[_Picture]:
     """Return the pictures of a cushion; those of its grains only where they can be read."""
     from . import cushion as curves
     from . import sand
@@ -138,7 +138,7 @@ def _of_cushion(run: Run, cushion: str, known: References) -> list[_Picture]:
     ]
 
 
-def _declared(run: Run, component: str, *roles: Role) -> list[str]:
+def _declared(run: StoredRun, component: str, *roles: Role) -> list[str]:
     """Return the columns of a component's outputs with these roles, recorded or not."""
     return [
         member.column

@@ -7,14 +7,14 @@ from matplotlib.axes import Axes
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import cm, kgf, kN, ms
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..metrics import names
 from ..metrics.cushion import base_height, both_forces, curve_of, cut_off, settled
 from ..metrics.load_curve import DEPTH
 from ..metrics.roles import column
 from ..metrics.values import extreme
 from ..references import Known
-from .references import References, draw_references
+from .references import KnownMetrics, draw_references
 from .style import (
     GREY,
     INK,
@@ -28,12 +28,12 @@ from .style import (
 )
 
 
-def forces(run: Run, cushion: str, known: References, file: Path) -> None:
+def forces(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
     """Draw transmitted force and force on the rock, with the measured peak.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -52,12 +52,12 @@ def forces(run: Run, cushion: str, known: References, file: Path) -> None:
         axes.set_ylim(top=max([axes.get_ylim()[1], *highest]))
 
 
-def force_axes(run: Run, cushion: str, known: References, axes: Axes) -> None:
+def force_axes(run: StoredRun, cushion: str, known: KnownMetrics, axes: Axes) -> None:
     """Draw both forces in kN, with kgf at the right.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -81,7 +81,7 @@ def force_axes(run: Run, cushion: str, known: References, axes: Axes) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
-def _settled_forces(run: Run, cushion: str, axes: Axes) -> None:
+def _settled_forces(run: StoredRun, cushion: str, axes: Axes) -> None:
     """Draw both forces without their spikes."""
     fastest = cut_off(run, cushion)
     for colour, force in zip((TRANSMITTED, ROCK), both_forces(run, cushion) or ()):
@@ -103,12 +103,12 @@ def _settled_forces(run: Run, cushion: str, axes: Axes) -> None:
     )
 
 
-def penetration(run: Run, cushion: str, known: References, file: Path) -> None:
+def penetration(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
     """Draw the depth of the rock's lowest point under the surface, downwards, and the base.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -144,12 +144,12 @@ def penetration(run: Run, cushion: str, known: References, file: Path) -> None:
         axes.invert_yaxis()
 
 
-def load(run: Run, cushion: str, known: References, file: Path) -> None:
+def load(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
     """Draw the load on a driven rock over its penetration, with the secant at 4 cm and the paper's.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.

@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from rockshed.components.common.units import SCREEN_UNITS, ms
 
 from ..core.results.metric import identifier
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..metrics.energy import load_at_rest
 from ..metrics.names import without_component
-from .references import References, draw_references
+from .references import KnownMetrics, draw_references
 from .style import (
     BEAM,
     GREY,
@@ -66,12 +66,12 @@ class DeclaredPicture:
             for component in panel.components
         ]
 
-    def draw(self, run: Run, known: References, file: Path) -> None:
+    def draw(self, run: StoredRun, known: KnownMetrics, file: Path) -> None:
         """Draw the picture.
 
         Parameters
         ----------
-        run : Run
+        run : StoredRun
             The run.
         known : mapping of str to Known
             References by the name of the metric.
@@ -89,12 +89,12 @@ class DeclaredPicture:
             over_time(rows[-1], time)
 
 
-def declared_pictures(run: Run) -> list[DeclaredPicture]:
+def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
     """Return the pictures that the components of a run declare.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
 
     Returns
@@ -116,9 +116,10 @@ def declared_pictures(run: Run) -> list[DeclaredPicture]:
     ]
 
 
-def _draw_panel(run: Run, panel: _Panel, axes: Axes, several: bool) -> None:
+def _draw_panel(run: StoredRun, panel: _Panel, axes: Axes, several: bool) -> None:
     """Draw the curves of a panel."""
-    told, colours = panel.told, cycle(_COLOURS)
+    told = panel.told
+    colours = cycle(_COLOURS)
     unit = told["unit"]
     for component in panel.components:
         colour = ""
@@ -141,7 +142,7 @@ def _draw_panel(run: Run, panel: _Panel, axes: Axes, several: bool) -> None:
 
 
 def _draw_curve(
-    run: Run, panel: _Panel, component: str, curve: Mapping[str, Any], axes: Axes, colour: str
+    run: StoredRun, panel: _Panel, component: str, curve: Mapping[str, Any], axes: Axes, colour: str
 ) -> None:
     """Draw a curve of a component, if its output was recorded."""
     name = f"{component}.{curve['variable']}"
@@ -162,7 +163,7 @@ def _draw_curve(
     )
 
 
-def _draw_known(panel: _Panel, known: References, axes: Axes) -> None:
+def _draw_known(panel: _Panel, known: KnownMetrics, axes: Axes) -> None:
     """Draw the references of the metric that a panel names."""
     for name, references in known.items():
         if identifier(without_component(name)) == panel.told["references"]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import ms
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..metrics.energy import carried_work, impact_energy, machine_work, system_residual
 from ..metrics.roles import Member, recorded
 from .style import GREY, INK, WIDTH, figure, over_time
@@ -65,12 +65,12 @@ class Layer:
     values: NDArray[np.float64]
 
 
-def energy(run: Run, file: Path) -> None:
+def energy(run: StoredRun, file: Path) -> None:
     """Draw the layers of energy, and the error of the balance.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     file : Path
         File of the picture.
@@ -82,9 +82,10 @@ def energy(run: Run, file: Path) -> None:
         lower.set_xlabel("time (ms)")
 
 
-def _stack(run: Run, axes: Axes) -> None:
+def _stack(run: StoredRun, axes: Axes) -> None:
     """Draw the layers, and the energy that there should be."""
-    time, shown = run.series["time"] / ms, list(layers(run))
+    time = run.series["time"] / ms
+    shown = list(layers(run))
     if shown:  # no part may have any energy
         axes.stackplot(
             time,
@@ -114,27 +115,29 @@ def _stack(run: Run, axes: Axes) -> None:
     axes.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
-def _error(run: Run, axes: Axes) -> None:
+def _error(run: StoredRun, axes: Axes) -> None:
     """Draw the error of the balance.
 
     It is a share of the impact energy, or of what a machine has put in.
     """
     residual, machine = system_residual(run), machine_work(run)
-    whole, name = impact_energy(run), "impact\nenergy"
+    whole = impact_energy(run)
+    name = "impact\nenergy"
     if machine is not None:
-        whole, name = float(abs(machine[-1])), "work of\nthe machine"
+        whole = float(abs(machine[-1]))
+        name = "work of\nthe machine"
     if residual is not None and whole:
         axes.plot(run.series["time"] / ms, 100.0 * residual / whole, color=INK, linewidth=1.0)
         axes.set_ylabel(f"error of the balance\n(% of the {name})", fontsize=8)
     axes.axhline(0.0, color=GREY, linewidth=0.7)
 
 
-def layers(run: Run) -> Iterator[Layer]:
+def layers(run: StoredRun) -> Iterator[Layer]:
     """Yield the layers of the balance; energies of one label are one layer.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     """
     made: list[Layer] = []
@@ -149,7 +152,7 @@ def layers(run: Run) -> Iterator[Layer]:
     yield from (layer for layer in made if layer.values.max() > _SHOWN * total)
 
 
-def _labels(run: Run, family: _Family) -> list[str]:
+def _labels(run: StoredRun, family: _Family) -> list[str]:
     return list(dict.fromkeys(_label(member) for member in recorded(run, family.role)))
 
 
@@ -159,7 +162,7 @@ def _label(member: Member) -> str:
     return member.label or words.format(component=member.component)
 
 
-def _sum(run: Run, label: str) -> NDArray[np.float64]:
+def _sum(run: StoredRun, label: str) -> NDArray[np.float64]:
     """Return the sum (J) of all energies with a label."""
     unique = {m.column: m for family in _FAMILIES for m in recorded(run, family.role)}
     parts = [

@@ -9,7 +9,7 @@ from rockshed.components.common.units import SCREEN_UNITS
 from ..references import Known
 from .style import reference_line
 
-References = Mapping[str, Known]
+KnownMetrics = Mapping[str, Known]
 """References by the name of the metric."""
 
 _FOUND_BY = {

@@ -17,14 +17,14 @@ from matplotlib.patches import Rectangle
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import cm, kN, ms
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..metrics.caption import caption
 from ..metrics.contents import decoded
 from ..metrics.energy import structures
 from ..metrics.roles import column, elements, members
 from ..metrics.values import extreme
 from .cushion import force_axes
-from .references import References
+from .references import KnownMetrics
 from .style import BEAM, GREY, INK, captioned
 
 FRAMES = 6
@@ -62,12 +62,12 @@ class Frame:
     state: Any
 
 
-def frames(run: Run, cushion: str, wanted: Sequence[float]) -> list[Frame]:
+def frames(run: StoredRun, cushion: str, wanted: Sequence[float]) -> list[Frame]:
     """Return the recorded states nearest to the times that are wanted, each once.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -80,7 +80,7 @@ def frames(run: Run, cushion: str, wanted: Sequence[float]) -> list[Frame]:
     return [Frame(float(times[i]), decoded(run, cushion, recorded[i][1])) for i in chosen]
 
 
-def _evenly(run: Run, cushion: str) -> list[float]:
+def _evenly(run: StoredRun, cushion: str) -> list[float]:
     """Return times (s) evenly over that part of the run in which something happens."""
     force = run.series[str(column(run, cushion, Role.TRANSMITTED))]
     time = run.series["time"]
@@ -88,7 +88,7 @@ def _evenly(run: Run, cushion: str) -> list[float]:
     return list(np.linspace(time[0], end, FRAMES))
 
 
-def _moments(run: Run, cushion: str) -> list[float]:
+def _moments(run: StoredRun, cushion: str) -> list[float]:
     """Return the times (s) of half the peak force, of the peak, and of the greatest depth."""
     transmitted = str(column(run, cushion, Role.TRANSMITTED))
     force = run.series[transmitted]
@@ -97,12 +97,12 @@ def _moments(run: Run, cushion: str) -> list[float]:
     return [half, extreme(run, transmitted)[1], deepest[1]]
 
 
-def snapshots(run: Run, cushion: str, file: Path) -> None:
+def snapshots(run: StoredRun, cushion: str, file: Path) -> None:
     """Draw six instants side by side, with one scale of colours.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -121,12 +121,12 @@ def snapshots(run: Run, cushion: str, file: Path) -> None:
         draw(run, cushion, shown, made, panels[: len(shown)])
 
 
-def overview(run: Run, cushion: str, known: References, file: Path) -> None:
+def overview(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
     """Draw three instants and the forces over time in one wide picture.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -154,13 +154,13 @@ def _shape(shown: Sequence[Frame]) -> float:
 
 
 def draw(
-    run: Run, cushion: str, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]
+    run: StoredRun, cushion: str, shown: Sequence[Frame], made: Figure, panels: Sequence[Axes]
 ) -> None:
     """Draw one frame in each panel, with one scale of the forces and its colour bar.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     cushion : str
         Name of the component in the system.
@@ -193,19 +193,19 @@ def draw(
 
 @dataclass(frozen=True)
 class _View:
-    """What all panels have in common.
+    """Geometry and scales that all panels have in common.
 
-    Run, cushion, structure under it, window (m), enlargement of deflections.
+    StoredRun, cushion, structure under it, window (m), enlargement of deflections.
     """
 
-    run: Run
+    run: StoredRun
     cushion: str
     structure: str | None
     window: tuple[float, float, float, float]
     deflection_scale: float
 
 
-def _deflection_scale(run: Run, structure: str | None, shown: Sequence[Frame]) -> float:
+def _deflection_scale(run: StoredRun, structure: str | None, shown: Sequence[Frame]) -> float:
     """Return how many times too large the deflections of the structure are drawn."""
     deflection = column(run, structure, Role.DEFLECTION) if structure else None
     if deflection is None:

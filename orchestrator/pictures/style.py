@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..core.results.reading import Run
+from ..core.results.reading import StoredRun
 from ..files import whole_file
 from ..metrics.caption import caption
 
@@ -54,12 +54,14 @@ _LOOK = {
 }
 
 
-def figure(run: Run, file: Path, width: float, height: float) -> AbstractContextManager[Figure]:
+def figure(
+    run: StoredRun, file: Path, width: float, height: float
+) -> AbstractContextManager[Figure]:
     """Make a figure with the run's caption below, written to a file whole or not at all.
 
     Parameters
     ----------
-    run : Run
+    run : StoredRun
         The run.
     file : Path
         File of the picture.

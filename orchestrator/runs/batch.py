@@ -12,24 +12,23 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from multiprocessing import get_context, parent_process
 from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 from .building import Note, silent
 from .job import prepare
 from .kept import KeptRuns
+from .outcome import Outcome
 from .request import Request
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
     from ..core.errors import RunFailed
-    from ..core.results.reading import Run
+    from ..core.results.reading import StoredRun
 
 COMPLETE = "complete"
 FAILED = "failed"
@@ -66,8 +65,8 @@ _MODEL = {
         "packing",
         "disc.spread",
         "solid_fraction",
-        "unit_weight",
-        "unit_weight_of",
+        "density",
+        "density_of",
         "lattice_shift",
         "seed",
         "kinematics",
@@ -124,43 +123,6 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """Result of a task. A run that failed has the series until then, and no metrics.
-
-    Attributes
-    ----------
-    key : str
-        Key of the task.
-    status : str
-        ``complete``, ``failed`` or ``interrupted``.
-    error : str
-        Reason of a failure.
-    failed_at : float, optional
-        Time (s) of a failure in the run.
-    metrics : mapping of str to float
-        Values (SI) by the names of the metrics.
-    series : mapping of str to array, shape (rows,)
-        Columns of the results by name.
-    options : mapping
-        Parameters of sand and beam that make up the model.
-    fmus : mapping of str to str
-        SHA-256 by component.
-    wall_time : float
-        Seconds.
-    """
-
-    key: str
-    status: str
-    error: str = ""
-    failed_at: float | None = None
-    metrics: Mapping[str, float] = field(default_factory=dict)
-    series: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
-    options: Mapping[str, Any] = field(default_factory=dict)
-    fmus: Mapping[str, str] = field(default_factory=dict)
-    wall_time: float = 0.0
-
-
-@dataclass(frozen=True)
 class _Order:
     """Run as it is sent to a process.
 
@@ -175,7 +137,7 @@ class _Order:
     """
 
     key: str
-    system: System
+    system: SystemSpec
     allow_unstable: bool
 
 
@@ -375,7 +337,7 @@ def _run(order: _Order, began: float) -> Outcome:
         return _outcome(order.key, run, failure, began)
 
 
-def _outcome(key: str, run: "Run", failure: "RunFailed | None", began: float) -> Outcome:
+def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: float) -> Outcome:
     components = run.provenance["components"]
     return Outcome(
         key,
@@ -390,7 +352,7 @@ def _outcome(key: str, run: "Run", failure: "RunFailed | None", began: float) ->
     )
 
 
-def _metrics(run: "Run") -> dict[str, float]:
+def _metrics(run: "StoredRun") -> dict[str, float]:
     """Return the numbers of a run by the names of the metrics."""
     from ..metrics.headlines import headlines
 

@@ -8,17 +8,17 @@ import tomli_w
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.fmu.slave import Source
-from ..core.system.system import Connection, System
+from ..core.system.system import Connection, SystemSpec
 
 SYSTEM = "system.toml"
 
 
-def system_text(system: System) -> str:
+def system_text(system: SystemSpec) -> str:
     """Return a system as TOML; keys that have their defaults are left out.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         The system.
 
     Returns
@@ -40,13 +40,13 @@ def _connection(connection: Connection) -> str:
 
 
 def export_system(
-    system: System, folder: Path, sources: Mapping[str, Source] | None = None
+    system: SystemSpec, folder: Path, sources: Mapping[str, Source] | None = None
 ) -> Path:
     """Write ``system.toml`` and the FMUs of a system into a folder.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         The system.
     folder : Path
         A new or empty folder.

@@ -15,7 +15,7 @@ from ..core.fmu.slave import REAL
 from ..core.run import sources_of
 from ..core.system.plan import Plan
 from ..core.system.planning import make_plan
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 from ..core.system.values import written
 from ..tables import Table
 from .job import Job
@@ -227,7 +227,7 @@ def _short(value: object) -> str:
         return str(value)
 
 
-def _shared(system: System) -> Table:
+def _shared(system: SystemSpec) -> Table:
     table = Table(("shared value", "", "set in"))
     for name, entry in system.shared.items():
         table.add(name, _short(entry.value), ", ".join(entry.targets))

@@ -12,12 +12,12 @@ from typing import Any
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import ms
 
-from ..cases.registry import Case, Sizes, case, differences, model_changes, references
+from ..cases.registry import Case, ComponentSizes, case, differences, model_changes, references
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.renaming import with_present_names
-from ..core.system.system import System, load_system, system_from, with_values
+from ..core.system.system import SystemSpec, load_system, system_from, with_values
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import Note, case_fmus, case_sizes, own_sizes, silent
 from .request import AUTO, Request
@@ -33,7 +33,7 @@ class Job:
     ----------
     name : str
         Name under which the results go.
-    system : System
+    system : SystemSpec
         The system, values and options of the request in it.
     sources : mapping of str to Source
         Components that are made without an FMU file.
@@ -42,7 +42,7 @@ class Job:
     """
 
     name: str
-    system: System
+    system: SystemSpec
     sources: Mapping[str, Source]
     facts: Mapping[str, Any]
 
@@ -210,13 +210,13 @@ def _runtime_problems(request: Request) -> list[Problem]:
     return []
 
 
-def _with_model(system: System, model: Changes) -> System:
+def _with_model(system: SystemSpec, model: Changes) -> SystemSpec:
     return system_from(
         {**with_values(system, model.values).model_dump(), **model.options}, system.name
     )
 
 
-def _with_derived(system: System, request: Request, facts: Mapping[str, Any]) -> System:
+def _with_derived(system: SystemSpec, request: Request, facts: Mapping[str, Any]) -> SystemSpec:
     """Return the system with the values that follow from others where they are not given."""
     derived = case(facts["case"]).derived(system, facts["sizes"])
     return with_values(
@@ -224,13 +224,13 @@ def _with_derived(system: System, request: Request, facts: Mapping[str, Any]) ->
     )
 
 
-def _in_process(chosen: Case, sizes: Sizes) -> dict[str, Source]:
+def _in_process(chosen: Case, sizes: ComponentSizes) -> dict[str, Source]:
     from rockshed.fmus.in_process import InProcess  # imports pythonfmu, which FMU files do not need
 
     return {name: InProcess(component(model), sizes[name]) for name, model in chosen.models.items()}
 
 
-def _changed(system: System, request: Request, problems: list[Problem]) -> System:
+def _changed(system: SystemSpec, request: Request, problems: list[Problem]) -> SystemSpec:
     """Return the system with other values and keys, as far as they have the right form."""
     try:
         system = with_values(system, request.values)
@@ -246,7 +246,7 @@ def _changed(system: System, request: Request, problems: list[Problem]) -> Syste
         return system
 
 
-def _load_cell_problems(request: Request, system: System) -> list[Problem]:
+def _load_cell_problems(request: Request, system: SystemSpec) -> list[Problem]:
     """Refuse a cut-off that is no frequency, or faster than the rows of the results can show."""
     if request.load_cell is None:
         return []
@@ -268,12 +268,12 @@ def _load_cell_problems(request: Request, system: System) -> list[Problem]:
     ]
 
 
-def plan_problems(system: System, sources: Mapping[str, Source]) -> list[Problem]:
+def plan_problems(system: SystemSpec, sources: Mapping[str, Source]) -> list[Problem]:
     """Return what the FMUs have against a system.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Components, connections, values.
     sources : mapping of str to Source
         Components that are made without an FMU file.

@@ -13,14 +13,12 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ..core.system.system import System
+from ..core.system.system import SystemSpec
 from ..files import whole_file
 from ..versions import versions
-
-if TYPE_CHECKING:
-    from .batch import Outcome
+from .outcome import Outcome
 
 _PROGRAM = ("core", "metrics", "runs")
 """Rooms of the package from which the outcome of a run follows, besides the FMUs."""
@@ -39,7 +37,7 @@ class KeptRuns:
 
     folder: Path
 
-    def find(self, key: str, system: System, allow_unstable: bool) -> "Outcome | None":
+    def find(self, key: str, system: SystemSpec, allow_unstable: bool) -> Outcome | None:
         """Return the outcome of a run that has ended before.
 
         Parameters
@@ -63,7 +61,7 @@ class KeptRuns:
             return _read(file, key)
         return None
 
-    def keep(self, system: System, allow_unstable: bool, outcome: "Outcome") -> None:
+    def keep(self, system: SystemSpec, allow_unstable: bool, outcome: Outcome) -> None:
         """Keep the outcome of a run of this system."""
         file = self._file(system, allow_unstable)
         if file is not None:
@@ -78,7 +76,7 @@ class KeptRuns:
         with suppress(OSError):
             self.folder.rmdir()
 
-    def _file(self, system: System, allow_unstable: bool) -> Path | None:
+    def _file(self, system: SystemSpec, allow_unstable: bool) -> Path | None:
         """Return the file of a run; None if its components are not FMU files."""
         fmus = {name: spec.fmu for name, spec in system.components.items()}
         if not all(Path(fmu).is_file() for fmu in fmus.values()):
@@ -108,7 +106,7 @@ def _program() -> str:
     return digest.hexdigest()
 
 
-def _write(file: Path, outcome: "Outcome") -> None:
+def _write(file: Path, outcome: Outcome) -> None:
     import numpy as np
 
     facts = {name: value for name, value in asdict(outcome).items() if name != "series"}
@@ -121,10 +119,8 @@ def _write(file: Path, outcome: "Outcome") -> None:
         np.savez_compressed(stream, facts=words, **arrays)
 
 
-def _read(file: Path, key: str) -> "Outcome":
+def _read(file: Path, key: str) -> Outcome:
     import numpy as np
-
-    from .batch import Outcome
 
     with np.load(file, allow_pickle=False) as stored:
         facts: Mapping[str, Any] = json.loads(stored["facts"].tobytes())

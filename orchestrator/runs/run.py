@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Run(reading.Run):
+class Run(reading.StoredRun):
     """Results of a run.
 
     ``run["rock.position.x"]`` is a series with ``unit``, ``description`` and ``time``;

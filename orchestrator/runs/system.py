@@ -10,8 +10,14 @@ from rockshed.components.common.component import Component
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
-from ..core.system.system import ComponentSpec, PowerBond, Value, system_from, with_values
-from ..core.system.system import System as SystemSpec
+from ..core.system.system import (
+    ComponentSpec,
+    PowerBond,
+    SystemSpec,
+    Value,
+    system_from,
+    with_values,
+)
 from ..tables import Table
 from .building import Note, silent
 from .export import export_system

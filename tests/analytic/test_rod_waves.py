@@ -260,7 +260,7 @@ def test_a_wave_port_below_the_toe_converges_with_second_order(exchange):
     errors = []
     for steps in (4, 8, 16):
         made, places = on_a_spring(steps, "waves", exchange=exchange)
-        late = round(made["lag"] / made["time_step"])
+        late = round(made["delay"] / made["time_step"])
         at = np.arange(1, len(places) + 1) * steps - 1 - late
         errors.append(np.abs(places[at >= 0] - exact[at[at >= 0]]).max() / exact.max())
     assert errors[2] < 0.02

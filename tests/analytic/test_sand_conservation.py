@@ -73,7 +73,8 @@ def test_momentum_of_free_discs(count, seed, parameters):
     rolling=st.sampled_from([0.0, 0.3]),
 )
 def test_angular_momentum_of_smooth_discs(count, seed, damping, rolling):
-    """Central forces and opposite rolling moments keep it to rounding, semi-implicit Euler included."""
+    """Central forces and opposite rolling moments keep it to rounding, semi-implicit Euler
+    included."""
     discs = cloud(
         count,
         seed,
@@ -90,10 +91,12 @@ def test_angular_momentum_of_smooth_discs(count, seed, damping, rolling):
 
 
 def test_angular_momentum_of_rough_discs_errs_by_friction_times_overlap():
-    """Friction acts on each disc at its own radius, though the centres are nearer by the overlap: a known trait of the model.
+    """Friction acts on each disc at its own radius, though the centres are nearer by the overlap: a
+    known trait of the model.
 
-    An elastic impact with speed v that slides throughout has the overlap v/w sin(wt), w^2 = 2k/m, and the friction mu k overlap:
-    the angular momentum gained is the integral of their product, mu k v^2 pi / (2 w^3).
+    An elastic impact with speed v that slides throughout has the overlap v/w sin(wt), w^2 = 2k/m,
+    and the friction mu k overlap: the angular momentum gained is the integral of their product, mu
+    k v^2 pi / (2 w^3).
     """
     mu, speed = 0.01, 0.5
     discs = discs_at(
@@ -110,7 +113,8 @@ def test_angular_momentum_of_rough_discs_errs_by_friction_times_overlap():
 
 
 def jostle(step, duration=4e-3, **changes):
-    """A heap of discs stirred to 0.1 m/s under gravity; largest energy error met on the way, in kinetic energies at the start."""
+    """A heap of discs stirred to 0.1 m/s under gravity; largest energy error met on the way, in
+    kinetic energies at the start."""
     parameters = {
         **SMALL_BOX,
         "packing": "hexagonal",
@@ -163,7 +167,8 @@ def test_work_of_a_beam_that_lifts_or_rubs_the_sand(base, rise, turn):
 
 @pytest.mark.parametrize("rotation", ["free", "locked"])
 def test_energy_balance_of_an_impact_halves_with_the_step(rotation):
-    """The rock strikes a small cushion: the sand's balance, and the work that either side counts at their interface."""
+    """The rock strikes a small cushion: the sand's balance, and the work that either side counts at
+    their interface."""
     residuals, gaps = [], []
     for step in (2e-5, 1e-5, 5e-6):
         sand = cushion(

@@ -13,7 +13,8 @@ MU = math.tan(math.radians(30.0))
 
 
 def resting_height(number=1):
-    """Height of a disc's centre that carries its own weight and that of number - 1 discs, in the literal model."""
+    """Height of a disc's centre that carries its own weight and that of number - 1 discs, in the
+    literal model."""
     disc = discs_at([(0.0, 1.0)], parameters=ON_FLOOR)
     return RADIUS - number * masses(disc)[0] * G / sand_stiffness(disc)
 
@@ -35,7 +36,8 @@ CARRIERS = {
     ("carrier", "ratio"), [("floor", 1.0), ("beam surface", 1.0), ("beam", 1.0), ("rock", 2 / 5)]
 )
 def test_a_disc_comes_to_rest_with_the_overlap_that_carries_it(carrier, ratio):
-    """Eq. (1) with dD = 2 r and R_ij0 = r + R: k_n = E_bar dL 2 r / (r + R); a plane counts as the disc's mirror image."""
+    """Eq. (1) with dD = 2 r and R_ij0 = r + R: k_n = E_bar dL 2 r / (r + R); a plane counts as the
+    disc's mirror image."""
     (x, y), _, parameters = CARRIERS[carrier]
     disc = discs_at([(x, y + RADIUS)], parameters={"gravity": G, "damping": 0.5, **parameters})
     run(disc, 0.1)
@@ -80,7 +82,8 @@ TURNING = ["rock", "beam", "beam surface"]
 
 
 def on_top(carrier, velocity, spin):
-    """A disc that falls on the top of rock or beam, which turns with ``spin``; the carrier's force to the right and torque."""
+    """A disc that falls on the top of rock or beam, which turns with ``spin``; the carrier's force
+    to the right and torque."""
     (x, y), radius, parameters = CARRIERS[carrier]
     disc = discs_at([(x, y + RADIUS)], [velocity], parameters=parameters)
     name = "rock" if carrier == "rock" else "beam"
@@ -116,8 +119,8 @@ def column(spin, rolling_resistance):
 
 
 def test_rolling_resistance_slows_at_its_limit():
-    """Two equal discs have the effective radius r/2: moment mu_r m g r/2 on I = m r^2 / 2 is the deceleration mu_r g / r. The floor
-    adds mu_r 2 m g r, four times as much, on the lower one."""
+    """Two equal discs have the effective radius r/2: moment mu_r m g r/2 on I = m r^2 / 2 is the
+    deceleration mu_r g / r. The floor adds mu_r 2 m g r, four times as much, on the lower one."""
     discs = column(30.0, 0.3)
     run(discs, 2e-3)
     before = rows(discs)[:, 4].copy()

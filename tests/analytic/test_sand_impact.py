@@ -46,7 +46,8 @@ def assert_first_order(errors):
 
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.2, 0.5, 0.65, 0.9])
 def test_restitution_of_two_equal_discs(damping):
-    """The reduced mass is m/2 and c_n = 2 h sqrt(m k_n), so the damping ratio of the pair is h sqrt(2)."""
+    """The reduced mass is m/2 and c_n = 2 h sqrt(m k_n), so the damping ratio of the pair is h
+    sqrt(2)."""
     errors = []
     for step in HALVINGS:
         pair = discs_at(
@@ -112,7 +113,8 @@ def test_duration_of_contact(damping):
     "boundary", [name for name in APPROACHES if name != "beam disc"]
 )  # whose flank turns the normal
 def test_oblique_impact_that_slides_throughout(boundary):
-    """Tangential impulse = mu * normal impulse; at the radius r it changes the spin by impulse * r / I = 2 impulse / (m r)."""
+    """Tangential impulse = mu * normal impulse; at the radius r it changes the spin by impulse * r
+    / I = 2 impulse / (m r)."""
     position, normal_velocity, parameters = APPROACHES[boundary]
     mu, speed = 0.1, 3.0
     towards = np.array(normal_velocity)

@@ -1,4 +1,5 @@
-"""Contacts that do not spring back all the way, capillary bridges, and rolling on a boundary, against closed forms."""
+"""Contacts that do not spring back all the way, capillary bridges, and rolling on a boundary,
+against closed forms."""
 
 import math
 
@@ -33,7 +34,8 @@ def test_restitution_of_contacts_that_yield_is_the_root_of_the_stiffness_ratio(r
 
 
 def test_reloading_goes_up_the_unloading_line_without_loss():
-    """Pressed together, let go half of the way and pressed again to the same depth: the second round costs nothing."""
+    """Pressed together, let go half of the way and pressed again to the same depth: the second
+    round costs nothing."""
     pair = discs_at(
         [(0.0, 0.0), (2 * RADIUS, 0.0)],
         parameters={"damping": 0.0, "unloading_ratio": 4.0, "internal_step": 1e-7},
@@ -66,7 +68,7 @@ def test_a_contact_that_was_open_begins_anew():
 
 def pull(sand):
     """Largest attraction between two discs (N): Rumpf with four contacts a disc."""
-    area = math.pi * 2 * RADIUS * sand["depth"]
+    area = math.pi * 2 * RADIUS * sand["thickness"]
     return (
         sand["cohesion"] * area / (4.0 * sand["solid_fraction"] * math.tan(sand["friction_angle"]))
     )
@@ -89,7 +91,8 @@ def test_no_pull_beyond_the_longest_bridge():
 
 @pytest.mark.parametrize(("share", "parts"), [(0.99, False), (1.01, True)])
 def test_work_of_separation(share, parts):
-    """Two discs at rest part when they have more than the energy of bridge and spring: F s / 2 + F^2 / (2 k)."""
+    """Two discs at rest part when they have more than the energy of bridge and spring: F s / 2 +
+    F^2 / (2 k)."""
     pair = discs_at(
         [(0.0, 0.0), (2 * RADIUS, 0.0)],
         parameters={"cohesion": COHESION, "damping": 0.0, "internal_step": 1e-7},
@@ -145,7 +148,7 @@ def test_energy_is_accounted_for(ratio, cohesion, rolling, seed):
 
 
 def test_a_disc_rolls_to_rest_on_the_floor():
-    """Rolling resistance on a plane: moment mu_r m g r, so the disc slows down with mu_r g / 1.5."""
+    """Rolling resistance on a plane: a moment mu_r m g r slows the disc down by mu_r g / 1.5."""
     disc = discs_at(
         [(0.0, RADIUS)],
         [(0.5, 0.0)],

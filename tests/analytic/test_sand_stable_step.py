@@ -10,7 +10,8 @@ ROUGH = {"friction_angle": 1.4, "wall.friction_angle": 1.4}
 
 
 def grows(step_ratio, **parameters):
-    """Whether a disturbance of 1e-9 m/s grows thousandfold within 3000 steps of ``step_ratio`` stable steps."""
+    """Whether a disturbance of 1e-9 m/s grows thousandfold within 3000 steps of ``step_ratio``
+    stable steps."""
     sand = cushion(
         {**SMALL_BOX, **ROUGH, "packing": "hexagonal", "internal_step": 1.0, **parameters}, discs=95
     )

@@ -8,7 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockshed.components.common.component import ComponentError
-from rockshed.components.sand_cushion.forces import touch
+from rockshed.components.common.kernels import kernel
+from rockshed.components.sand_cushion import boundaries
+from rockshed.components.sand_cushion.bodies import bodies_of
 from tests.sand_discs import EMPTY_SPACE, RockOnSand, cushion
 
 LEFT, WIDTH, TOP, THICK, RADIUS = -5.0, 10.0, 0.5, 0.2, 0.05
@@ -26,8 +28,19 @@ ELASTIC = 5e-3
 """Of the rebound's speed, in steps of 2e-6 s."""
 
 
+@kernel
+def touch(i, b, w, x, k, boundary):
+    bodies = bodies_of(x, k)
+    return boundaries.touch(i, b, boundaries.boundary_of(b, bodies.rock, boundary), w, bodies)
+
+
+def touching(sand, i, b):
+    return touch(i, b, sand.w, sand.x, sand.k, sand.state("boundary"))
+
+
 def nearest_of_block(x, y, inner, outer):
-    """Distance (m) to the nearest of many points on the surface of a block, and the direction to it."""
+    """Distance (m) to the nearest of many points on the surface of a block, and the direction to
+    it."""
     along, down = np.linspace(inner, outer, 4001), np.linspace(TOP, -2.0, 50_001)
     points = np.concatenate(
         (
@@ -58,7 +71,7 @@ def test_the_gap_is_the_distance_to_the_block(sand, out, over, side):
     body = sand.state("body").reshape(-1, 8)
     body[1, 0], body[1, 1] = x, y
     inner = LEFT if side < 0.0 else LEFT + WIDTH
-    nx, ny, gap, vx, vy = touch(1, 3 if side < 0.0 else 4, sand.w, sand.state("body"), 1, 1)
+    nx, ny, gap, vx, vy = touching(sand, 1, 3 if side < 0.0 else 4)
     expected, (ex, ey) = nearest_of_block(x, y, inner, inner + side * THICK)
     assert gap + RADIUS == pytest.approx(expected, abs=1e-6)
     assert (nx, ny) == pytest.approx((ex, ey), abs=2e-3 / expected * 1e-1 + 1e-6)
@@ -81,7 +94,8 @@ def test_the_gap_is_the_distance_to_the_block(sand, out, over, side):
     ],
 )
 def test_a_rock_comes_straight_back_from_faces_and_corners(contact, from_angle):
-    """Without friction and dashpots a rock that comes along the normal leaves along it, as fast as it came."""
+    """Without friction and dashpots a rock that comes along the normal leaves along it, as fast as
+    it came."""
     nx, ny = math.cos(math.radians(from_angle)), math.sin(math.radians(from_angle))
     away, speed = RADIUS + 1e-4, 2.0
     start, velocity = (contact[0] + away * nx, contact[1] + away * ny), (-speed * nx, -speed * ny)
@@ -119,7 +133,8 @@ def test_a_rock_that_grazes_the_edge_is_turned_by_it():
 
 
 def test_a_rock_on_a_wall_that_stands_on_the_beam_weighs_on_the_beam():
-    """The wall counts its height from the beam's top beside it, and hands the force down by the lever rule."""
+    """The wall counts its height from the beam's top beside it, and hands the force down by the
+    lever rule."""
     height = 0.3
     sand = cushion(
         {
@@ -156,7 +171,7 @@ def test_a_rock_on_a_wall_that_stands_on_the_beam_weighs_on_the_beam():
 def test_sand_does_not_see_where_a_wall_ends(sand):
     body = sand.state("body").reshape(-1, 8)
     body[0, 0], body[0, 1] = LEFT + 0.004, TOP + 3.0
-    nx, ny, gap, _, _ = touch(0, 3, sand.w, sand.state("body"), 1, 1)
+    nx, ny, gap, _, _ = touching(sand, 0, 3)
     assert (nx, ny, gap) == (-1.0, 0.0, pytest.approx(-0.001))
 
 

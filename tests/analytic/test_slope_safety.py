@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rockshed.components.slope_rockfall.declarations import BODY, EXAMPLE
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSED_LEFT, PASSED_RIGHT, RESTED
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSED_LEFT, PASSED_RIGHT, RESTED
 from tests.slope_rocks import SLOPE, deepest, run_trials, slope
 
 ROUGHEST = {

@@ -25,4 +25,4 @@ def test_tools_that_are_missing_or_fail_say_so(monkeypatch):
 
 @pytest.mark.parametrize(("value", "missed"), [(0.3, False), (0.5, True), (None, False)])
 def test_a_goal_is_missed_by_what_was_measured_only(value, missed):
-    assert table.Measurement("step", value, "ratio", "ctypes", 0.4).is_missed is missed
+    assert table.BenchmarkRow("step", value, "ratio", "ctypes", 0.4).is_missed is missed

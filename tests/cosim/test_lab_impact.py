@@ -9,9 +9,9 @@ from rockshed.cases.sonoda1993 import tests as laboratory_tests
 from rockshed.components.sand_cushion import COMPONENT as SAND
 from rockshed.components.sand_cushion.declarations import ROW
 from rockshed.core.errors import InputRefused, RunFailed
-from rockshed.core.results.reading import Run, read_run
+from rockshed.core.results.reading import StoredRun, read_run
 from rockshed.core.run import simulate
-from rockshed.core.system.system import System, with_values
+from rockshed.core.system.system import SystemSpec, with_values
 from rockshed.fmus.build import build_if_needed
 from rockshed.metrics import names
 from rockshed.metrics.headlines import headlines
@@ -28,14 +28,14 @@ def fmus() -> dict[str, str]:
     return {key: str(build_if_needed(name)) for key, name in names.items()}
 
 
-def system(fmus: dict[str, str], coupling: str = "paper") -> System:
+def system(fmus: dict[str, str], coupling: str = "paper") -> SystemSpec:
     return lab_system(fmus, laboratory_tests()[4], coupling).model_copy(
         update={"stop_time": END, "state_interval": END}
     )
 
 
 @pytest.fixture(scope="module")
-def paper(fmus, tmp_path_factory) -> Run:
+def paper(fmus, tmp_path_factory) -> StoredRun:
     return simulate(system(fmus), tmp_path_factory.mktemp("paper") / "run")
 
 
@@ -46,7 +46,7 @@ def monolith(fmus) -> Monolith:
     return program
 
 
-def final_sand(run: Run):
+def final_sand(run: StoredRun):
     """The sand as the FMU's last serialized state has it."""
     *_, (time, content) = run.states("sand")
     assert time == pytest.approx(END, abs=1e-12)
@@ -96,7 +96,7 @@ def test_jacobi_with_held_inputs_shows_its_error_in_the_ledger(fmus, tmp_path):
     assert any("sand_rock" in warning for warning in run.provenance["warnings"])
 
 
-def residual(run: Run) -> float:
+def residual(run: StoredRun) -> float:
     """Largest error of the energy balance of the whole system, as a share of the impact energy: what the components miss
     themselves, and the work that one side of an interface counts and the other does not."""
     names = [f"{name}.energy.residual" for name in ("rock", "sand", "beam")]

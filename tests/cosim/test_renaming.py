@@ -1,5 +1,7 @@
 """A value under a name that a variable had before is taken, and the user is told the new name."""
 
+from pathlib import Path
+
 import pytest
 
 from rockshed.components.common.component import Component
@@ -9,7 +11,7 @@ from rockshed.core.fmu.fmu_slave import read_description
 from rockshed.core.run import simulate
 from rockshed.core.system.planning import make_plan
 from rockshed.core.system.renaming import with_present_names
-from rockshed.core.system.system import System
+from rockshed.core.system.system import SystemSpec
 from rockshed.fmus.description import fmi2, fmi3
 from tests.cosim.mocks import Mock, inp, out, par
 
@@ -25,7 +27,7 @@ SAID = "sand.unit_weight is called sand.density now: use the new name, the old o
 
 
 def system(**parameters):
-    return System(
+    return SystemSpec(
         name="renamed",
         components={"sand": {"fmu": "sand.fmu", "parameters": parameters}},
         stop_time=0.1,
@@ -88,7 +90,12 @@ def component():
     from rockshed.components.common.component import Size
 
     return Component(
-        "Sand", "sand", LAYOUT, None, None, None, None, {"elements": Size(2, 1, 9, "elements")}
+        name="Sand",
+        title="sand",
+        layout=LAYOUT,
+        kernels="",
+        folder=Path(),
+        sizes={"elements": Size(2, 1, 9, "elements")},
     )
 
 

@@ -21,7 +21,7 @@ from rockshed.analyses.rockfall.campaign import campaign_of
 from rockshed.analyses.rockfall.passages import line_passages
 from rockshed.analyses.rockfall.replay import replay
 from rockshed.commands.app import app
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE
 from rockshed.sites.rockfall.preparation import prepare
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"

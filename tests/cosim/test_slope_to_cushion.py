@@ -8,7 +8,7 @@ import pytest
 from rockshed.analyses.rockfall import campaign
 from rockshed.analyses.rockfall.statistics import percentile
 from rockshed.cases import slope_to_cushion as case
-from rockshed.components.slope_rockfall.trajectory import PASSAGE
+from rockshed.components.slope_rockfall.records import PASSAGE
 from rockshed.core.run import simulate
 from rockshed.metrics.comparison import table, warnings
 from rockshed.metrics.energy import impact_energy, system_residual

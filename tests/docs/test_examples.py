@@ -8,8 +8,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("README.md", *(f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md"))))
-LONG = ("README.md", "docs/python.md", "docs/getting-started.md")
+PAGES = (
+    "README.md",
+    "CONTRIBUTING.md",
+    *(f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md"))),
+)
+LONG = ("README.md", "CONTRIBUTING.md", "docs/python.md", "docs/getting-started.md")
 """Pages whose examples take more than 20 s."""
 
 FOLDERS = {"orchestrator": "rockshed", "components": "rockshed.components", "fmus": "rockshed.fmus"}
@@ -39,8 +43,9 @@ def elsewhere(tmp_path, monkeypatch):
     """Work in an empty folder, beside which the examples of the repository lie."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
-    (tmp_path / "orchestrator").mkdir()
-    (tmp_path / "orchestrator" / "examples").symlink_to(ROOT / "orchestrator" / "examples")
+    for place in ("orchestrator/examples", "tests/cosim/outside"):
+        (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / place).symlink_to(ROOT / place)
 
 
 @pytest.mark.parametrize(

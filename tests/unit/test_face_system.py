@@ -29,7 +29,7 @@ def test_a_value_that_is_shared_reaches_all_its_targets():
 
 def test_values_that_follow_from_others_are_adapted():
     girders = rockshed.case("girders-8", in_process=True)
-    heavier = girders.with_values({"sand.depth": 3.4})
+    heavier = girders.with_values({"sand.thickness": 3.4})
     assert value(heavier, "beam", "cushion.weight") == pytest.approx(
         2.0 * value(girders, "beam", "cushion.weight")
     )

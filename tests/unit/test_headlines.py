@@ -14,7 +14,7 @@ from rockshed.core.errors import InputRefused
 from rockshed.core.fmu.fmu_slave import read_description
 from rockshed.core.results.metric import Metric, Metrics
 from rockshed.core.results.provenance import declarations
-from rockshed.core.results.reading import Run
+from rockshed.core.results.reading import StoredRun
 from rockshed.fmus.description.fmi2 import model_description
 from rockshed.metrics import comparison, names
 from rockshed.metrics.caption import models
@@ -67,8 +67,8 @@ def made_up(length=0.02, summary=(), **columns):
         "disc.radius": 0.005,
         "rotation": "locked",
         "stiffness_factor": 0.37,
-        "unit_weight": 1800.0,
-        "unit_weight_of": "disc",
+        "density": 1800.0,
+        "density_of": "disc",
         "base.shape": "flat",
         "cohesion": 0.0,
         "unloading_ratio": 1.0,
@@ -97,7 +97,7 @@ def made_up(length=0.02, summary=(), **columns):
             )
         },
     }
-    return Run(None, provenance, Metrics(summary), [], series)
+    return StoredRun(None, provenance, Metrics(summary), [], series)
 
 
 def figure(run, name):
@@ -162,8 +162,10 @@ def test_a_balance_that_does_not_close_is_warned_of():
 def test_sand_that_was_not_at_rest_is_warned_of():
     level = np.ones(401)
     quiet = {"rock.energy.residual": 2.0 * np.linspace(0.0, 1.0, 401)}
-    assert comparison.warnings(made_up(**quiet, **{"sand.unrest": 1e-6 * level})) == []
-    restless = made_up(**quiet, **{"sand.unrest": 2e-3 * level})
+    assert (
+        comparison.warnings(made_up(**quiet, **{"sand.unbalanced_force_ratio": 1e-6 * level})) == []
+    )
+    restless = made_up(**quiet, **{"sand.unbalanced_force_ratio": 2e-3 * level})
     assert "raise settling.time" in comparison.warnings(restless)[0]
     restless.provenance["components"]["sand"]["parameters"]["gravity"]["value"] = 0.0
     assert comparison.warnings(restless) == []

@@ -155,7 +155,7 @@ def test_steps_of_any_length_give_the_same_motion():
     for n in range(30 * 7 // 3):
         other.step(n * step * 3 / 7, step * 3 / 7)
     np.testing.assert_allclose(other["force"], one["force"], rtol=1e-12)
-    assert other["lag"] == 0.0
+    assert other["delay"] == 0.0
 
 
 def test_a_state_that_is_restored_goes_on_the_same_way():

@@ -82,7 +82,8 @@ def test_forces_are_those_of_all_pairs_while_discs_fly_about(
 @pytest.mark.parametrize("changes", CHANGES, ids=str)
 @pytest.mark.parametrize("base", ["floor", "beam_discs"])
 def test_a_rebuild_in_every_step_changes_no_bit(base, changes):
-    """Tangential springs and rolling moments survive it, and the order of contacts does not matter or stays."""
+    """Tangential springs and rolling moments survive it, and the order of contacts does not matter
+    or stays."""
     rare, often = (
         stirred(cushion({**SMALL_BOX, "base": base, "packing": "hexagonal", **changes}), 0.1)
         for _ in range(2)
@@ -97,7 +98,8 @@ def test_a_rebuild_in_every_step_changes_no_bit(base, changes):
 
 
 def test_a_sheared_contact_holds_the_disc_across_rebuilds():
-    """A locked disc that has been pushed sideways swings about the point where it touched down, as only its spring can tell."""
+    """A locked disc that has been pushed sideways swings about the point where it touched down, as
+    only its spring can tell."""
     disc = discs_at(
         [(0.0, RADIUS - 1e-6)],
         [(1e-4, 0.0)],
@@ -132,7 +134,8 @@ def test_a_newcomer_in_the_list_leaves_the_others_their_springs():
 
 
 def test_a_contact_that_opens_forgets():
-    """The second touch of a disc that has rubbed the floor begins with a slack spring: no push back where it did not come from."""
+    """The second touch of a disc that has rubbed the floor begins with a slack spring: no push back
+    where it did not come from."""
     disc = discs_at(
         [(0.0, RADIUS)],
         [(0.2, -0.2)],

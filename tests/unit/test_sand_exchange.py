@@ -19,7 +19,8 @@ FORCES = (
 
 
 def struck(**changes):
-    """A small cushion into which the rock sinks at 2 m/s, turning and drifting, while the beam gives way."""
+    """A small cushion into which the rock sinks at 2 m/s, turning and drifting, while the beam
+    gives way."""
     parameters = {
         **SMALL_BOX,
         "base": "beam_discs",

@@ -16,7 +16,7 @@ def test_all_bad_values_are_named_at_once():
             {
                 "disc.radius": -0.005,
                 "modulus": math.nan,
-                "depth": 0.0,
+                "thickness": 0.0,
                 "damping": -0.1,
                 "packing": 9.0,
                 "rock.position.y": math.inf,

@@ -33,7 +33,7 @@ def test_one_law_is_one_for_all_cases(target):
     assert {key: sand[key] for key in MODELS["one-law"].parameters} == dict(
         MODELS["one-law"].parameters
     )
-    assert (sand["unit_weight_of"], sand["packing"]) == ("layer", "prepared")
+    assert (sand["density_of"], sand["packing"]) == ("layer", "prepared")
 
 
 def test_compaction_and_water_make_the_state_of_the_soil():

@@ -131,8 +131,8 @@ def test_cohesion_does_not_hold_a_layer_up_while_it_is_prepared():
     assert moist["energy.capillary"] < 0.0 == dry["energy.capillary"]
 
 
-def test_the_unit_weight_of_the_layer_is_carried_by_its_discs():
-    sand = cushion({**PREPARED, "solid_fraction": 0.74, "unit_weight_of": "layer"}, discs=200)
+def test_the_density_of_the_layer_is_carried_by_its_discs():
+    sand = cushion({**PREPARED, "solid_fraction": 0.74, "density_of": "layer"}, discs=200)
     assert masses(sand).sum() == pytest.approx(
-        1800.0 * 0.2 * sand["layer.height"] * sand["depth"], rel=0.01
+        1800.0 * 0.2 * sand["layer.height"] * sand["thickness"], rel=0.01
     )

@@ -106,7 +106,8 @@ def test_normal_forces_of_settled_sand_on_a_flat_base_carry_its_weight(base):
 
 
 def test_tangential_force_is_that_of_the_slider_and_turns_the_first_body():
-    """A disc that slides to the right over the floor is pushed to the left below its centre: clockwise."""
+    """A disc that slides to the right over the floor is pushed to the left below its centre:
+    clockwise."""
     disc = discs_at(
         [(0.0, RADIUS)],
         [(1.0, -0.1)],

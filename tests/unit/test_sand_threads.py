@@ -1,4 +1,5 @@
-"""Threads share the work of a step, and neither they nor the width of the processor's vectors change a bit of the result."""
+"""Threads share the work of a step, and neither they nor the width of the processor's vectors
+change a bit of the result."""
 
 import os
 import subprocess
@@ -45,7 +46,8 @@ def test_every_part_is_done_once(threads):
 
 
 def moving(changes, second_part, threads=1):
-    """A small cushion in motion. It is one part by itself; here the second part begins with the disc ``second_part``."""
+    """A small cushion in motion. It is one part by itself; here the second part begins with the
+    disc ``second_part``."""
     instance = stirred(cushion({**SMALL_BOX, "packing": "hexagonal", **changes}), 0.3)
     instance.state("part")[:] = 0, second_part, instance.sizes["discs"]
     instance["threads"] = threads

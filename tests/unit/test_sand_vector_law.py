@@ -1,4 +1,4 @@
-"""The vector form of the law of contact against contact_law.py, contact by contact."""
+"""The contact law: with vectors, with single numbers, and against plain formulas."""
 
 import math
 
@@ -9,22 +9,11 @@ from hypothesis import strategies as st
 
 from rockshed.components.common.kernels import kernel
 from rockshed.components.sand_cushion import contact_law
-from rockshed.components.sand_cushion.declarations import BLOCK, COLUMN, LANES, LAW, TALLY
+from rockshed.components.sand_cushion.declarations import BLOCK, COLUMN, LANES, LAW, TALLY, Law
 from rockshed.components.sand_cushion.vector import law as vector_law
 from rockshed.components.sand_cushion.vector import rows as vector_rows
 
 STIFFNESS, TANGENTIAL, DT = 1e5, 2.5e4, 1e-5
-normal_force, tangential_force, permanent_overlap, yield_loss, capillary_pull, capillary_energy = (
-    getattr(contact_law, name).py_func
-    for name in (
-        "normal_force",
-        "tangential_force",
-        "permanent_overlap",
-        "yield_loss",
-        "capillary_pull",
-        "capillary_energy",
-    )
-)
 
 
 @kernel
@@ -44,7 +33,7 @@ def move(body, load, begin, end, dt, gravity, turning, motion):
 
 def constants(ratio, pull):
     law = np.zeros(len(LAW))
-    law[LAW.normal], law[LAW.tangential], law[LAW.softness] = (
+    law[LAW.normal], law[LAW.tangential], law[LAW.compliance] = (
         STIFFNESS,
         TANGENTIAL,
         1.0 / TANGENTIAL,
@@ -62,32 +51,49 @@ def constants(ratio, pull):
     return law
 
 
+@kernel
+def answer(overlap, opening, slip, root, spring, law, dt):
+    approach = contact_law.Approach(overlap, opening, slip, root)
+    resistance = contact_law.slip_resistance(root, law, dt)
+    return contact_law.respond(approach, spring, resistance, law, dt)
+
+
 def contact(column, spring, plastic, law, energies):
-    """One contact after contact_law.py: force on the second disc, tangential and normal force, spring and overlap that stays."""
+    """One contact by plain formulas: force on the second disc, tangential and normal force, spring
+    and permanent overlap.
+
+    The law for single numbers, compiled, says the same.
+    """
     distance = math.hypot(column.x, column.y)
     nx, ny = column.x / distance, column.y / distance
     overlap = column.reach - distance
     bridge, full = law[LAW.bridge] * column.reach, law[LAW.pull] * column.reach
     opening, slip = column.vx * nx + column.vy * ny, column.vy * nx - column.vx * ny - column.spin
-    stays = permanent_overlap(plastic, overlap, law[LAW.yielding])
+    stays = max(plastic, law[LAW.yielding] * overlap)
     if stays > plastic:
-        energies["plastic"] += yield_loss(
-            plastic, stays, law[LAW.unloading], law[LAW.yielding], full
-        )
+        share = law[LAW.yielding]
+        hardening = 0.5 * law[LAW.unloading] * (1.0 - share) / share
+        energies["plastic"] += (stays - plastic) * (hardening * (stays + plastic) - full)
     stays = stays if overlap > -bridge else 0.0
     overlap -= stays
-    pull = capillary_pull(overlap, full, bridge)
-    energies["capillary"] += capillary_energy(overlap, full, bridge)
+    closed = min(1.0, max(0.0, 1.0 + overlap / bridge))
+    pull = full * closed
+    energies["capillary"] -= full * (0.5 * bridge * closed * closed + max(0.0, overlap))
+    numbers = answer(overlap, opening, slip, column.root, spring, Law(*law), DT)
     if overlap <= 0.0:
         energies["sliding"] += 0.5 * spring**2 / TANGENTIAL
+        assert numbers == (0.0,) * 6
         return (-pull * nx, -pull * ny, 0.0, 0.0), 0.0, stays
-    normal = normal_force(overlap, opening, law[LAW.unloading], law[LAW.damping] * column.root)
-    dashpot = law[LAW.tangential_damping] * column.root
-    force, kept, taken = tangential_force(
-        spring, slip, TANGENTIAL, dashpot, law[LAW.friction] * normal, DT
-    )
-    energies["elastic"] += 0.5 * law[LAW.unloading] * overlap**2 + 0.5 * kept**2 / TANGENTIAL
-    energies["normal_dashpot"] += (law[LAW.unloading] * overlap - normal) * opening * DT
+    elastic = law[LAW.unloading] * overlap
+    normal = max(0.0, elastic - law[LAW.damping] * column.root * opening)
+    dashpot, limit = law[LAW.tangential_damping] * column.root, law[LAW.friction] * normal
+    rate = TANGENTIAL * DT + dashpot
+    force = min(limit, max(-limit, spring + rate * slip))
+    taken = (force - spring) / rate
+    kept = spring + TANGENTIAL * DT * taken
+    assert numbers == pytest.approx((normal, force, elastic, spring, kept, taken), abs=1e-12)
+    energies["elastic"] += 0.5 * elastic * overlap + 0.5 * kept**2 / TANGENTIAL
+    energies["normal_dashpot"] += (elastic - normal) * opening * DT
     energies["tangential_dashpot"] += dashpot * taken**2 * DT
     energies["sliding"] += force * (slip - taken) * DT
     normal_part = normal - pull
@@ -165,7 +171,8 @@ def test_a_block_is_as_many_contacts(seed, speed, model):
 
 @pytest.mark.parametrize("turning", [0.0, 2.0])
 def test_discs_move_by_the_second_law(turning):
-    """Force, torque and weight change the velocities, the new velocities the places; energies are those of the mean velocity."""
+    """Force, torque and weight change the velocities, the new velocities the places; energies are
+    those of the mean velocity."""
     random, n, dt, gravity = np.random.default_rng(1), 7, 1e-3, 9.8
     body, load, motion = (
         random.normal(0.0, 1.0, (n, 8)),

@@ -5,7 +5,7 @@ import pytest
 
 from rockshed.components.common.counter_random import shuffled
 from rockshed.components.slope_rockfall.declarations import UNIFORM
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, RESTED, STOPPED
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, RESTED, STOPPED
 from tests.slope_rocks import SLOPE, plane, run_trials
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from rockshed.components.catalogue import component
 from rockshed.components.slope_rockfall.declarations import FLIGHT
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, RESTED
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK, RESTED
 from tests.slope_rocks import SLOPE, mode, run_trials
 
 LINES = [(x, -50, x, 200) for x in (60, 90, 120)]

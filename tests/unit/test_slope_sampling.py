@@ -10,13 +10,13 @@ from scipy import stats
 
 from rockshed.components.common.counter_random import draw, stream, uniform
 from rockshed.components.slope_rockfall.declarations import LOGNORMAL, NORMAL, TRIANGULAR, UNIFORM
+from rockshed.components.slope_rockfall.records import OUTCOME
 from rockshed.components.slope_rockfall.sampling import (
     normal_quantile,
     normal_tail,
     variate,
     widest,
 )
-from rockshed.components.slope_rockfall.trajectory import OUTCOME
 from tests.slope_rocks import SLOPE, run_trials
 
 MEAN, DEVIATION, TRUNCATION = 3.0, 0.7, 1.96

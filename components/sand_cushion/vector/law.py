@@ -1,141 +1,135 @@
-"""The law of contact between sand discs for a block of pairs, as vectors: contact_law.py written without branches.
+"""The contact law for a block of pairs of discs, eight contacts at a time and without branches.
 
-What contact_law.py does for one contact is done here for eight at a time; pairs that do not touch come out with nothing. The
-functions of contact_law.py are the reference in the tests.
+The law itself is :mod:`..contact_law`; pairs that do not touch come out with nothing. Here are the
+geometry of two discs, and the energies that add up in registers.
 """
 
 from types import SimpleNamespace
 from typing import Any
 
 from numba import types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
-from ..declarations import BLOCK, COLUMN, LANES, LAW, TALLY
-from .lanes import INDEX, Access, Lanes, Running, fma, larger, smaller, spread, sqrt, where
+from ..arithmetic import multiply_add, where
+from ..contact_law import (
+    Approach,
+    Response,
+    bridge_closure,
+    capillary_energy,
+    permanent_overlap,
+    respond,
+    slip_resistance,
+    yield_loss,
+)
+from ..declarations import BLOCK, COLUMN, LANES, LAW, TALLY, Law
+from .lanes import Access, Lanes, Running, divisor, divisors, spread, sqrt
 
 
-def _constants(access: Access, dt: Any) -> SimpleNamespace:
-    """The constants of the law, and products of them with the step, in all lanes."""
-    law = SimpleNamespace(
-        **{
-            name: spread(access.builder, access.number(3, place), LANES)
-            for name, place in LAW._asdict().items()
-        }
-    )
-    law.dt = spread(access.builder, dt, LANES)
-    law.advance = law.tangential * law.dt
-    law.yielding_force = law.unloading * 0.5 * (1.0 - law.yielding) * (1.0 / law.yielding)
-    return law
+def _constants(access: Access) -> Law:
+    """Return the constants of contacts between discs, the same in all lanes."""
+    law = Law(*(spread(access.builder, access.number(3, place), LANES) for place in LAW))
+    return law._replace(yielding=divisor(law.yielding))
 
 
 def _add(total: Running, one: Lanes, other: Lanes) -> None:
     """Add a product to a running sum."""
-    total.become(fma(one, other, total.now))
+    total.become(multiply_add(one, other, total.now))
 
 
-def _lasting(
-    pair: SimpleNamespace,
-    overlap: Lanes,
-    stays_before: Lanes,
-    law: SimpleNamespace,
-    sums: SimpleNamespace,
+def _yielded(
+    overlap: Lanes, before: Lanes, reach: Lanes, law: Law, sums: SimpleNamespace
 ) -> tuple[Lanes, Lanes, Lanes]:
-    """Contacts that yield or stick together: overlap beyond the one that stays, the one that stays, and the capillary pull."""
-    bridge, full = law.bridge * pair.reach, law.pull * pair.reach
-    stays = larger(law.yielding * overlap, stays_before)
-    lost = (stays - stays_before) * (law.yielding_force * (stays + stays_before) - full)
-    sums.plastic.become(sums.plastic.now + where(stays > stays_before, lost, 0.0))
-    stays = where(overlap > -bridge, stays, 0.0)
-    pressed = overlap - stays
-    closed = smaller(larger(1.0 + pressed * (1.0 / bridge), 0.0), 1.0)
-    sums.capillary.become(
-        sums.capillary.now - full * (0.5 * bridge * closed * closed + larger(pressed, 0.0))
-    )
-    return pressed, stays, full * closed
+    """Return elastic and permanent overlap and the capillary pull of contacts that last."""
+    longest = divisor(law.bridge * reach)
+    full = law.pull * reach
+    grown = permanent_overlap(before, overlap, law)
+    sums.plastic.become(sums.plastic.now + yield_loss(before, grown, full, law))
+    permanent = where(overlap > -longest, grown, 0.0)
+    elastic = overlap - permanent
+    closure = bridge_closure(elastic, longest)
+    sums.capillary.become(sums.capillary.now + capillary_energy(elastic, closure, longest, full))
+    return elastic, permanent, full * closure
+
+
+def _tally(approach: Approach, before: Lanes, response: Response, sums: SimpleNamespace) -> None:
+    """Add what the contacts store and dissipate to the sums, most of it still to be scaled."""
+    _add(sums.elastic, response.elastic, approach.overlap)
+    _add(sums.stretched, response.spring, response.spring)
+    _add(sums.normal_dashpot, response.elastic - response.normal, approach.opening)
+    _add(sums.tangential_dashpot, approach.root * response.creep, response.creep)
+    _add(sums.sliding, response.tangential, approach.slip - response.creep)
+    _add(sums.released, before - response.kept, before)
 
 
 def _contact(
     pair: SimpleNamespace,
     before: Lanes,
-    stays: Lanes | None,
-    law: SimpleNamespace,
+    permanent: Lanes | None,
+    law: Law,
+    dt: Lanes,
     sums: SimpleNamespace,
-) -> tuple[SimpleNamespace, Lanes, Lanes | None]:
-    """Forces of eight pairs, the new spring force, and the overlap that stays where contacts last. One division serves both
-    1/distance and 1/rate."""
-    distance = sqrt(fma(pair.x, pair.x, pair.y * pair.y))
-    rate = fma(law.tangential_damping, pair.root, law.advance)
-    both = 1.0 / (distance * rate)
-    inverse, per_rate = both * rate, both * distance
-    nx, ny = pair.x * inverse, pair.y * inverse
-    overlap, opening = pair.reach - distance, fma(pair.vx, nx, pair.vy * ny)
-    slip = fma(pair.vy, nx, -fma(pair.vx, ny, pair.spin))
-    pull = None
-    if stays is not None:
-        overlap, stays, pull = _lasting(pair, overlap, stays, law, sums)
-    touching = overlap > 0.0
-    elastic = law.unloading * larger(overlap, 0.0)
-    normal = larger(where(touching, fma(law.damping, -(pair.root * opening), elastic), 0.0), 0.0)
-    limit, spring = law.friction * normal, where(touching, before, 0.0)
-    tangential = smaller(larger(fma(rate, slip, spring), -limit), limit)
-    taken = (tangential - spring) * per_rate
-    kept = fma(law.advance, taken, spring)
-    _add(sums.elastic, elastic, overlap)
-    _add(sums.stretched, kept, kept)
-    _add(sums.normal_dashpot, elastic - normal, opening)
-    _add(sums.tangential_dashpot, pair.root * taken, taken)
-    _add(sums.sliding, tangential, slip - taken)
-    _add(sums.released, before - spring, before)
-    pressing = normal if pull is None else normal - pull
-    force = SimpleNamespace(
-        x=fma(pressing, nx, tangential * ny),
-        y=fma(pressing, ny, -(tangential * nx)),
-        tangential=tangential,
-        normal=normal,
+) -> tuple[tuple[Lanes, ...], Lanes, Lanes | None]:
+    """Return the columns of forces of eight pairs, the spring forces and the permanent overlaps."""
+    distance, resistance = divisors(
+        sqrt(multiply_add(pair.x, pair.x, pair.y * pair.y)), slip_resistance(pair.root, law, dt)
     )
-    return force, kept, stays
+    nx, ny = pair.x / distance, pair.y / distance
+    overlap = pair.reach - distance
+    opening = multiply_add(pair.vx, nx, pair.vy * ny)
+    slip = multiply_add(pair.vy, nx, -multiply_add(pair.vx, ny, pair.spin))
+    pull = None
+    if permanent is not None:
+        overlap, permanent, pull = _yielded(overlap, permanent, pair.reach, law, sums)
+    approach = Approach(overlap, opening, slip, pair.root)
+    response = respond(approach, before, resistance, law, dt)
+    _tally(approach, before, response, sums)
+    normal, tangential = response.normal, response.tangential
+    pressing = normal if pull is None else normal - pull
+    x = multiply_add(pressing, nx, tangential * ny)
+    y = multiply_add(pressing, ny, -(tangential * nx))
+    return (x, y, tangential, normal), response.spring, permanent
+
+
+def _block(access: Access, lasting: bool) -> None:
+    """Write the loop over the BLOCK contacts of a block, for the arguments of :func:`_block_law`."""
+    constants = _constants(access)
+    step = spread(access.builder, access[4], LANES)
+    sums = SimpleNamespace(
+        **{name: access.running(6, place * LANES, LANES) for name, place in TALLY._asdict().items()}
+    )
+    with access.lanes_of_block() as lane:
+        pair = SimpleNamespace(
+            **{
+                name: access.load(0, access.place(lane, column * BLOCK), LANES)
+                for name, column in COLUMN._asdict().items()
+            }
+        )
+        contact = access.builder.add(access[5], lane)
+        before = access.load(1, contact, LANES)
+        permanent = access.load(2, contact, LANES) if lasting else None
+        forces, after, permanent = _contact(pair, before, permanent, constants, step, sums)
+        access.store(after, 1, contact)
+        if permanent is not None:
+            access.store(permanent, 2, contact)
+        for column, force in enumerate(forces):
+            access.store(force, 0, access.place(lane, column * BLOCK))
+    for total in vars(sums).values():
+        total.keep()
 
 
 def _block_law(lasting: bool) -> Any:
+    """Return the intrinsic for contacts that keep an overlap or stick together, or for others."""
+
     def block_law(typing, block, spring, plastic, law, dt, at, tally):
-        """The law for the BLOCK pairs from ``at`` on, whose columns lie in ``block``. It leaves force to the right and upwards (of
-        the first on the second), tangential and normal force in the first four columns. Springs (N) and overlaps that stay (m)
-        become those after the step, and the energies of TALLY grow."""
+        """Compute the BLOCK contacts from ``at`` on, whose columns lie in ``block``.
+
+        Force to the right and upwards (of the first disc on the second), tangential and normal
+        force come into the first four columns. Springs (N) and permanent overlaps (m) become those
+        after the step, and the energies of TALLY grow.
+        """
 
         def generate(context, builder, signature, arguments):
-            access = Access(context, builder, signature, arguments)
-            constants = _constants(access, access[4])
-            sums = SimpleNamespace(
-                **{
-                    name: access.running(6, place * LANES, LANES)
-                    for name, place in TALLY._asdict().items()
-                }
-            )
-            with cgutils.for_range_slice(builder, INDEX(0), INDEX(BLOCK), INDEX(LANES)) as (
-                lane,
-                _,
-            ):
-                pair = SimpleNamespace(
-                    **{
-                        name: access.load(0, access.place(lane, column * BLOCK), LANES)
-                        for name, column in COLUMN._asdict().items()
-                    }
-                )
-                contact = builder.add(access[5], lane)
-                stays = access.load(2, contact, LANES) if lasting else None
-                force, kept, stays = _contact(
-                    pair, access.load(1, contact, LANES), stays, constants, sums
-                )
-                access.store(kept, 1, contact)
-                if stays is not None:
-                    access.store(stays, 2, contact)
-                for column, quantity in enumerate(
-                    (force.x, force.y, force.tangential, force.normal)
-                ):
-                    access.store(quantity, 0, access.place(lane, column * BLOCK))
-            for total in vars(sums).values():
-                total.keep()
+            _block(Access(context, builder, signature, arguments), lasting)
             return context.get_dummy_value()
 
         return types.void(block, spring, plastic, law, types.float64, types.int64, tally), generate
@@ -143,5 +137,7 @@ def _block_law(lasting: bool) -> Any:
     return intrinsic(block_law)
 
 
-plain_law, lasting_law = _block_law(lasting=False), _block_law(lasting=True)
-"""The law of elastic contacts, and the one of contacts that may keep an overlap or stick together."""
+plain_law = _block_law(lasting=False)
+"""Intrinsic: the law of elastic contacts for a block of pairs."""
+lasting_law = _block_law(lasting=True)
+"""Intrinsic: the law of contacts that may keep an overlap or stick together."""

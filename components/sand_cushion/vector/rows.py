@@ -1,9 +1,9 @@
-"""Rows of a table to columns of a block, columns back to rows, and rows on in time: the discs' way through vector registers.
+"""The discs' way through vector registers: rows to columns of a block, and back; rows on in time.
 
-The law of contact is computed for a block of pairs, a quantity of all pairs beside the other. The discs however lie in rows, one
-cache line each. Going from rows to columns one number at a time would cost more than the law; as vectors it is two loads, one
-sum and a transposition of eight by eight numbers. ``plain_...`` are the twins in plain loops, for reading and for the tests: the
-same bits.
+The contact law is computed for a block of pairs, with a column for each quantity. The discs however
+lie in rows, one cache line each. To go from rows to columns one number at a time would cost more
+than the law; as vectors it is two loads, one sum and a transposition of eight by eight numbers.
+``plain_...`` are the twins in plain loops, for reading and for the tests: the same bits.
 """
 
 from typing import Any
@@ -14,18 +14,34 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from ...common.kernels import kernel
+from ..arithmetic import larger, multiply_add
 from ..declarations import BLOCK, FORCE_ROW, HALF_ROOT, INVERSE_MASS, LANES, ROW
-from .lanes import INDEX, WORD, Access, Lanes, constant, fma, larger, spread
+from .lanes import INDEX, WORD, Access, Lanes, constant, spread
 
 KINETIC, FASTEST, POTENTIAL = 0, 4, 6
-"""Where the numbers of :func:`move_rows` begin: m/4 times old and new velocity to the right, upwards and of the surface (and a
-number without meaning); largest square of the velocity, twice; m/4 times x and y."""
+"""Places of the sums of :func:`move_rows`: m/4 times old and new velocity to the right, upwards and
+of the surface (J/4, and a number without meaning); largest square of the velocity, twice (m2/s2);
+m/4 times x and y (kg m)."""
 
 
 @kernel
 def plain_pairs_to_columns(body, pair, at, block):
-    """Columns 0 to 6 of the block from the BLOCK pairs from ``at`` on: of body rows i and j, j - i for x, y, vx, vy and j + i for
-    surface speed, radius and root of mass."""
+    """Fill the columns of the block from the BLOCK pairs from ``at`` on.
+
+    Of the bodies i and j: j - i for x, y, vx, vy, and j + i for surface speed, radius and root of
+    mass.
+
+    Parameters
+    ----------
+    body : ndarray of float64
+        Rows of the bodies.
+    pair : ndarray of int64
+        Pairs of discs.
+    at : int
+        First pair.
+    block : ndarray of float64
+        Columns 0 to 6 are written.
+    """
     for q in range(BLOCK):
         i, j = pair[at + q] & 0xFFFFFFFF, pair[at + q] >> 32
         for c in range(4):
@@ -37,8 +53,21 @@ def plain_pairs_to_columns(body, pair, at, block):
 
 @kernel
 def plain_columns_to_pairs(load, pair, at, block):
-    """Add columns 0 (force to the right), 1 (upwards) and 2 (tangential force) of the block to the load rows of the pairs: the
-    force acts on j, its reverse on i; the tangential force turns both the same way."""
+    """Add the forces of a block to the loads of its pairs.
+
+    The force acts on j, its reverse on i; the tangential force turns both the same way.
+
+    Parameters
+    ----------
+    load : ndarray of float64
+        Rows of the loads (N).
+    pair : ndarray of int64
+        Pairs of discs.
+    at : int
+        First pair.
+    block : ndarray of float64
+        Columns 0, 1 and 2: force to the right, upwards and tangential force (N).
+    """
     for q in range(BLOCK):
         i, j = (
             (pair[at + q] & 0xFFFFFFFF) * FORCE_ROW // ROW,
@@ -54,7 +83,7 @@ def plain_columns_to_pairs(load, pair, at, block):
 
 
 def _transposed(rows: list[Lanes]) -> list[Lanes]:
-    """Columns of eight rows, in three rounds that exchange neighbours at distance 1, 2 and 4."""
+    """Return the columns of eight rows, in three rounds of exchange at distance 1, 2 and 4."""
     for distance in (1, 2, 4):
         low = [p if not p & distance else p - distance + LANES for p in range(LANES)]
         high = [p + distance if not p & distance else p + LANES for p in range(LANES)]
@@ -68,29 +97,24 @@ def _transposed(rows: list[Lanes]) -> list[Lanes]:
 
 
 def _bodies(access: Access, pair: ir.Value) -> tuple[ir.Value, ir.Value]:
-    """Begin of the body rows of both discs of a pair; argument 1 holds the pairs."""
+    """Return where the rows of both discs of a pair begin; argument 1 holds the pairs."""
     halves = access.pointer(1, pair, WORD)
     b = access.builder
     return b.zext(b.load(halves), INDEX), b.zext(b.load(b.gep(halves, [INDEX(1)])), INDEX)
 
 
-def _lanes_of_block(builder: ir.IRBuilder) -> Any:
-    """A loop over a block, eight pairs at a time."""
-    return cgutils.for_range_slice(builder, INDEX(0), INDEX(BLOCK), INDEX(LANES))
-
-
 @intrinsic
 def pairs_to_columns(typing, body, pair, at, block):
-    """:func:`plain_pairs_to_columns` as vectors."""
+    """Do with vectors the same as :func:`plain_pairs_to_columns`."""
 
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
         sign = Lanes(builder, constant([-1.0] * 4 + [1.0] * 4))
-        with _lanes_of_block(builder) as (lane, _):
+        with access.lanes_of_block() as lane:
             rows = []
             for q in range(LANES):
                 i, j = _bodies(access, access.place(builder.add(access[2], lane), q))
-                rows.append(fma(access.load(0, i, ROW), sign, access.load(0, j, ROW)))
+                rows.append(multiply_add(access.load(0, i, ROW), sign, access.load(0, j, ROW)))
             columns = _transposed(rows)
             for column, source in enumerate((0, 1, 2, 3, 4, 5, 7)):
                 access.store(columns[source], 3, access.place(lane, column * BLOCK))
@@ -100,7 +124,10 @@ def pairs_to_columns(typing, body, pair, at, block):
 
 
 def _load_row(access: Access, body: ir.Value) -> ir.Value:
-    """Begin of a load row, which is half as long as the body row that begins at ``body``: places are halves of numbers."""
+    """Return the address of the load row of a body whose row begins at ``body``.
+
+    Load rows are half as long as body rows, so their places are counted in halves of numbers.
+    """
     b = access.builder
     assert ROW == 2 * FORCE_ROW
     return b.gep(b.bitcast(access[0], WORD.as_pointer()), [body])
@@ -108,7 +135,7 @@ def _load_row(access: Access, body: ir.Value) -> ir.Value:
 
 def _columns_to_pairs(turning: bool) -> Any:
     def columns_to_pairs(typing, load, pair, at, block):
-        """:func:`plain_columns_to_pairs` as vectors."""
+        """Do with vectors the same as :func:`plain_columns_to_pairs`."""
 
         def generate(context, builder, signature, arguments):
             access = Access(context, builder, signature, arguments)
@@ -118,7 +145,7 @@ def _columns_to_pairs(turning: bool) -> Any:
             )
             even, odd = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
             width = FORCE_ROW if turning else 2
-            with _lanes_of_block(builder) as (lane, _):
+            with access.lanes_of_block() as lane:
                 x, y, turn = (
                     access.load(3, access.place(lane, column * BLOCK), LANES) for column in range(3)
                 )
@@ -134,7 +161,7 @@ def _columns_to_pairs(turning: bool) -> Any:
                         [two, two + 1, two + 8, two + 9][:width], turns[q % 2]
                     )
                     before = access.loaded(i, width)
-                    access.put(fma(row, sign, before) if turning else before - row, i)
+                    access.put(multiply_add(row, sign, before) if turning else before - row, i)
                     access.put(row + access.loaded(j, width), j)
             return context.get_dummy_value()
 
@@ -143,26 +170,47 @@ def _columns_to_pairs(turning: bool) -> Any:
     return intrinsic(columns_to_pairs)
 
 
-columns_to_pairs, forces_to_pairs = (
-    _columns_to_pairs(turning=True),
-    _columns_to_pairs(turning=False),
-)
-""":func:`plain_columns_to_pairs` as vectors; and the same for discs that do not turn, without what would turn them."""
+columns_to_pairs = _columns_to_pairs(turning=True)
+"""Intrinsic: :func:`plain_columns_to_pairs` with vectors."""
+forces_to_pairs = _columns_to_pairs(turning=False)
+"""Intrinsic: the same for discs that do not turn, without tangential forces in the loads."""
+
+
+def _rates(
+    builder: ir.IRBuilder, dt: ir.Value, gravity: ir.Value, turning: ir.Value
+) -> tuple[Lanes, Lanes]:
+    """Return the factors of force / mass in a step (s), and the speed of fall gained (m/s)."""
+    zero = constant([0.0] * 4)
+    gain = zero
+    for lane, rate in enumerate((dt, dt, builder.fmul(turning, dt))):
+        gain = builder.insert_element(gain, rate, WORD(lane))
+    fall = builder.insert_element(zero, builder.fmul(gravity, dt), WORD(1))
+    return Lanes(builder, gain), Lanes(builder, fall)
 
 
 @intrinsic
 def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
-    """Semi-implicit Euler for the discs from ``begin`` to before ``end``: velocity first, then position with the new velocity.
-    Their forces are forgotten. ``turning``: 2 where discs turn (d(omega r)/dt = torque r / I with I = m r^2 / 2), else 0.
-    ``motion`` holds the numbers that KINETIC, FASTEST and POTENTIAL explain; they grow."""
+    """Move discs by semi-implicit Euler: velocity first, then position with the new velocity.
+
+    Parameters
+    ----------
+    body, load : ndarray of float64
+        Rows of the bodies and of their loads, which are set to zero.
+    begin, end : int
+        First disc and the one behind the last.
+    dt, gravity : float
+        Time step (s), acceleration of gravity (m/s2).
+    turning : float
+        2 where discs turn (d(omega r)/dt = torque r / I with I = m r^2 / 2), else 0.
+    motion : ndarray of float64
+        Sums that grow, at the places KINETIC, FASTEST and POTENTIAL.
+    """
 
     def generate(context, builder, signature, arguments):
         access = Access(context, builder, signature, arguments)
-        zero, dt = constant([0.0] * 4), access[4]
-        gain, fall = zero, builder.insert_element(zero, builder.fmul(access[5], dt), WORD(1))
-        for lane, rate in enumerate((dt, dt, builder.fmul(access[6], dt))):
-            gain = builder.insert_element(gain, rate, WORD(lane))
-        gain, fall, way = Lanes(builder, gain), Lanes(builder, fall), spread(builder, dt, 2)
+        zero = constant([0.0] * 4)
+        gain, fall = _rates(builder, access[4], access[5], access[6])
+        way = spread(builder, access[4], 2)
         kinetic, fastest, potential = (
             access.running(7, place, width)
             for place, width in ((KINETIC, 4), (FASTEST, 2), (POTENTIAL, 2))
@@ -172,13 +220,14 @@ def move_rows(typing, body, load, begin, end, dt, gravity, turning, motion):
             velocity, force = access.place(at, 2), builder.lshr(at, INDEX(1))
             inverse = spread(builder, access.number(0, access.place(at, INVERSE_MASS)), 4)
             root = spread(builder, access.number(0, access.place(at, HALF_ROOT)), 4)
-            old, position, mass = access.load(0, velocity, 4), access.load(0, at, 2), root * root
-            new = fma(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
+            old, position = access.load(0, velocity, 4), access.load(0, at, 2)
+            mass = root * root
+            new = multiply_add(access.load(1, force, FORCE_ROW), inverse * gain, old - fall)
             access.store(new, 0, velocity)  # and the radius, to which nothing was added
-            kinetic.become(fma(mass * old, new, kinetic.now))
-            potential.become(fma(mass.shuffled([0, 1]), position, potential.now))
+            kinetic.become(multiply_add(mass * old, new, kinetic.now))
+            potential.become(multiply_add(mass.shuffled([0, 1]), position, potential.now))
             speed = new.shuffled([0, 1])
-            access.store(fma(speed, way, position), 0, at)
+            access.store(multiply_add(speed, way, position), 0, at)
             square = speed * speed
             fastest.become(larger(square + square.shuffled([1, 0]), fastest.now))
             access.store(Lanes(builder, zero), 1, force)

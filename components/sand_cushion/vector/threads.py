@@ -1,7 +1,14 @@
-"""Parts of a kernel's work on several threads of the operating system, without numba's runtime and without Python.
+"""Parts of a kernel's work on several threads of the operating system.
 
-Threads live for one call. To start one costs some ten microseconds, so a part should take longer than that. What a part computes
-must not depend on the other parts; then neither the number of threads nor their order changes a bit.
+Threads live for one call. To start one costs some ten microseconds, so a part should take longer
+than that. No result of a part depends on the other parts; then neither the number of threads nor
+their order changes a bit.
+
+The calls are written as LLVM IR because a kernel makes them itself, with the same bits in this
+process, in an FMU with Python and in a native one. The alternatives fail in one of the three:
+numba's ``prange`` needs its runtime, which a native FMU has not, and costs more than it saves below
+50,000 discs; a thread pool of Python cannot be used from inside a step; a library in C would need a
+compiler where FMUs with Python are made.
 """
 
 import sys

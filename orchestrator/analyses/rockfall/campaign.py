@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.slope_rockfall.declarations import BODY
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK, trials
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK
+from rockshed.components.slope_rockfall.trajectory import trials
 
 from ...core.errors import InputRefused, Problem
 from ...sites.rockfall.checks import reach

@@ -145,9 +145,9 @@ def _certificate_problems(scheduler: str, certificates: Certificates | None) -> 
 def _local(workers: int | None) -> "Iterator[Client]":
     """Start a scheduler with worker processes of one thread each; dead ones are replaced.
 
-    Who can hand a task to a scheduler runs code as its user. This one and its workers talk TLS with
-    a certificate that is made here, is in their memory only, and is asked of everybody who connects;
-    their web servers have no pages.
+    Who can hand a task to a scheduler runs code as its user. This one and its workers talk TLS,
+    with a certificate that is made here, is in their memory only, and is asked of everybody who
+    connects; their web servers have no pages.
     """
     import dask
     from distributed import Client, LocalCluster, Security

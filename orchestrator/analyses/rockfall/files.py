@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK
 
 from ...core.results.columns import ArrowColumn, result_column, result_table
 from ...core.results.metric import Metric

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockshed.components.slope_rockfall.trajectory import (
+from rockshed.components.slope_rockfall.records import (
     BELOW,
     OUTCOME,
     PASSAGE,

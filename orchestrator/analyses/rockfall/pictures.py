@@ -14,7 +14,7 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from rockshed.components.common.units import kJ
-from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSED_RIGHT, RESTED, STOPPED
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSED_RIGHT, RESTED, STOPPED
 
 from ...pictures.style import (
     BEAM,

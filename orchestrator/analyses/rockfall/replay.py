@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockshed.components.slope_rockfall.trajectory import OUTCOME
+from rockshed.components.slope_rockfall.records import OUTCOME
 
 from ...core.errors import InputRefused, Problem
 from ...sites.rockfall.preparation import PreparedSlope

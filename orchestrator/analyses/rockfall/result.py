@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rockshed.components.slope_rockfall.trajectory import OUTCOME
+from rockshed.components.slope_rockfall.records import OUTCOME
 
 from ...core.results.metric import Metric
 from ...sites.rockfall.preparation import PreparedSlope

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from rockshed.components.slope_rockfall.trajectory import OUTCOME
+from rockshed.components.slope_rockfall.records import OUTCOME
 
 from ...core.results.metric import Metric
 from .campaign import Campaign, TrialRecords

@@ -1,4 +1,4 @@
-"""Variables of the relay."""
+"""Variables of the relay, which the benchmark of exchanges couples twice."""
 
 from rockshed.components.common.ports import Layout, inp, out
 

@@ -13,7 +13,7 @@ UNIT_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True)
-class Unit:
+class UnitDefinition:
     """A unit and its meaning: value in base units = ``factor`` * value + ``offset``.
 
     Attributes
@@ -32,7 +32,7 @@ class Unit:
     factor: float = 1.0
     offset: float = 0.0
 
-    def agrees_with(self, other: "Unit") -> bool | None:
+    def agrees_with(self, other: "UnitDefinition") -> bool | None:
         """Tell whether a value means the same in both units; None where that cannot be known."""
         if self.base is None or other.base is None:
             return True if self.name == other.name else None
@@ -57,7 +57,7 @@ class Port:
         Family of FMI calls that moves it: Real, Integer, Boolean or String.
     causality : str
         parameter, input, output, local, ... as in the model description.
-    unit : Unit, optional
+    unit : UnitDefinition, optional
         Of the value.
     minimum, maximum : float, optional
         Range.
@@ -75,7 +75,7 @@ class Port:
     reference: int
     kind: str
     causality: str
-    unit: Unit | None = None
+    unit: UnitDefinition | None = None
     minimum: float | None = None
     maximum: float | None = None
     items: Mapping[str, int] = field(default_factory=dict)

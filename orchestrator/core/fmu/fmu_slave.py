@@ -45,7 +45,7 @@ from fmpy.model_description import (
 
 from ..errors import InputRefused, Problem
 from .annotations import NOTHING, Annotation, read_annotations
-from .description import Description, Port, Unit
+from .description import Description, Port, UnitDefinition
 from .slave import (
     BOOLEAN,
     ERROR,
@@ -233,11 +233,11 @@ def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:
         raise ValueError(f"its {_DESCRIPTION_FILE} is not valid: {cause}") from error
 
 
-def _unit(unit: Any) -> Unit:
+def _unit(unit: Any) -> UnitDefinition:
     if unit.baseUnit is None:
-        return Unit(unit.name)
+        return UnitDefinition(unit.name)
     exponents = {symbol: int(getattr(unit.baseUnit, symbol)) for symbol in _BASE_UNITS}
-    return Unit(
+    return UnitDefinition(
         unit.name,
         {symbol: n for symbol, n in exponents.items() if n},
         unit.baseUnit.factor,
@@ -256,7 +256,7 @@ _KINDS_OF_FMI_3 = {
 
 
 def _ports(
-    variable: ModelVariable, units: dict[str, Unit], annotation: Annotation
+    variable: ModelVariable, units: dict[str, UnitDefinition], annotation: Annotation
 ) -> Iterator[Port]:
     """Return one port, or as many as an array of fixed size has elements."""
     port = replace(_port(variable, units), annotation=annotation)
@@ -273,7 +273,7 @@ def _ports(
         yield replace(port, name=f"{port.name}[{','.join(map(str, place))}]", start=start)
 
 
-def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
+def _port(variable: ModelVariable, units: dict[str, UnitDefinition]) -> Port:
     def attribute(name: str) -> Any:
         own = getattr(variable, name, None)
         if own is not None or variable.declaredType is None:
@@ -290,7 +290,7 @@ def _port(variable: ModelVariable, units: dict[str, Unit]) -> Port:
         variable.valueReference,
         _KINDS_OF_FMI_3.get(variable.type, variable.type),
         variable.causality,
-        None if unit is None else units.get(unit, Unit(unit)),
+        None if unit is None else units.get(unit, UnitDefinition(unit)),
         bound("min"),
         bound("max"),
         {item.name: int(item.value) for item in items},

@@ -71,7 +71,7 @@ class Slave(Protocol):
     addresses: Addresses | None
 
     def set(self, references: ValueReferences, values: Values, kind: str = REAL) -> int:
-        """Set variables of one kind. Integers and booleans come as whole floats."""
+        """Set variables of one kind. IntegerTable and booleans come as whole floats."""
 
     def get(self, references: ValueReferences, out: Values, kind: str = REAL) -> int:
         """Write the present values of variables of one kind into ``out``."""

@@ -9,7 +9,7 @@ from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
 from .blocks import make_blocks
 from .snapshots import Snapshots
-from .tables import CHANNEL, WATCHED, Integers, Records
+from .tables import CHANNEL, WATCHED, IntegerTable, Records
 
 
 class Buses:
@@ -34,7 +34,7 @@ class Buses:
         Extremes and integral of each watched output.
     """
 
-    def __init__(self, plan: Plan, journal: Integers | None = None) -> None:
+    def __init__(self, plan: Plan, journal: IntegerTable | None = None) -> None:
         self.plan = plan
         self.inputs = np.zeros(len(plan.inputs))
         self.outputs = np.zeros(len(plan.outputs))

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..system.clock import to_seconds
 from ..system.schedule import Action, Operation, Schedule
-from .tables import Integers
+from .tables import IntegerTable
 
 FILE = "journal.bin"
 LEGEND = "journal.json"
@@ -45,7 +45,7 @@ class Journal:
     def __init__(self, folder: Path, components: Sequence[str]) -> None:
         self._folder = folder
         self._components = list(components)
-        self.entries: Integers = np.zeros(2, np.int64)
+        self.entries: IntegerTable = np.zeros(2, np.int64)
         if _IS_FILE:
             self.entries = np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
         self.entries[:] = _NOTHING

@@ -17,13 +17,13 @@ from platformdirs import user_cache_path
 
 from ...files import write_file
 from ...versions import version_of
-from .tables import ENTRY, Integers
+from .tables import ENTRY, IntegerTable
 
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
 """Environment variable that names the folder in which machine code is kept; by default it is
 ``rockshed`` in the user's cache folder, as for compiled kernels."""
 
-Advance = Callable[[Integers, int, int], tuple[int, int, int]]
+Advance = Callable[[IntegerTable, int, int], tuple[int, int, int]]
 """The function :func:`rockshed.core.loop.compiled.advance`, with the :func:`~.tables.head` of the
 tables in the place of the tables."""
 
@@ -63,7 +63,7 @@ def advance() -> Advance:
     kind = ctypes.PYFUNCTYPE(integer, integer, integer, integer, integer)
     function = kind(_engine().get_function_address(ENTRY))
 
-    def call(head: Integers, first: int, count: int) -> tuple[int, int, int]:
+    def call(head: IntegerTable, first: int, count: int) -> tuple[int, int, int]:
         outcome = (integer * 3)()
         function(head.ctypes.data, first, count, ctypes.addressof(outcome))
         return outcome[0], outcome[1], outcome[2]

@@ -18,7 +18,7 @@ _SECONDS_TOGETHER = 1.0
 
 
 class Sink(Protocol):
-    """Takes rows and frames."""
+    """Interface of the files that take rows and frames."""
 
     def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
         """Append the values of all columns, a row for each time (s)."""

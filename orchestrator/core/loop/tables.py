@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Records = NDArray[np.void]
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+FloatTable = NDArray[np.float64]
+IntegerTable = NDArray[np.int64]
 
 NOT_FINITE = -1
 """Status of an operation that brought a value that is no finite number."""
@@ -85,17 +85,17 @@ class Tables(NamedTuple):
     every: int
     width: int
     row: int
-    first: Integers
+    first: IntegerTable
     operations: Records
     moves: Records
-    inputs: Floats
-    outputs: Floats
+    inputs: FloatTable
+    outputs: FloatTable
     source: NDArray[np.uint64]
     integers: NDArray[np.int32]
     channels: Records
     watched: Records
-    snapshots: Floats
-    journal: Integers
+    snapshots: FloatTable
+    journal: IntegerTable
 
 
 NUMBERS = ("start", "exchange", "every", "width", "row")
@@ -120,7 +120,7 @@ ENTRY = "rockshed_advance"
 """Name of the loop as a C function in the object code."""
 
 
-def head(tables: Tables) -> Integers:
+def head(tables: Tables) -> IntegerTable:
     """Return the numbers among the tables, then address and length of each array.
 
     Parameters

@@ -37,7 +37,7 @@ from .series import Series
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class StoredRun:
     """Results of a run, as its folder holds them.
 
     ``run["rock.position.x"]`` is a :class:`~rockshed.core.results.series.Series`; iterating over a
@@ -168,7 +168,7 @@ def _stored_states(path: Path, component: str) -> Iterator[tuple[float, bytes]]:
                 yield float(at), file[f"{component}/state/{number}"][:].tobytes()
 
 
-def read_run(folder: Path) -> Run:
+def read_run(folder: Path) -> StoredRun:
     """Read the folder of a run, or what a run that was killed has left.
 
     Parameters
@@ -178,7 +178,7 @@ def read_run(folder: Path) -> Run:
 
     Returns
     -------
-    Run
+    StoredRun
 
     Raises
     ------
@@ -200,7 +200,7 @@ def read_run(folder: Path) -> Run:
         columns = read_columns(place / COLUMNS)
     with undamaged(place / SUMMARY):
         metrics = _read_metrics(place / SUMMARY)
-    return Run(place, provenance, metrics, columns, _read_series(place, columns))
+    return StoredRun(place, provenance, metrics, columns, _read_series(place, columns))
 
 
 def _place_of(folder: Path) -> Path:
@@ -256,7 +256,12 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
     with undamaged(folder / COLUMNS):
-        return {column.name: table[column.name].to_numpy() for column in columns}
+        return {column.name: _numbers(table[column.name]) for column in columns}
+
+
+def _numbers(column: Any) -> NDArray[np.float64]:
+    """Return a column as one array. Its ``to_numpy`` would import pandas, wherever that is."""
+    return np.concatenate([np.empty(0), *map(np.from_dlpack, column.chunks)])
 
 
 def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:

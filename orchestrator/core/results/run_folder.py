@@ -264,7 +264,7 @@ class _Stream:
         """Write a batch: columns of equal length."""
         import pyarrow as pa
 
-        arrays = [pa.array(c, field.type) for c, field in zip(columns, self._schema, strict=True)]
+        arrays = [_arrow(c, field.type) for c, field in zip(columns, self._schema, strict=True)]
         self._writer.write_batch(pa.record_batch(arrays, schema=self._schema))
         self._file.flush()
 
@@ -272,6 +272,22 @@ class _Stream:
         """End the stream, so that it is complete."""
         self._writer.close()
         self._file.close()
+
+
+def _arrow(values: Sequence[Any], kind: Any) -> Any:
+    """Return numbers, texts or bytes as an Arrow array.
+
+    It is made from buffers: ``pyarrow.array`` would import pandas wherever that is installed.
+    """
+    import pyarrow as pa
+
+    if pa.types.is_floating(kind):
+        numbers = np.ascontiguousarray(values, np.float64)
+        return pa.Array.from_buffers(kind, len(numbers), [None, pa.py_buffer(numbers)])
+    parts = [value.encode() if isinstance(value, str) else bytes(value) for value in values]
+    ends = np.cumsum([0, *map(len, parts)], dtype=np.int32)
+    content = [None, pa.py_buffer(ends), pa.py_buffer(b"".join(parts))]
+    return pa.Array.from_buffers(kind, len(parts), content)
 
 
 def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:

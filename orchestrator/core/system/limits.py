@@ -5,7 +5,7 @@ import math
 from ..errors import Problem
 from .clock import to_seconds
 from .plan import Starts
-from .system import System
+from .system import SystemSpec
 from .timing import Timing
 
 MOST_VALUES = 100_000_000
@@ -18,12 +18,12 @@ MOST_INTERNAL_STEPS = 100_000
 there, nor tell how far it is."""
 
 
-def amount_problems(system: System, timing: Timing, columns: int) -> list[Problem]:
+def amount_problems(system: SystemSpec, timing: Timing, columns: int) -> list[Problem]:
     """Find out whether a run would record too much.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Says which states are recorded.
     timing : Timing
         Of the run.
@@ -55,12 +55,12 @@ def amount_problems(system: System, timing: Timing, columns: int) -> list[Proble
     return problems
 
 
-def internal_step_problems(system: System, starts: Starts) -> list[Problem]:
+def internal_step_problems(system: SystemSpec, starts: Starts) -> list[Problem]:
     """Find components that would make too many internal steps at once.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Gives the communication steps.
     starts : Starts
         Values of ``internal_step`` are looked for among them.

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..fmu.description import Description, Port
 from .schedule import Schedule
-from .system import System
+from .system import SystemSpec
 from .timing import Timing
 
 Starts = Mapping[str, list[tuple[Port, float | str]]]
@@ -62,7 +62,7 @@ class Plan:
 
     Attributes
     ----------
-    system : System
+    system : SystemSpec
         As it was checked.
     order : tuple of str
         Components in the order of their turns.
@@ -91,7 +91,7 @@ class Plan:
         For the user.
     """
 
-    system: System
+    system: SystemSpec
     order: tuple[str, ...]
     descriptions: Mapping[str, Description]
     timing: Timing

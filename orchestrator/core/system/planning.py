@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused, Problem
-from ..fmu.description import Description, Port, Unit
+from ..fmu.description import Description, Port, UnitDefinition
 from ..fmu.fmu_slave import read_description
 from ..fmu.slave import REAL, Source
 from .limits import amount_problems, internal_step_problems
@@ -19,18 +19,18 @@ from .names import expand, nearest, select
 from .plan import BondPlaces, End, Plan
 from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
-from .system import ComponentSpec, Connection, PowerBond, System, Value
+from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
 from .units import is_joule, unit_text, units_agree
 from .values import value_for
 
 
-def make_plan(system: System, sources: Mapping[str, Source]) -> Plan:
+def make_plan(system: SystemSpec, sources: Mapping[str, Source]) -> Plan:
     """Check the whole system and resolve every name.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Checked in its form already.
     sources : mapping of str to Source
         Give the model descriptions of the components.
@@ -81,7 +81,7 @@ class _Planner:
     A part that depends on something missing is passed over in silence.
     """
 
-    system: System
+    system: SystemSpec
     sources: Mapping[str, Source]
     problems: list[Problem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -471,7 +471,7 @@ class _Planner:
                     "name forces with positions and torques with angles, in SI units",
                 )
                 return
-        if work and is_joule(work[0].port.unit, Unit("1", {})) is False:
+        if work and is_joule(work[0].port.unit, UnitDefinition("1", {})) is False:
             self._refuse(
                 where, f"{work[0].name} is in {work[0].port.unit_name}", "name an output in J"
             )

@@ -141,7 +141,7 @@ class EnergyAlarm(_Data):
     reference: str | Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 
 
-class System(_Data):
+class SystemSpec(_Data):
     """A co-simulation: what takes part, how it is connected and how it is run.
 
     Attributes
@@ -197,7 +197,7 @@ class System(_Data):
         return self.components[component].step or self.exchange_step
 
 
-def system_from(data: Mapping[str, Any], where: str = "system") -> System:
+def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
     """Make a system of plain data.
 
     Parameters
@@ -209,7 +209,7 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
 
     Returns
     -------
-    System
+    SystemSpec
 
     Raises
     ------
@@ -218,12 +218,12 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> System:
         its key.
     """
     try:
-        return System.model_validate(data)
+        return SystemSpec.model_validate(data)
     except ValidationError as error:
         found = sentences(error.errors())
         raise InputRefused(
             [_form_problem(where, key, texts) for key, texts in found.items()]
-        ) from (error)
+        ) from error
 
 
 def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem:
@@ -231,7 +231,7 @@ def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem
     return Problem(f"{where}: {'.'.join(map(str, key))}", "; ".join([" or ".join(texts), *hints]))
 
 
-def load_system(path: Path) -> System:
+def load_system(path: Path) -> SystemSpec:
     """Read a system from a TOML file.
 
     Parameters
@@ -241,7 +241,7 @@ def load_system(path: Path) -> System:
 
     Returns
     -------
-    System
+    SystemSpec
 
     Raises
     ------
@@ -258,12 +258,12 @@ def load_system(path: Path) -> System:
     return system.model_copy(update={"components": components})
 
 
-def with_values(system: System, values: Mapping[str, Value]) -> System:
+def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
     """Return the system with other values.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Stays as it is.
     values : mapping of str to value
         By ``component.parameter`` or by the name of a shared value. A value that is shared changes
@@ -271,7 +271,7 @@ def with_values(system: System, values: Mapping[str, Value]) -> System:
 
     Returns
     -------
-    System
+    SystemSpec
 
     Raises
     ------
@@ -309,7 +309,7 @@ def with_values(system: System, values: Mapping[str, Value]) -> System:
     )
 
 
-def _owner(system: System, name: str) -> str | None:
+def _owner(system: SystemSpec, name: str) -> str | None:
     """Return the shared value that a name stands for or that its parameter takes."""
     for key, entry in system.shared.items():
         if name == key or any(matches(target, name) for target in entry.targets):
@@ -329,7 +329,7 @@ def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
 _KEYS = sorted(
     {
         key
-        for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, System)
+        for model in (ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, SystemSpec)
         for key in model.model_fields
     }
 )

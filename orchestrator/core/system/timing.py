@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ..errors import Problem
 from .clock import to_seconds, to_ticks
 from .schedule import fits, nearest_steps
-from .system import System
+from .system import SystemSpec
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class Timing:
         return to_seconds(self.start + exchange * self.exchange)
 
 
-def make_timing(system: System, problems: list[Problem]) -> Timing | None:
+def make_timing(system: SystemSpec, problems: list[Problem]) -> Timing | None:
     """Turn every time of a system into whole ticks.
 
     Parameters
     ----------
-    system : System
+    system : SystemSpec
         Times in s.
     problems : list of Problem
         Gets the reasons where steps and times do not fit together.
@@ -70,7 +70,7 @@ def make_timing(system: System, problems: list[Problem]) -> Timing | None:
     )
 
 
-def _all_ticks(system: System, problems: list[Problem]) -> dict[str, int] | None:
+def _all_ticks(system: SystemSpec, problems: list[Problem]) -> dict[str, int] | None:
     before = len(problems)
     times = {
         "exchange_step": system.exchange_step,
@@ -84,7 +84,9 @@ def _all_ticks(system: System, problems: list[Problem]) -> dict[str, int] | None
     return ticks if len(problems) == before else None
 
 
-def _misfits(system: System, ticks: Mapping[str, int], steps: Mapping[str, int]) -> list[Problem]:
+def _misfits(
+    system: SystemSpec, ticks: Mapping[str, int], steps: Mapping[str, int]
+) -> list[Problem]:
     """Find steps and times that do not fit together, and a set of times that does."""
     exchange = ticks["exchange_step"]
     start = ticks["start_time"]

@@ -1,17 +1,17 @@
 """Units of ports that are connected."""
 
-from ..fmu.description import Unit
+from ..fmu.description import UnitDefinition
 
 _JOULE = {"kg": 1, "m": 2, "s": -2}
 """Exponents of the base units of energy."""
 
 
-def units_agree(one: Unit | None, other: Unit | None) -> bool | None:
+def units_agree(one: UnitDefinition | None, other: UnitDefinition | None) -> bool | None:
     """Tell whether values can pass unchanged; None where that cannot be known.
 
     Parameters
     ----------
-    one, other : Unit or None
+    one, other : UnitDefinition or None
         A port without a unit goes with everything.
     """
     if one is None or other is None:
@@ -19,12 +19,12 @@ def units_agree(one: Unit | None, other: Unit | None) -> bool | None:
     return one.agrees_with(other)
 
 
-def unit_text(unit: Unit | None) -> str:
+def unit_text(unit: UnitDefinition | None) -> str:
     """Return a unit with its meaning in base units: ``kN (1000 kg.m.s-2)``.
 
     Parameters
     ----------
-    unit : Unit or None
+    unit : UnitDefinition or None
         ``1`` stands for none.
     """
     if unit is None:
@@ -36,12 +36,12 @@ def unit_text(unit: Unit | None) -> str:
     return f"{unit.name} ({unit.factor:g} {'.'.join(powers) or '1'}{offset})"
 
 
-def is_joule(one: Unit | None, other: Unit | None) -> bool | None:
+def is_joule(one: UnitDefinition | None, other: UnitDefinition | None) -> bool | None:
     """Tell whether the product of two units is the joule; None where that cannot be known.
 
     Parameters
     ----------
-    one, other : Unit or None
+    one, other : UnitDefinition or None
         An angle counts as a number.
     """
     if one is None or other is None or one.base is None or other.base is None:

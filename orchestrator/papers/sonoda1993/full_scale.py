@@ -72,7 +72,7 @@ POURED: Mapping[str, Value] = {
     "sand.rolling_resistance": 0.3,
 }
 """The same brought to the solid fraction of poured sand: no pack is looser than another."""
-BULK: Mapping[str, Value] = {"sand.unit_weight_of": "layer"}
+BULK: Mapping[str, Value] = {"sand.density_of": "layer"}
 """0.0018 kgf/cm3 as the unit weight of the layer instead of that of a disc."""
 UNLOADING: Mapping[str, Value] = {"sand.unloading_ratio": 3.0}
 """Unloading stiffness / loading stiffness of the contacts (Walton and Braun)."""

@@ -40,7 +40,7 @@ HARDLY = 0.10
 
 
 @dataclass(frozen=True)
-class Impact:
+class SlopeImpact:
     """Ground and rock, on which e depends besides the speed.
 
     Attributes
@@ -82,8 +82,8 @@ class Impact:
         )
 
 
-BASE = Impact()
-VARIATIONS: dict[str, tuple[str, list[tuple[str, Impact]]]] = {
+BASE = SlopeImpact()
+VARIATIONS: dict[str, tuple[str, list[tuple[str, SlopeImpact]]]] = {
     "strength": (
         "q_d, k = 30 MN/m³",
         [(f"{q} kN/m²", replace(BASE, strength=q * kN)) for q in (6000, 3000, 1500)],

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
-from rockshed.components.slope_rockfall.refusals import FOLDED, cell_problems, common_fault
+from rockshed.components.slope_rockfall.faults import FOLDED
 
 from ...core.errors import InputRefused, Problem
 from ...input_files.form import first, formed
@@ -149,6 +149,9 @@ def _set_profile(instance: Instance, nodes: Sequence[Node]) -> None:
 
 def _slope_problems(instance: Instance, nodes: Sequence[Node], where: Places) -> Iterator[Problem]:
     """Yield the faults of single cells, and of the values that all trials share."""
+    # kernels: a run that draws no slope needs no numba
+    from rockshed.components.slope_rockfall.refusals import cell_problems, common_fault
+
     for cell, fault, text in cell_problems(instance):
         yield Problem(nodes[cell + 1 if fault == FOLDED else cell].where, text)
     if fault := common_fault(instance.w):

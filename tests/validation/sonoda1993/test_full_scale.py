@@ -115,15 +115,13 @@ def test_weight_of_the_cushion_follows_from_the_sand_unless_it_is_given():
 
     plain = weight()
     assert plain == pytest.approx(270 * 1800.0 * math.pi * 0.05**2 * 1.7 * 9.80665)
-    assert weight(**{"sand.unit_weight": 3600, "sand.depth": 0.85}) == pytest.approx(plain)
+    assert weight(**{"sand.density": 3600, "sand.thickness": 0.85}) == pytest.approx(plain)
     assert weight(**{"sand.packing": "random", "sand.disc.spread": 0.3}) == pytest.approx(
         1.03 * plain
     )
-    assert weight(**{"sand.unit_weight": 3600, "beam.cushion.weight": 1000}) == 1000.0
+    assert weight(**{"sand.density": 3600, "beam.cushion.weight": 1000}) == 1000.0
     assert (
-        system("girders-8", **{"sand.unit_weight": "heavy"})
-        .components["sand"]
-        .parameters["unit_weight"]
+        system("girders-8", **{"sand.density": "heavy"}).components["sand"].parameters["density"]
         == "heavy"
     )
 
@@ -194,7 +192,7 @@ def packed(name):
 @pytest.mark.parametrize("name", ["girders-8", "girders-12", "rigid-base-crushed"])
 def test_a_random_pack_is_at_rest_and_the_rock_meets_it_with_its_speed(name):
     done = packed(name)
-    assert done.series["sand.unrest"][0] <= 1e-6
+    assert done.series["sand.unbalanced_force_ratio"][0] <= 1e-6
     surface, height = done.series["sand.surface_height"][0], done.series["rock.position.y"]
     assert height[0] - ROCK_RADIUS > surface
     before = height - ROCK_RADIUS > surface + 0.05

@@ -1,0 +1,261 @@
+"""Forces between sand discs, in blocks of pairs, and the motion of the discs that follows."""
+
+import math
+from collections import namedtuple
+
+from ..common.kernels import inlined, kernel, view
+from .bodies import bodies_of
+from .contact_law import rolling_response
+from .contact_search import first_of, part_count, second_of
+from .declarations import (
+    BLOCK,
+    COLUMN,
+    FREE,
+    KIND,
+    LANES,
+    LAW,
+    LAYOUT,
+    MOTION,
+    ROLL,
+    SUM,
+    TALLY,
+)
+from .laws import law_of
+from .vector.law import lasting_law, plain_law
+from .vector.rows import (
+    FASTEST,
+    KINETIC,
+    POTENTIAL,
+    columns_to_pairs,
+    forces_to_pairs,
+    move_rows,
+    pairs_to_columns,
+)
+from .vector.threads import shared_among_threads
+
+V, A = LAYOUT.scalar, LAYOUT.array
+
+Model = namedtuple("Model", "turns rolls lasts dt gravity")
+"""Whether discs turn, resist rolling, and have contacts that yield or stick together; time step (s)
+and gravity (m/s2)."""
+
+Pairs = namedtuple("Pairs", "pair spring plastic roll law angle block tally rolling motion")
+"""Pairs of discs: their numbers, tangential spring forces (N), permanent overlaps (m), rolling
+moments (N m), constants of the law; angles of the discs (rad); and room for a part's work: block of
+columns, energies in lanes, energies of rolling, sums over the motion."""
+
+
+@inlined
+def set_to_zero(numbers):
+    """Set all numbers to zero."""
+    for q in range(numbers.size):
+        numbers[q] = 0.0
+
+
+@inlined
+def part_of(buffer, k, entry, c, length):
+    """Return the room of part c in an array that holds ``length`` numbers for each part."""
+    begin = k[entry] + c * length
+    return buffer[begin : begin + length]
+
+
+@inlined
+def pairs_of(c, x, k):
+    """Return the :class:`Pairs` for part c, views of the state."""
+    return Pairs(
+        view(k, k, A.pair),
+        view(x, k, A.spring),
+        view(x, k, A.plastic),
+        view(x, k, A.roll),
+        view(x, k, A.law),
+        view(x, k, A.angle),
+        part_of(x, k, A.block, c, BLOCK * len(COLUMN)),
+        part_of(x, k, A.tally, c, LANES * len(TALLY)),
+        part_of(x, k, A.rolling, c, len(ROLL)),
+        part_of(x, k, A.motion, c, MOTION),
+    )
+
+
+@inlined
+def model_of(dt, w):
+    """Return the :class:`Model` that the parameters ask for, with the time step ``dt`` (s)."""
+    turns = w[V.rotation] == FREE
+    lasts = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
+    return Model(turns, turns and w[V.rolling_resistance] > 0.0, lasts, dt, w[V.gravity])
+
+
+@inlined
+def press_block(p, model, bodies, pairs):
+    """Compute the forces of a block of pairs, those from ``p`` on."""
+    block, dt = pairs.block, model.dt
+    pairs_to_columns(bodies.rows, pairs.pair, p, block)
+    if model.lasts:
+        lasting_law(block, pairs.spring, pairs.plastic, pairs.law, dt, p, pairs.tally)
+    else:
+        plain_law(block, pairs.spring, pairs.plastic, pairs.law, dt, p, pairs.tally)
+    if model.turns:
+        columns_to_pairs(bodies.loads, pairs.pair, p, block)
+    else:
+        forces_to_pairs(bodies.loads, pairs.pair, p, block)
+    if model.rolls:
+        roll_block(p, dt, bodies, pairs)
+
+
+@inlined
+def roll_block(begin, dt, bodies, pairs):
+    """Let rolling resistance act in a block of pairs, those from ``begin`` on."""
+    law = law_of(KIND.sand, 1.0, pairs.law)
+    for q in range(BLOCK):
+        normal = pairs.block[3 * BLOCK + q]
+        if normal <= 0.0:
+            pairs.roll[begin + q] = 0.0
+            continue
+        i, j = first_of(pairs.pair[begin + q]), second_of(pairs.pair[begin + q])
+        ri, rj = bodies.radius[i], bodies.radius[j]
+        speed, radius = bodies.spin[j] / rj - bodies.spin[i] / ri, ri * rj / (ri + rj)
+        rolling = rolling_response(pairs.roll[begin + q], speed, radius, normal, law, dt)
+        pairs.roll[begin + q] = rolling.moment
+        pairs.rolling[ROLL.lost] += rolling.dissipated
+        pairs.rolling[ROLL.elastic] += rolling.elastic
+        bodies.turn[i] += rolling.moment / ri
+        bodies.turn[j] -= rolling.moment / rj
+
+
+@kernel
+def press_pairs(span, c, moving, dt, w, x, k):
+    """Compute the forces between the discs of some pairs: eq. (1) of the paper.
+
+    Parameters
+    ----------
+    span : tuple of int
+        First pair and the one behind the last, whole blocks.
+    c : int
+        Part of the discs whose room is used.
+    moving : bool
+        Whether these are all pairs within part c. Its discs then go on in time, each as soon as it
+        has its last force.
+    dt : float
+        Time step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
+    bodies, pairs, model = bodies_of(x, k), pairs_of(c, x, k), model_of(dt, w)
+    part = view(k, k, A.part)
+    begin, end = span
+    done, last = part[c], part[c + 1]
+    for p in range(begin, end, BLOCK):
+        press_block(p, model, bodies, pairs)
+        if moving:
+            ready = last
+            if p + BLOCK < end:
+                ready = first_of(pairs.pair[p + BLOCK])
+            move_discs(done, ready, model, bodies, pairs)
+            done = ready
+    if moving:
+        move_discs(done, last, model, bodies, pairs)
+
+
+@inlined
+def move_discs(begin, end, model, bodies, pairs):
+    """Move the discs from ``begin`` to before ``end`` on, and forget the forces on them."""
+    turning = 2.0 if model.turns else 0.0
+    rows, loads, dt = bodies.rows, bodies.loads, model.dt
+    move_rows(rows, loads, begin, end, dt, model.gravity, turning, pairs.motion)
+    if model.turns:
+        for i in range(begin, end):
+            pairs.angle[i] += bodies.spin[i] / bodies.radius[i] * dt
+
+
+@kernel
+def press_part(c, moving, dt, w, x, k):
+    """Do :func:`press_pairs` for the pairs within part c."""
+    part, row = view(k, k, A.part), view(k, k, A.row)
+    press_pairs((row[part[c]], row[part[c + 1]]), c, moving, dt, w, x, k)
+
+
+press_parts = shared_among_threads(press_part)
+
+
+@kernel
+def press_discs(dt, moving, w, x, k):
+    """Add the forces between sand discs to their loads, and what they do to the energy.
+
+    Parameters
+    ----------
+    dt : float
+        Time step (s).
+    moving : bool
+        Whether the discs go on in time.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    tuple of float
+        Kinetic and potential energy (J) at the beginning of the step, where the contact forces were
+        computed: with velocities half a step before and after it, m v_before v_after / 2. Zero
+        without ``moving``.
+    """
+    across, parts = view(k, k, A.across), part_count(k)
+    for entry in (A.tally, A.motion, A.rolling):
+        set_to_zero(view(x, k, entry))
+    press_pairs((across[0], across[across.size - 1]), 0, False, dt, w, x, k)
+    press_parts(int(w[V.threads]), parts, moving, dt, w, x, k)
+    law, sums = view(x, k, A.law), view(x, k, A.sums)
+    add_energies(dt, law, view(x, k, A.tally)[: parts * LANES * len(TALLY)], sums)
+    add_rolling(view(x, k, A.rolling), sums)
+    return add_motion(dt, w[V.gravity], view(x, k, A.motion)[: parts * MOTION], sums)
+
+
+@kernel
+def add_energies(dt, law, tally, sums):
+    """Add the energies of the parts to the sums (J), which gives them their scale."""
+    compliance = law[LAW.compliance]
+    sums[SUM.elastic] += 0.5 * (
+        total(TALLY.elastic, tally) + total(TALLY.stretched, tally) * compliance
+    )
+    sums[SUM.normal_dashpot] += total(TALLY.normal_dashpot, tally) * dt
+    sums[SUM.tangential_dashpot] += (
+        law[LAW.tangential_damping] * total(TALLY.tangential_dashpot, tally) * dt
+    )
+    sums[SUM.sliding] += (
+        total(TALLY.sliding, tally) * dt + 0.5 * total(TALLY.released, tally) * compliance
+    )
+    sums[SUM.plastic] += total(TALLY.plastic, tally)
+    sums[SUM.capillary] += total(TALLY.capillary, tally)
+
+
+@kernel
+def add_rolling(rolling, sums):
+    """Add the energies of rolling resistance of the parts to the sums (J)."""
+    for q in range(0, rolling.size, len(ROLL)):
+        sums[SUM.elastic] += rolling[q + ROLL.elastic]
+        sums[SUM.rolling] += rolling[q + ROLL.lost]
+
+
+@kernel
+def total(energy, tally):
+    """Return one of the energies of TALLY over all parts: the sum of the lanes in four pairs."""
+    result = 0.0
+    for begin in range(LANES * energy, tally.size, LANES * len(TALLY)):
+        lane = tally[begin : begin + LANES]
+        result += (
+            (lane[0] + lane[4]) + (lane[1] + lane[5]) + ((lane[2] + lane[6]) + (lane[3] + lane[7]))
+        )
+    return result
+
+
+@kernel
+def add_motion(dt, gravity, motion, sums):
+    """Add the way of the fastest disc (m) to the sums; return energies, see :func:`press_discs`."""
+    kinetic, potential, fastest = 0.0, 0.0, 0.0
+    for q in range(0, motion.size, MOTION):
+        kinetic += motion[q + KINETIC] + motion[q + KINETIC + 1] + 0.5 * motion[q + KINETIC + 2]
+        potential += motion[q + POTENTIAL + 1]
+        fastest = max(fastest, motion[q + FASTEST])
+    sums[SUM.travelled] += math.sqrt(fastest) * dt
+    return 2.0 * kinetic, 4.0 * potential * gravity
