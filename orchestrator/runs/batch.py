@@ -26,7 +26,6 @@ from .outcome import Outcome
 from .request import Request
 
 if TYPE_CHECKING:
-
     from ..core.errors import RunFailed
     from ..core.results.reading import StoredRun
 
@@ -301,10 +300,9 @@ def _end_with(parent: Any) -> None:
     """Wait for the end of the parent; then interrupt the run, so that it tidies up, and end."""
     parent.join()
     last = time.monotonic() + _LONGEST_END
-    if _RUNNING.is_set():
-        interrupt_main()
     while _RUNNING.is_set() and time.monotonic() < last:
-        time.sleep(0.05)
+        interrupt_main()  # not heard before the run has begun
+        time.sleep(0.5)
     os._exit(1)
 
 
