@@ -18,7 +18,8 @@ LAYOUT = Layout(
         param("radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6, source=_SONODA),
         choice(
             "shape",
-            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the parameter moment_of_inertia",
+            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the "
+            "parameter moment_of_inertia",
             ("sphere", "disc", "given"),
             "sphere",
         ),
@@ -31,8 +32,8 @@ LAYOUT = Layout(
         ),
         choice(
             "motion",
-            "free: moves under force, torque and weight; driven: keeps the velocities given for the start whatever acts "
-            "on it, as in a testing machine",
+            "free: moves under force, torque and weight; driven: keeps the velocities given for "
+            "the start whatever acts on it, as in a testing machine",
             ("free", "driven"),
             "free",
             source="driven: Sonoda et al. 1993, fig. 12",

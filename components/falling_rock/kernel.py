@@ -12,12 +12,15 @@ from .faults import DIVERGED
 V = LAYOUT.scalar
 
 UNBOUNDED_STEP = 1e6
-"""Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
+"""Stable step (s) that is published.
+
+Every step is stable without outside forces that depend on the motion.
+"""
 
 
 @kernel
 def inertia(w):
-    """Moment of inertia in use (kg m2)."""
+    """Return the moment of inertia in use (kg m2)."""
     if w[V.shape] == SPHERE:
         return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]
     if w[V.shape] == DISC:
@@ -62,7 +65,17 @@ def move(load, moment_of_inertia, dt, w):
 
 @kernel
 def drive(dt, w):
-    """One step dt (s) with constant velocities. What force, torque and weight do to the rock, the machine undoes."""
+    """Move the rock with constant velocities for a step dt (s).
+
+    The machine undoes what force, torque and weight do to the rock.
+
+    Parameters
+    ----------
+    dt : float
+        Length of the step (s).
+    w : ndarray of float64
+        Variables.
+    """
     contact = dt * (
         w[V.force_x] * w[V.velocity_x]
         + w[V.force_y] * w[V.velocity_y]
@@ -77,7 +90,7 @@ def drive(dt, w):
 
 @kernel
 def energies(w):
-    """Refresh kinetic and potential energy and the residual."""
+    """Write kinetic and potential energy and the residual."""
     speed2 = w[V.velocity_x] * w[V.velocity_x] + w[V.velocity_y] * w[V.velocity_y]
     spin2 = w[V.angular_velocity] * w[V.angular_velocity]
     w[V.energy_kinetic] = 0.5 * w[V.mass] * speed2 + 0.5 * inertia(w) * spin2
@@ -88,7 +101,20 @@ def energies(w):
 
 @kernel
 def initialise(w, x, k):
-    """State at the start from the parameters."""
+    """Set the state at the start from the parameters.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK.
+    """
     w[V.position_x], w[V.position_y], w[V.angle] = w[V.position0_x], w[V.position0_y], w[V.angle0]
     w[V.velocity_x], w[V.velocity_y] = w[V.velocity0_x], w[V.velocity0_y]
     w[V.angular_velocity] = w[V.angular_velocity0]
@@ -103,13 +129,28 @@ def initialise(w, x, k):
 
 @kernel
 def evaluate(w, x, k):
-    """Outputs at the start: :func:`initialise` has set them, and they do not depend on the inputs."""
+    """Leave the outputs at the start: :func:`initialise` has set them, whatever the inputs are."""
     return OK
 
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s) with constant force and torque, or with constant velocities."""
+    """Advance by h with constant force and torque, or with constant velocities.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the communication step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or DIVERGED.
+    """
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     moment_of_inertia = inertia(w)

@@ -1,4 +1,7 @@
-"""The hammer cushion after Smith: loads along one line, unloads and reloads along a steeper one, takes no tension."""
+"""The hammer cushion after Smith.
+
+It loads along one line, unloads and reloads along a steeper one, and takes no tension.
+"""
 
 import math
 
@@ -9,13 +12,41 @@ _ROUNDS = 60
 
 @kernel
 def steeper(stiffness, restitution):
-    """Stiffness (N/m) of unloading: the area under it is restitution squared times that under the line of loading."""
+    """Return the stiffness of unloading, k/e2.
+
+    The area under its line is e2 times that under the line of loading.
+
+    Parameters
+    ----------
+    stiffness : float
+        Of loading, k (N/m).
+    restitution : float
+        Coefficient of restitution e.
+
+    Returns
+    -------
+    float
+        Stiffness (N/m).
+    """
     return stiffness / (restitution * restitution)
 
 
 @kernel
 def cushion_force(compression, largest, stiffness, restitution):
-    """Force (N) at a compression (m) when the largest so far was ``largest`` (m)."""
+    """Return the force of the cushion.
+
+    Parameters
+    ----------
+    compression, largest : float
+        Compression now and the largest so far (m).
+    stiffness, restitution : float
+        Stiffness of loading (N/m) and coefficient of restitution.
+
+    Returns
+    -------
+    float
+        Force (N), not negative.
+    """
     if compression >= largest:
         return stiffness * max(compression, 0.0)
     return max(0.0, stiffness * largest - steeper(stiffness, restitution) * (largest - compression))
@@ -23,7 +54,24 @@ def cushion_force(compression, largest, stiffness, restitution):
 
 @kernel
 def mean_force(start, way, largest, stiffness, restitution):
-    """Mean force (N) while the compression goes evenly from start by way (m): the work on the cushion divided by the way."""
+    """Return the mean force while the compression goes evenly from start by a way.
+
+    It is the work on the cushion divided by the way.
+
+    Parameters
+    ----------
+    start, way : float
+        Compression at the start, and its change (m).
+    largest : float
+        Largest compression so far (m).
+    stiffness, restitution : float
+        Stiffness of loading (N/m) and coefficient of restitution.
+
+    Returns
+    -------
+    float
+        Force (N).
+    """
     slack = largest * (1.0 - restitution * restitution)
     if way == 0.0:
         return cushion_force(start, largest, stiffness, restitution)
@@ -35,7 +83,7 @@ def mean_force(start, way, largest, stiffness, restitution):
 
 @kernel
 def _work(start, end, low, high, largest, stiffness, restitution):
-    """Work (J) from start to end (m), of what lies between low and high, where the force is linear."""
+    """Return the work (J) from start to end (m) between low and high, where the force is linear."""
     begun, done = min(max(start, low), high), min(max(end, low), high)
     forces = cushion_force(begun, largest, stiffness, restitution) + cushion_force(
         done, largest, stiffness, restitution
@@ -45,9 +93,29 @@ def _work(start, end, low, high, largest, stiffness, restitution):
 
 @kernel
 def met(start, free, yielding, largest, stiffness, restitution):
-    """Mean force F (N) of the cushion in a step from the compression start that goes by free - yielding * F (m).
+    """Return the mean force F of the cushion in a step.
+
+    Its compression changes by free - y F in the step.
 
     Newton's method between bounds: the force never falls with the way, so there is one solution.
+
+    Parameters
+    ----------
+    start : float
+        Compression at the start (m).
+    free : float
+        Way of the compression without the force (m).
+    yielding : float
+        Way that a unit force takes off, y (m/N).
+    largest : float
+        Largest compression so far (m).
+    stiffness, restitution : float
+        Stiffness of loading (N/m) and coefficient of restitution.
+
+    Returns
+    -------
+    float
+        F (N), not negative.
     """
     high = free
     low = free - yielding * max(

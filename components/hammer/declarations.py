@@ -49,15 +49,16 @@ LAYOUT = Layout(
         ),
         param(
             "blow.interval",
-            "time from blow to blow: the ram is put on the head again and has its full velocity; 0: one blow",
+            "time from blow to blow: the ram is put on the head again and has its full velocity; "
+            "0: one blow",
             0.0,
             "s",
             minimum=0.0,
         ),
         choice(
             "port",
-            "kinematics: takes position and velocity of the head; waves: takes impedance and wave of the rod. Both give the "
-            "mean force of the step",
+            "kinematics: takes position and velocity of the head; waves: takes impedance and wave "
+            "of the rod. Both give the mean force of the step",
             ("kinematics", "waves"),
             "waves",
         ),
@@ -176,4 +177,7 @@ LAYOUT = Layout(
         State("ends", lambda sizes: 1),
     ),
 )
-"""Hidden: ``largest`` compression of the cushion in this blow (m), ``ends`` force (N) at the end of the last internal step."""
+"""Variables and hidden arrays of the hammer.
+
+``largest`` is the largest compression of the cushion in this blow (m), ``ends`` the force (N) at
+the end of the last internal step."""

@@ -13,13 +13,26 @@ from .faults import DIVERGED, NO_IMPEDANCE, RIGID_NEEDS_WAVES
 V, A = LAYOUT.scalar, LAYOUT.array
 
 UNBOUNDED_STEP = 1e6
-"""Published as stable step (s): the midpoint rule is stable with every step."""
+"""Stable step (s) that is published: the midpoint rule is stable with every step."""
 _ROUNDING = 1e-9
 
 
 @kernel
 def initialise(w, x, k):
-    """The ram above or on the head, with the velocity of its fall."""
+    """Put the ram above or on the head, with the velocity of its fall.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or RIGID_NEEDS_WAVES.
+    """
     if w[V.port] == KINEMATICS and w[V.cushion_stiffness] == 0.0:
         return RIGID_NEEDS_WAVES
     view(x, k, A.largest)[0], view(x, k, A.ends)[0] = 0.0, 0.0
@@ -28,18 +41,17 @@ def initialise(w, x, k):
     w[V.touching] = 1.0 if w[V.gap] == 0.0 and w[V.impact_velocity] > 0.0 else 0.0
     w[V.separation], w[V.blows], w[V.stable_step] = -1.0, 1.0, UNBOUNDED_STEP
     w[V.force], w[V.end_force] = 0.0, 0.0
-    w[V.energy_supplied], w[V.energy_cushion_loss], w[V.energy_contact], w[V.energy_work_head] = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
+    w[V.energy_supplied], w[V.energy_cushion_loss] = 0.0, 0.0
+    w[V.energy_contact], w[V.energy_work_head] = 0.0, 0.0
     return OK
 
 
 @kernel
 def evaluate(w, x, k):
-    """Outputs at the start. Where the head is given, the ram starts above it."""
+    """Compute the outputs at the start.
+
+    With the port of kinematics the ram starts above the head's input position.
+    """
     w[V.head_reached] = 0.0
     if w[V.port] == KINEMATICS:
         w[V.head_reached] = w[V.head_position]
@@ -52,7 +64,22 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s) against a head with the given motion, or against the given wave."""
+    """Advance by h against a head that moves as the inputs say, or against a wave.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the communication step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status: OK, NO_IMPEDANCE or DIVERGED.
+    """
     if w[V.port] == WAVES and w[V.head_impedance] <= 0.0:
         return NO_IMPEDANCE
     if w[V.port] == KINEMATICS:
@@ -85,7 +112,7 @@ def _compression(w):
 
 @kernel
 def _cushion_energy(w, x, k):
-    """Elastic energy in the cushion (J): what it would give back."""
+    """Return the elastic energy in the cushion (J): what it would give back."""
     if w[V.cushion_stiffness] == 0.0:
         return 0.0
     stiffness, restitution = w[V.cushion_stiffness], w[V.cushion_restitution]
@@ -95,13 +122,14 @@ def _cushion_energy(w, x, k):
 
 @kernel
 def _place_head(w, x, k):
-    """Put the head where it is given. The cushion follows; the work of the jump is that of the mean of both forces."""
-    largest, stiffness, restitution = (
-        view(x, k, A.largest),
-        w[V.cushion_stiffness],
-        w[V.cushion_restitution],
-    )
-    way, kept = w[V.head_position] - w[V.head_reached], _cushion_energy(w, x, k)
+    """Put the head at its input position, and the cushion with it.
+
+    The work of the jump is that of the mean of the forces before and after.
+    """
+    largest = view(x, k, A.largest)
+    stiffness, restitution = w[V.cushion_stiffness], w[V.cushion_restitution]
+    way = w[V.head_position] - w[V.head_reached]
+    kept = _cushion_energy(w, x, k)
     before = cushion_force(_compression(w), largest[0], stiffness, restitution)
     w[V.head_reached] = w[V.head_position]
     after = cushion_force(_compression(w), largest[0], stiffness, restitution)
@@ -147,18 +175,11 @@ def _rigid(now, dt, w):
 
 @kernel
 def _cushioned(now, dt, w, x, k):
-    """A step of the ram on its cushion. Returns the mean force on the head (N)."""
-    largest, stiffness, restitution = (
-        view(x, k, A.largest),
-        w[V.cushion_stiffness],
-        w[V.cushion_restitution],
-    )
-    drive, before, kept, start = (
-        w[V.mass] * w[V.gravity] * w[V.weight],
-        w[V.velocity],
-        _cushion_energy(w, x, k),
-        _compression(w),
-    )
+    """Advance the ram on its cushion by a step and return the mean force on the head (N)."""
+    largest = view(x, k, A.largest)
+    stiffness, restitution = w[V.cushion_stiffness], w[V.cushion_restitution]
+    drive, before = w[V.mass] * w[V.gravity] * w[V.weight], w[V.velocity]
+    kept, start = _cushion_energy(w, x, k), _compression(w)
     given, compliance = w[V.head_velocity], 0.0
     if w[V.port] == WAVES:
         given, compliance = w[V.head_wave] / w[V.head_impedance], 1.0 / w[V.head_impedance]
@@ -184,7 +205,7 @@ def _cushioned(now, dt, w, x, k):
 
 @kernel
 def publish(w, x, k):
-    """Refresh the outputs of cushion and energies."""
+    """Write the outputs of cushion and energies."""
     w[V.cushion_compression] = max(_compression(w), 0.0)
     w[V.energy_kinetic] = 0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
     w[V.energy_gravity] = -w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]

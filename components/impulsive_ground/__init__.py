@@ -1,4 +1,7 @@
-"""The ground under an impulsive load: Mogami's plate with its sand, or Smith's soil at the toe of a rod."""
+"""The ground under an impulsive load.
+
+It is Mogami's plate with its sand, or Smith's soil at the toe of a rod.
+"""
 
 from pathlib import Path
 

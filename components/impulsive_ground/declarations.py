@@ -1,4 +1,7 @@
-"""Variables of the ground under a plate, a support or a rod. Equations, frame and signs: README.md beside this file."""
+"""Variables of the ground under a plate, a support or a rod.
+
+Equations, frame and signs: README.md in this folder.
+"""
 
 from collections import namedtuple
 
@@ -13,13 +16,17 @@ SMITH, MOGAMI = 1, 2
 
 Body = namedtuple("Body", "settlement velocity spring slack gap clock")
 BODY = Body(*range(6))
-"""The ground's state, downwards: settlement (m) and velocity (m/s) of the plate (of the toe, where Smith's soil has no mass), force
-of Smith's spring (N), way until it pushes (m), gap between plate and toe (m), time since the plate's onset of motion (s)."""
+"""Places in ``body``, the ground's state; all count downwards.
+
+They are settlement (m) and velocity (m/s) of the plate (of the toe, where Smith's soil has no
+mass), force of Smith's spring (N), way until it pushes (m), gap between plate and toe (m), time
+since the plate's onset of motion (s)."""
 
 _MOGAMI = "Mogami and Tamura 1973"
 _PLATE = 200.0 * cm2
 _R0, _R1 = 0.5519 * kgf, 874.0 * kgf
-"""Of (12) for a weight of 14.70 kg that falls 30 cm on the plate of 200 cm2: R_m at I = 0, and 2 R_m - R0."""
+"""Ends of the resistance (N) by (12), for a weight of 14.70 kg that falls 30 cm on the plate of
+200 cm2: R_m at I = 0, and 2 R_m - R0."""
 _PORT = (
     "port",
     "law",
@@ -46,15 +53,16 @@ LAYOUT = Layout(
     (
         choice(
             "port",
-            "settlement: takes force.y, gives the plate's position; kinematics: takes position and velocity of a toe, gives "
-            "the force on it; wave: takes the wave and the impedance of a rod's toe, gives the force on it",
+            "settlement: takes force.y, gives the plate's position; kinematics: takes position and "
+            "velocity of a toe, gives the force on it; wave: takes the wave and the impedance of a "
+            "rod's toe, gives the force on it",
             ("settlement", "kinematics", "wave"),
             "settlement",
         ),
         choice(
             "law",
-            "smith: a spring that yields, damped, without mass but for the plate's; mogami: a rigid plate with a mass of sand"
-            " against a resistance linear in time since onset",
+            "smith: a spring that yields, damped, without mass but for the plate's; mogami: a "
+            "rigid plate with a mass of sand against a resistance linear in time since onset",
             ("smith", "mogami"),
             "mogami",
         ),
@@ -168,8 +176,8 @@ LAYOUT = Layout(
         ),
         param(
             "preload",
-            "static load that the ground carries in equilibrium at the start and on; forces and waves of the ports "
-            "count beyond it",
+            "static load that the ground carries in equilibrium at the start and on; forces and "
+            "waves of the ports count beyond it",
             0.0,
             "N",
             minimum=0.0,
@@ -191,7 +199,8 @@ LAYOUT = Layout(
         inp("toe.velocity", "kinematics: velocity of the toe, downwards", "m/s"),
         inp(
             "toe.wave",
-            "wave: c of F = c - Z v, the wave that comes out of the toe, compression positive; v is downwards",
+            "wave: c of F = c - Z v, the wave that comes out of the toe, compression positive; v "
+            "is downwards",
             "N",
         ),
         inp(
@@ -216,14 +225,16 @@ LAYOUT = Layout(
         ),
         out(
             "permanent_set",
-            "what of the settlement would stay without load: all of a plate's, of Smith's soil what it slid",
+            "what of the settlement would stay without load: all of a plate's, of Smith's soil "
+            "what it slid",
             "m",
             initial_dependencies=(),
             reported=(Reported("permanent set", Statistic.LAST, "mm", 3),),
         ),
         out(
             "toe.force",
-            "force of the ground on the toe beyond the preload at the end of the step, upwards: compression positive",
+            "force of the ground on the toe beyond the preload at the end of the step, upwards: "
+            "compression positive",
             "N",
             initial_dependencies=_PORT,
         ),
@@ -254,8 +265,8 @@ LAYOUT = Layout(
         stable_step(),
         out(
             "step_limit",
-            "longest communication step that the port bears with a rod of the impedance toe.impedance; 1e6 where nothing "
-            "limits it",
+            "longest communication step that the port bears with a rod of the impedance "
+            "toe.impedance; 1e6 where nothing limits it",
             "s",
         ),
         out(

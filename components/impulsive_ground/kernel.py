@@ -1,4 +1,4 @@
-"""Life of the ground: what it refuses, start, steps for each port, outputs."""
+"""Life of the ground: faults of its parameters, start, steps for each port, outputs."""
 
 import math
 from typing import TYPE_CHECKING
@@ -37,12 +37,25 @@ if TYPE_CHECKING:
 V, A = LAYOUT.scalar, LAYOUT.array
 
 UNBOUNDED_STEP = 1e6
-"""Published as a step (s) where every step is stable."""
+"""Step (s) that is published where every step is stable."""
 
 
 @kernel
 def has_fault(fault, w):
-    """Whether the parameters have the fault of this number."""
+    """Return whether the parameters have the fault of this number.
+
+    Parameters
+    ----------
+    fault : int
+        One of the numbers in :data:`faults.REFUSALS`.
+    w : ndarray of float64
+        Variables.
+
+    Returns
+    -------
+    bool
+        True if the initialisation has to refuse them.
+    """
     massless = w[V.law] == SMITH and w[V.port] != SETTLEMENT
     if fault == PLATE_OUTSIDE:
         return w[V.box_width] > 0.0 and 2.0 * w[V.plate_radius] > w[V.box_width]
@@ -60,7 +73,20 @@ def has_fault(fault, w):
 
 
 def problems(instance: "Instance") -> list[str]:
-    """Every fault of the parameters, in words. The impedance may still come from a rod: the initialisation sees to that."""
+    """Return every fault of the parameters, in words.
+
+    The impedance may still come from a rod: the initialisation sees to that.
+
+    Parameters
+    ----------
+    instance : Instance
+        Ground whose parameters are set.
+
+    Returns
+    -------
+    list of str
+        Messages, none if the parameters are in order.
+    """
     return [
         instance.message(fault)
         for fault in REFUSALS
@@ -70,7 +96,7 @@ def problems(instance: "Instance") -> list[str]:
 
 @kernel
 def virtual_mass(w):
-    """Mass (kg) of plate and sand."""
+    """Return the mass (kg) of plate and sand."""
     return w[V.plate_mass] + soil_mass(
         w[V.plate_radius], w[V.soil_depth], w[V.soil_spread], w[V.soil_density], w[V.soil_mass_form]
     )
@@ -78,7 +104,7 @@ def virtual_mass(w):
 
 @kernel
 def ground(w):
-    """The constants that follow from the parameters."""
+    """Return the constants that follow from the parameters."""
     return Ground(
         virtual_mass(w),
         w[V.ultimate_resistance] / w[V.quake],
@@ -94,7 +120,20 @@ def ground(w):
 
 @kernel
 def initialise(w, x, k):
-    """At rest under the preload, or moving with what impulse0 gives the plate."""
+    """Set the state at the start: at rest under the preload, or moving with what impulse0 gives.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or a fault of the parameters.
+    """
     for fault in range(PLATE_OUTSIDE, MOVING_AT_START + 1):
         if fault != NO_IMPEDANCE and has_fault(fault, w):
             return fault
@@ -107,12 +146,8 @@ def initialise(w, x, k):
     w[V.stable_step] = UNBOUNDED_STEP
     if w[V.law] == MOGAMI and w[V.port] == KINEMATICS:
         w[V.stable_step] = 2.0 * math.sqrt(g.mass / g.contact)
-    w[V.energy_plastic], w[V.energy_damping], w[V.energy_work_contact], w[V.energy_start] = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
+    w[V.energy_plastic], w[V.energy_damping] = 0.0, 0.0
+    w[V.energy_work_contact], w[V.energy_start] = 0.0, 0.0
     publish(g, w, b)
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
     return OK
@@ -120,7 +155,20 @@ def initialise(w, x, k):
 
 @kernel
 def evaluate(w, x, k):
-    """Outputs at the start: the force that the first values of the inputs call for."""
+    """Compute the outputs at the start: the force that the first values of the inputs call for.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or NO_IMPEDANCE.
+    """
     if has_fault(NO_IMPEDANCE, w):
         return NO_IMPEDANCE
     g, b = ground(w), view(x, k, A.body)
@@ -132,8 +180,23 @@ def evaluate(w, x, k):
 
 @kernel
 def step_limit(g, w):
-    """Longest communication step (s) with a rod of the impedance Z: Z/k of a spring, M/Z of a mass; waves know no limit here. A
-    held damping force J R_u v with J R_u >= Z grows in every step, however short: 0."""
+    """Return the longest communication step with a rod of the impedance Z.
+
+    It is Z/k for a spring, M/Z for a mass; waves have no limit here. A held damping force J R_u v
+    with J R_u >= Z grows in every step, however short: the limit is 0.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    w : ndarray of float64
+        Variables.
+
+    Returns
+    -------
+    float
+        Step (s); UNBOUNDED_STEP where nothing limits it.
+    """
     if w[V.toe_impedance] <= 0.0 or w[V.port] == WAVE:
         return UNBOUNDED_STEP
     if w[V.port] == SETTLEMENT:
@@ -145,7 +208,22 @@ def step_limit(g, w):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s) with held inputs; a given motion goes on with its velocity."""
+    """Advance by h with held inputs; an input motion goes on with its velocity.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the communication step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status: OK, NO_IMPEDANCE or DIVERGED.
+    """
     g, b = ground(w), view(x, k, A.body)
     if w[V.port] == WAVE and not w[V.toe_impedance] > 0.0:
         return NO_IMPEDANCE
@@ -169,7 +247,15 @@ def step(t, h, w, x, k):
 
 @kernel
 def jump(g, w, b):
-    """Put the toe where it is given; it may have left the path on which it was led."""
+    """Put the toe at its input position; it may have left the path on which it was led.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+    """
     if w[V.port] != KINEMATICS:
         return
     way = w[V.toe_position] - (b[BODY.settlement] - b[BODY.gap])
@@ -186,7 +272,22 @@ def jump(g, w, b):
 
 @kernel
 def advance(g, dt, w, b):
-    """One internal step. Returns impulse (N s) and work (J) of the load, preload included."""
+    """Advance by one internal step.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    dt : float
+        Length of the step (s).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) of the load, preload included.
+    """
     if w[V.port] == SETTLEMENT:
         load = g.preload - w[V.force_y]
         return (
@@ -208,20 +309,20 @@ def advance(g, dt, w, b):
 
 @kernel
 def contact_energy(g, b):
-    """Energy (J) of the spring between toe and plate."""
+    """Return the energy (J) of the spring between toe and plate."""
     force = contact_force(g, b)
     return 0.5 * force * force / g.contact
 
 
 @kernel
 def smith_force(g, b, velocity):
-    """Force (N) of Smith's soil on a toe with a velocity (m/s) downwards."""
+    """Return the force (N) of Smith's soil on a toe with a velocity (m/s) downwards."""
     return b[BODY.spring] * max(0.0, 1.0 + g.damping * velocity)
 
 
 @kernel
 def force_on_toe(g, w, b):
-    """Force (N) on the toe now, preload included."""
+    """Return the force (N) on the toe now, preload included."""
     if w[V.port] == SETTLEMENT:
         return g.preload - w[V.force_y]
     if w[V.law] == SMITH:
@@ -235,7 +336,10 @@ def force_on_toe(g, w, b):
 
 @kernel
 def resisting_force(g, w, b):
-    """Force (N) of the ground now, preload included; a plate at rest has no more than it is loaded with."""
+    """Return the force (N) of the ground now, preload included.
+
+    A plate at rest resists no more than it is loaded.
+    """
     if w[V.law] == SMITH:
         return smith_force(g, b, b[BODY.velocity])
     now = resistance(g, b[BODY.clock])
@@ -244,7 +348,15 @@ def resisting_force(g, w, b):
 
 @kernel
 def publish(g, w, b):
-    """Outputs and energies from the state."""
+    """Write outputs and energies from the state.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+    """
     springs = 0.0
     w[V.permanent_set] = b[BODY.settlement]
     if w[V.law] == SMITH:
@@ -253,11 +365,8 @@ def publish(g, w, b):
     elif w[V.port] == KINEMATICS:
         springs = contact_energy(g, b)
     moving = w[V.law] == MOGAMI or w[V.port] == SETTLEMENT
-    w[V.settlement], w[V.position_y], w[V.velocity_y] = (
-        b[BODY.settlement],
-        -b[BODY.settlement],
-        -b[BODY.velocity],
-    )
+    w[V.settlement], w[V.position_y] = b[BODY.settlement], -b[BODY.settlement]
+    w[V.velocity_y] = -b[BODY.velocity]
     w[V.toe_force] = force_on_toe(g, w, b) - g.preload
     w[V.resistance] = resisting_force(g, w, b)
     w[V.energy_kinetic] = 0.5 * g.mass * b[BODY.velocity] * b[BODY.velocity] if moving else 0.0

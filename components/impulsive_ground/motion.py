@@ -2,8 +2,15 @@
 
 Quantities count downwards, loads include the preload.
 
-Every function changes the state ``b``, books dissipated energies in ``w`` and returns the impulse of the load (N s) on the ground
-and its work (J), preload included.
+Functions that move the ground change the state ``b``, add dissipated energies to ``w`` and return
+the impulse of the load (N s) on the ground and its work (J), preload included. Their parameters are
+the same throughout:
+
+* ``g``: constants, :class:`Ground`;
+* ``load``: c (N); ``impedance``: Z (N s/m). The load of a rod is c - Z v, a held force has Z = 0;
+* ``toe``: velocity of the toe (m/s);
+* ``dt``: stretch of time (s); ``left``: what is left of it (s);
+* ``w``, ``b``: variables, and state at the places :data:`BODY`.
 """
 
 from collections import namedtuple
@@ -16,8 +23,8 @@ from .plate import slide, stop, work_of_load
 V = LAYOUT.scalar
 
 Ground = namedtuple("Ground", "mass stiffness ultimate damping r0 r1 rise contact preload")
-"""Constants: mass of plate and sand (kg), k = R_u/Q (N/m), R_u (N), J (s/m), R0, R1 (N), t_f (s), contact spring (N/m), preload
-(N)."""
+"""Constants: mass of plate and sand (kg), k = R_u/Q (N/m), R_u (N), J (s/m), R0, R1 (N), t_f (s),
+contact spring (N/m), preload (N)."""
 
 _PIECES = 64
 """Most pieces of motion in one internal step: more means that nothing moves but rounding."""
@@ -26,7 +33,7 @@ _BISECTIONS = 60
 
 @kernel
 def resistance(g, clock):
-    """(2): resistance (N) at a time (s) since the onset, held from t_f on."""
+    """Return the resistance (N) at a time (s) since the onset, (2), held from t_f on."""
     return g.r0 + (g.r1 - g.r0) * min(1.0, clock / g.rise)
 
 
@@ -35,8 +42,27 @@ def resistance(g, clock):
 
 @kernel
 def push_plate(g, load, impedance, dt, w, b):
-    """The plate for dt (s) under the load c - Z v. At rest it sticks until c exceeds the resistance it has reached; unloaded below
-    R0, it begins anew with R0."""
+    """Move the plate for dt under the load c - Z v.
+
+    At rest it sticks until c exceeds the resistance it has reached; unloaded below R0, it begins
+    anew with R0.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    load, impedance : float
+        c (N) and Z (N s/m).
+    dt : float
+        Time (s).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) of the load.
+    """
     left, impulse, work = dt, 0.0, 0.0
     for _ in range(_PIECES):
         now = resistance(g, b[BODY.clock])
@@ -67,8 +93,27 @@ def push_plate(g, load, impedance, dt, w, b):
 
 @kernel
 def strike_plate(g, load, impedance, dt, w, b):
-    """The plate for dt (s) under a rod that hands out c and Z. The rod only pushes: where c - Z v < 0 it leaves the plate, moves
-    with c/Z, and strikes it again when the gap is closed. The work is that on the toe."""
+    """Move the plate for dt under a rod that hands out c and Z.
+
+    The rod only pushes: where c - Z v < 0 it leaves the plate, moves with c/Z, and strikes it again
+    when the gap is closed.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    load, impedance : float
+        c (N) and Z (N s/m).
+    dt : float
+        Time (s).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) on the toe.
+    """
     left, impulse, work = dt, 0.0, 0.0
     for _ in range(_PIECES):
         if b[BODY.gap] <= 0.0 and load >= impedance * b[BODY.velocity]:
@@ -89,7 +134,7 @@ def strike_plate(g, load, impedance, dt, w, b):
 
 @kernel
 def closing(g, toe, left, b):
-    """Time (s), at most ``left``, at which a toe of the velocity ``toe`` (m/s) has caught up with the free plate."""
+    """Return the time (s), at most ``left``, at which the toe has caught up with the free plate."""
     if free_gap(g, toe, left, b) > 0.0 or toe <= 0.0:
         return left
     before, after = 0.0, left
@@ -104,7 +149,7 @@ def closing(g, toe, left, b):
 
 @kernel
 def free_gap(g, toe, time, b):
-    """Gap (m) after a time (s) of free motion."""
+    """Return the gap (m) after a time (s) of free motion."""
     now = resistance(g, b[BODY.clock])
     rate = (g.r1 - g.r0) / g.rise if b[BODY.clock] < g.rise else 0.0
     first = min(time, g.rise - b[BODY.clock]) if b[BODY.clock] < g.rise else time
@@ -125,7 +170,24 @@ def free_gap(g, toe, time, b):
 
 @kernel
 def drag_plate(g, toe, dt, w, b):
-    """The plate for dt (s) under a spring whose other end, the toe, moves with the velocity ``toe`` (m/s). Semi-implicit Euler."""
+    """Move the plate for dt under a spring whose other end is the toe. Semi-implicit Euler.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    toe : float
+        Velocity of the toe (m/s).
+    dt : float
+        Time (s).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) of the spring.
+    """
     before = contact_force(g, b)
     now = resistance(g, b[BODY.clock])
     v = b[BODY.velocity] + (before - now) / g.mass * dt
@@ -146,7 +208,7 @@ def drag_plate(g, toe, dt, w, b):
 
 @kernel
 def contact_force(g, b):
-    """Force (N) of the spring between toe and plate; it is compressed by the preload at gap 0."""
+    """Return the force (N) between toe and plate; at gap 0 it is the preload."""
     return max(0.0, g.preload - g.contact * b[BODY.gap])
 
 
@@ -161,7 +223,22 @@ def spring_under(g, b):
 
 @kernel
 def move_toe(g, way, w, b):
-    """Take the toe a stretch (m) into the soil or out of it; returns the area under the spring force (J)."""
+    """Move the toe by a way into the soil or out of it.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    way : float
+        Way (m).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    float
+        Area under the spring force (J).
+    """
     b[BODY.spring], b[BODY.slack], slid, area = press(way, spring_under(g, b))
     b[BODY.settlement] += way
     w[V.energy_plastic] += g.ultimate * slid
@@ -170,7 +247,24 @@ def move_toe(g, way, w, b):
 
 @kernel
 def lead_toe(g, toe, dt, w, b):
-    """The toe moves with a given velocity (m/s) for dt (s); a jump has dt = 0 and its way as ``toe``."""
+    """Move the toe with an imposed velocity.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    toe : float
+        Velocity (m/s); the way (m) of a jump.
+    dt : float
+        Time (s), 0 for a jump.
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) of the force on the toe.
+    """
     jump = dt == 0.0
     area = move_toe(g, toe if jump else toe * dt, w, b)
     if jump:
@@ -184,8 +278,27 @@ def lead_toe(g, toe, dt, w, b):
 
 @kernel
 def strike_soil(g, load, impedance, dt, w, b):
-    """The toe for dt (s) under a rod that hands out c and Z, piece by piece: gap, spring, sliding. The damping is taken with the
-    spring's mean force in the piece."""
+    """Move the toe for dt under a rod that hands out c and Z, piece by piece.
+
+    The pieces are gap, spring and sliding. The damping is taken with the spring's mean force in the
+    piece.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    load, impedance : float
+        c (N) and Z (N s/m).
+    dt : float
+        Time (s).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) on the toe.
+    """
     left, impulse, work = dt, 0.0, 0.0
     for _ in range(_PIECES):
         spring, slack = b[BODY.spring], b[BODY.slack]
@@ -212,7 +325,7 @@ def strike_soil(g, load, impedance, dt, w, b):
 def mean_spring(g, left, load, impedance, b):
     """Return the mean resistance (N) over the way of the next piece.
 
-    It is found with the damping at the piece's beginning.
+    The way is that with the damping at the beginning of the piece.
     """
     if g.damping == 0.0:
         return 0.0
@@ -223,7 +336,10 @@ def mean_spring(g, left, load, impedance, b):
 
 @kernel
 def arrive(g, load, slack, b):
-    """Where a piece ends before its time, another begins, to the bit: gap (``slack`` before) closed, spring at R_u or at zero."""
+    """Set the state to the bit where a piece ends before its time and another begins.
+
+    The gap (``slack`` before the piece) is closed, or the spring is at R_u or at zero.
+    """
     if slack > 0.0:
         b[BODY.slack] = 0.0
     elif load > g.ultimate:
@@ -234,15 +350,51 @@ def arrive(g, load, slack, b):
 
 @kernel
 def leave(g, toe, left, spring):
-    """A toe that is torn away faster than the damped spring follows: no force. Time, way and integral of v2, as of relax."""
+    """Return the motion of a toe that is torn away faster than the damped spring follows: no force.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    toe : float
+        Velocity of the toe (m/s), negative.
+    left : float
+        Longest time (s).
+    spring : float
+        Force of the spring at the start (N).
+
+    Returns
+    -------
+    tuple of float
+        Time (s), way (m) and integral of v2 (m2/s), as of :func:`relax`.
+    """
     time = min(left, spring / (-toe * g.stiffness))
     return time, toe * time, toe * toe * time
 
 
 @kernel
 def load_plate_on_soil(g, load, dt, w, b):
-    """A plate with the virtual mass on Smith's soil for dt (s): mean velocity u with 2 M (u - v)/dt = load - mean force over the
-    way u dt. Energy is kept to the bits of the root."""
+    """Move a plate with the virtual mass on Smith's soil for dt.
+
+    The mean velocity u satisfies 2 M (u - v)/dt = load - mean force over the way u dt. Energy is
+    kept to the bits of the root.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    load : float
+        Held force (N).
+    dt : float
+        Time (s).
+    w, b : ndarray of float64
+        Variables, and state at the places :data:`BODY`.
+
+    Returns
+    -------
+    tuple of float
+        Impulse (N s) and work (J) of the load.
+    """
     inertia = 2.0 * g.mass / dt
     free = b[BODY.velocity] + load / inertia
     u = mean_velocity(g, free, inertia, dt, b)
@@ -255,7 +407,29 @@ def load_plate_on_soil(g, load, dt, w, b):
 
 @kernel
 def mean_velocity(g, free, inertia, dt, b):
-    """The root u of inertia (u - free) + mean force(u) = 0, which rises with u: between two bounds, by regula falsi (Illinois)."""
+    """Return the root u of inertia (u - free) + mean force(u) = 0.
+
+    The left side rises with u: the root is enclosed by two bounds, which regula falsi (Illinois)
+    narrows.
+
+    Parameters
+    ----------
+    g : Ground
+        Constants.
+    free : float
+        Mean velocity without the soil (m/s).
+    inertia : float
+        2 M/dt (kg/s).
+    dt : float
+        Time (s).
+    b : ndarray of float64
+        State at the places :data:`BODY`.
+
+    Returns
+    -------
+    float
+        u (m/s).
+    """
     high, low = free, free - excess(g, free, free, inertia, dt, b) / inertia
     above, below = excess(g, high, free, inertia, dt, b), excess(g, low, free, inertia, dt, b)
     side = 0
@@ -279,6 +453,6 @@ def mean_velocity(g, free, inertia, dt, b):
 
 @kernel
 def excess(g, u, free, inertia, dt, b):
-    """inertia (u - free) + force of the soil over the way u dt (N)."""
+    """Return inertia (u - free) + mean force of the soil (N), whose root is the mean velocity."""
     mean = mean_resistance(u * dt, spring_under(g, b))
     return inertia * (u - free) + mean * max(0.0, 1.0 + g.damping * u)

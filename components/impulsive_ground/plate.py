@@ -1,9 +1,16 @@
-"""A rigid plate with a mass that slides down against a resistance linear in time, under a load that gives way with its velocity.
+"""A rigid plate that slides down against a resistance linear in time.
+
+Its load gives way with its velocity:
 
     M dv/dt = c - Z v - (R + r t)
 
-c (N) and Z (N s/m) are constant: a held force has Z = 0, a rod that hands out waves has its impedance. Settlement s, velocity v
-and forces on the plate count downwards. Everything is exact; phi functions make Z = 0 no special case.
+c (N) and Z (N s/m) are constant: a held force has Z = 0, a rod that hands out waves has its
+impedance. Settlement s, velocity v and forces on the plate count downwards. Everything is exact;
+phi functions make Z = 0 no special case.
+
+The functions share their parameters: ``t``: time from now (s); ``v``: velocity now (m/s);
+``mass``: M (kg); ``load``: c (N); ``impedance``: Z (N s/m); ``resistance``: R now (N); ``rise``: r
+(N/s).
 """
 
 import math
@@ -17,7 +24,20 @@ _BISECTIONS = 60
 
 @kernel
 def phi(z):
-    """phi_0 to phi_4: phi_0 = exp(-z), phi_(n+1) = (1/n! - phi_n)/z, so that phi_n(0) = 1/n!."""
+    """Return phi_0 to phi_4 of z.
+
+    phi_0 = exp(-z), phi_(n+1) = (1/n! - phi_n)/z, so that phi_n(0) = 1/n!.
+
+    Parameters
+    ----------
+    z : float
+        Argument, not negative.
+
+    Returns
+    -------
+    tuple of float
+        The five values.
+    """
     if z < _SERIES:
         term, last = 1.0 / 24.0, 0.0
         for n in range(24):
@@ -36,14 +56,52 @@ def phi(z):
 
 @kernel
 def velocity(t, v, mass, load, impedance, resistance, rise):
-    """v (m/s) after t (s) from v at 0: load c (N), impedance Z (N s/m), resistance R (N) now and its rise r (N/s)."""
+    """Return the velocity of the plate after a time.
+
+    Parameters
+    ----------
+    t : float
+        Time (s).
+    v : float
+        Velocity now (m/s).
+    mass : float
+        Of the plate, M (kg).
+    load, impedance : float
+        c (N) and Z (N s/m).
+    resistance, rise : float
+        R now (N) and r (N/s).
+
+    Returns
+    -------
+    float
+        v (m/s): v phi_0 + ((c - R) phi_1 - r t phi_2) t/M, with phi of Z t/M.
+    """
     p0, p1, p2, _, _ = phi(impedance / mass * t)
     return v * p0 + ((load - resistance) * p1 - rise * t * p2) * t / mass
 
 
 @kernel
 def slide(t, v, mass, load, impedance, resistance, rise):
-    """Velocity (m/s), settlement (m) and work of the resistance (J) after t (s)."""
+    """Return what a plate that goes on sliding has done after a time.
+
+    Parameters
+    ----------
+    t : float
+        Time (s).
+    v : float
+        Velocity now (m/s).
+    mass : float
+        Of the plate, M (kg).
+    load, impedance : float
+        c (N) and Z (N s/m).
+    resistance, rise : float
+        R now (N) and r (N/s).
+
+    Returns
+    -------
+    tuple of float
+        Velocity (m/s), settlement (m) and work of the resistance (J).
+    """
     p0, p1, p2, p3, p4 = phi(impedance / mass * t)
     push = (load - resistance) / mass
     jerk = rise / mass
@@ -55,7 +113,26 @@ def slide(t, v, mass, load, impedance, resistance, rise):
 
 @kernel
 def stop(t, v, mass, load, impedance, resistance, rise):
-    """The time (s), at most t, at which the plate comes to rest; t if it moves on. v is not negative."""
+    """Return the time at which the plate comes to rest.
+
+    Parameters
+    ----------
+    t : float
+        Longest time (s).
+    v : float
+        Velocity now (m/s), not negative.
+    mass : float
+        Of the plate, M (kg).
+    load, impedance : float
+        c (N) and Z (N s/m).
+    resistance, rise : float
+        R now (N) and r (N/s).
+
+    Returns
+    -------
+    float
+        Time (s); t if the plate moves on.
+    """
     if velocity(t, v, mass, load, impedance, resistance, rise) >= 0.0:
         return t
     before, after = 0.0, t
@@ -70,7 +147,28 @@ def stop(t, v, mass, load, impedance, resistance, rise):
 
 @kernel
 def work_of_load(t, v, mass, load, impedance, resistance, rise):
-    """Work (J) of the load c - Z v on the plate in t (s), by Gauss's rule of three points: exact for Z = 0 and for short t."""
+    """Return the work of the load c - Z v on the plate.
+
+    Gauss's rule of three points: exact for Z = 0 and for short t.
+
+    Parameters
+    ----------
+    t : float
+        Time (s).
+    v : float
+        Velocity now (m/s).
+    mass : float
+        Of the plate, M (kg).
+    load, impedance : float
+        c (N) and Z (N s/m).
+    resistance, rise : float
+        R now (N) and r (N/s).
+
+    Returns
+    -------
+    float
+        Work (J).
+    """
     total = 0.0
     for place, weight in (
         (0.1127016653792583, 5.0 / 18.0),

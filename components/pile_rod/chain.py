@@ -1,7 +1,12 @@
-"""Masses and springs after Smith: places with the velocities, forces from places, velocities with the forces.
+"""Masses and springs after Smith: positions, then forces, then velocities.
 
-Eqs (2)-(5) of Uto et al. with the sign of (5) corrected: V = v + (F[m-1] - F[m] - R[m]) dt / M[m]. Places and forces belong to one
-time, velocities to half a step later. T(v) + 1/2 D(t) K D(t + dt) is then conserved exactly.
+Positions follow from velocities, forces from positions, and velocities from forces: eqs (2)-(5) of
+Uto et al. with the sign of (5) corrected,
+
+    V[m] = v[m] + (F[m-1] - F[m] - R[m]) dt / M[m].
+
+Positions and forces belong to one time, velocities to half a step later. T(v) + 1/2 D(t) K D(t +
+dt) is then conserved exactly, with T the kinetic energy, D the displacements, K the stiffness.
 """
 
 from ..common.kernels import kernel, view
@@ -15,13 +20,21 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @kernel
 def advance(time, dt, head_force, toe_force, w, x, k):
-    """One step dt (s), from time (s) on, with the forces (N) of the ports: downwards on the head, upwards on the toe."""
-    place, rate, n, last = (
-        view(x, k, A.place),
-        view(x, k, A.rate),
-        k[A.impedance + 1],
-        view(k, k, A.free)[2],
-    )
+    """Advance masses and springs by one internal step.
+
+    Parameters
+    ----------
+    time, dt : float
+        Start and length of the step (s).
+    head_force, toe_force : float
+        Forces of the ports (N): downwards on the head, upwards on the toe.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
+    place, rate = view(x, k, A.place), view(x, k, A.rate)
+    n, last = k[A.impedance + 1], view(k, k, A.free)[2]
     w[V.energy_contact] += contact_energy(dt, w, x, k)
     before = _soil_energy(dt, w, x, k)
     for i in range(last + 1):
@@ -45,16 +58,25 @@ def advance(time, dt, head_force, toe_force, w, x, k):
 
 @kernel
 def spring_force(i, w, x, k):
-    """Force (N, compression positive) of the spring below node i; below the last node is fixed ground. A ram is not held back."""
-    place, spring, last = view(x, k, A.place), view(x, k, A.spring), view(k, k, A.free)[2]
+    """Return the force (N, compression positive) of the spring below node i.
+
+    Below the last node is fixed ground. The spring below a ram only pushes.
+    """
+    place, spring = view(x, k, A.place), view(x, k, A.spring)
+    last = view(k, k, A.free)[2]
     force = spring[i] * (place[i] - (place[i + 1] if i < last else 0.0))
     return max(force, 0.0) if i == 0 and w[V.ram_mass] > 0.0 else force
 
 
 @kernel
 def spring_energy(i, ahead, w, x, k):
-    """Energy (J) of the spring below node i: half its force times its compression a time ahead (s)."""
-    place, rate, last = view(x, k, A.place), view(x, k, A.rate), view(k, k, A.free)[2]
+    """Return the energy (J) of the spring below node i, from force and later compression.
+
+    It is half the force times the compression a time ``ahead`` (s) from now, at the velocities of
+    now.
+    """
+    place, rate = view(x, k, A.place), view(x, k, A.rate)
+    last = view(k, k, A.free)[2]
     compression = place[i] - (place[i + 1] if i < last else 0.0)
     closing = rate[i] - (rate[i + 1] if i < last else 0.0)
     return 0.5 * spring_force(i, w, x, k) * (compression + ahead * closing)
@@ -62,13 +84,16 @@ def spring_energy(i, ahead, w, x, k):
 
 @kernel
 def contact_energy(dt, w, x, k):
-    """Energy (J) of the spring between ram and rod; 0 without a ram, where the spring is one like any other."""
+    """Return the energy (J) of the spring between ram and rod.
+
+    It is 0 without a ram, where that spring is one like any other.
+    """
     return spring_energy(0, dt, w, x, k) if w[V.ram_mass] > 0.0 else 0.0
 
 
 @kernel
 def _strike(time, dt, force, below, w, x, k):
-    """Change the velocity of node 0, ram or head, under the force of the spring below it (N)."""
+    """Change the velocity of node 0, ram or head, under the spring force ``below`` it (N)."""
     rate, mass, ram = view(x, k, A.rate), view(x, k, A.mass), view(x, k, A.ram_state)
     load, was = mass[0] * w[V.gravity], rate[0]
     rate[0] += (force + load - below) / mass[0] * dt
@@ -91,19 +116,20 @@ def _strike(time, dt, force, below, w, x, k):
 
 @kernel
 def _push(i, net, dt, toe_force, w, x, k):
-    """Change the velocity of node i under the springs' net force (N, downwards). Returns the work on the static soil (J)."""
-    rate, mass, n, last = (
-        view(x, k, A.rate),
-        view(x, k, A.mass),
-        k[A.impedance + 1],
-        view(k, k, A.free)[2],
-    )
-    shaft, toe, was = shaft_soil(i, w, x, k), toe_soil(i == n, w, x, k), rate[i]
+    """Change the velocity of node i under the springs' ``net`` force (N, downwards).
+
+    Returns
+    -------
+    float
+        Work on the static soil (J).
+    """
+    rate, mass = view(x, k, A.rate), view(x, k, A.mass)
+    n, last = k[A.impedance + 1], view(k, k, A.free)[2]
+    shaft, toe = shaft_soil(i, w, x, k), toe_soil(i == n, w, x, k)
+    was = rate[i]
     on_shaft, under_toe = static(shaft, shaft.stretch), static(toe, toe.stretch)
-    in_soil, standing = (
-        drag(shaft, on_shaft) + drag(toe, under_toe),
-        _dashpot(w, x, k) if i == last else 0.0,
-    )
+    in_soil = drag(shaft, on_shaft) + drag(toe, under_toe)
+    standing = _dashpot(w, x, k) if i == last else 0.0
     load = mass[i] * w[V.gravity] if i <= n else 0.0
     pushed = toe_force if i == n and w[V.toe_condition] == PORT else 0.0
     half = 0.5 * dt / mass[i]
@@ -127,7 +153,10 @@ def _push(i, net, dt, toe_force, w, x, k):
 
 @kernel
 def _dashpot(w, x, k):
-    """Impedance (N s/m) of the dashpot under the last node: a matched toe, or the ground going on below its last segment; or 0."""
+    """Return the impedance (N s/m) of the dashpot under the last node, or 0.
+
+    A matched toe has one, and so has the ground as a rod, which goes on below its last segment.
+    """
     if w[V.toe_condition] == MATCHED:
         return view(x, k, A.impedance)[k[A.impedance + 1] - 1]
     return below_toe(w, x, k) if w[V.scheme] != SMITH else 0.0
@@ -135,13 +164,10 @@ def _dashpot(w, x, k):
 
 @kernel
 def _move_soil(dt, w, x, k):
-    """The soil goes with the nodes of the rod, up to its quake."""
-    rate, stretch, toe, n = (
-        view(x, k, A.rate),
-        view(x, k, A.soil),
-        view(x, k, A.toe_soil),
-        k[A.impedance + 1],
-    )
+    """Move the soil with the nodes of the rod, up to its quake."""
+    rate, stretch = view(x, k, A.rate), view(x, k, A.soil)
+    toe = view(x, k, A.toe_soil)
+    n = k[A.impedance + 1]
     for i in range(1, n + 1):
         stretch[i] = stretched(shaft_soil(i, w, x, k), rate[i] * dt)
     toe[0] = stretched(toe_soil(True, w, x, k), rate[n] * dt)
@@ -149,8 +175,9 @@ def _move_soil(dt, w, x, k):
 
 @kernel
 def _soil_energy(dt, w, x, k):
-    """Elastic energy (J) in the soil."""
-    rate, n = view(x, k, A.rate), k[A.impedance + 1]
+    """Return the elastic energy (J) in the soil."""
+    rate = view(x, k, A.rate)
+    n = k[A.impedance + 1]
     total = 0.0
     for i in range(1, n + 1):
         shaft = shaft_soil(i, w, x, k)

@@ -1,8 +1,13 @@
-"""The exact scheme: waves that move by one segment in a step, and nodes that divide them by impedances.
+"""The exact scheme: waves move by one segment in a step, and nodes divide them by impedances.
 
-In a step dt = dx/c each segment hands its waves on to the nodes at its ends. With f the velocity of the wave downwards from above,
-b that of the wave upwards from below and R what holds the node: Z1 (2 f - v) - Z2 (v - 2 b) = R. Waves are constant over a segment,
-so that jumps stay sharp.
+In a step dt = dx/c each segment hands its waves on to the nodes at its ends. The velocity v of a
+node follows from
+
+    Z1 (2 f - v) - Z2 (v - 2 b) = R,
+
+with f the velocity of the wave that comes down from above, b that of the wave that comes up from
+below, Z1 and Z2 the impedances above and below, and R the force that holds the node. Waves are
+constant over a segment, so that jumps stay sharp.
 """
 
 from ..common.kernels import kernel, view
@@ -17,7 +22,19 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @kernel
 def advance(time, dt, head_force, toe_force, w, x, k):
-    """One step dt (s), from time (s) on, with the mean forces (N) of the ports: downwards on the head, upwards on the toe."""
+    """Advance the waves by one internal step.
+
+    Parameters
+    ----------
+    time, dt : float
+        Start and length of the step (s).
+    head_force, toe_force : float
+        Mean forces of the ports (N): downwards on the head, upwards on the toe.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
     down, up, impedance = view(x, k, A.down), view(x, k, A.up), view(x, k, A.impedance)
     place, rate, n = view(x, k, A.place), view(x, k, A.rate), len(impedance)
     arriving = down[0]
@@ -39,7 +56,24 @@ def advance(time, dt, head_force, toe_force, w, x, k):
 
 @kernel
 def weight(i, dt, w, x, k):
-    """Weight (N) of what is nearest to node i: half a segment on either side."""
+    """Return the weight (N) of the rod nearest to node i: half a segment on either side.
+
+    Parameters
+    ----------
+    i : int
+        Node, 0 is the head.
+    dt : float
+        Travel time of a segment (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    float
+        1/2 dt g (Z1 + Z2).
+    """
     impedance = view(x, k, A.impedance)
     above = impedance[i - 1] if i > 0 else 0.0
     below = impedance[i] if i < len(impedance) else 0.0
@@ -48,7 +82,7 @@ def weight(i, dt, w, x, k):
 
 @kernel
 def _head(time, dt, force, w, x, k):
-    """Velocity of the head (m/s), mean over the step."""
+    """Return the velocity of the head (m/s), mean over the step."""
     up, impedance = view(x, k, A.up), view(x, k, A.impedance)
     lead = weight(0, dt, w, x, k)
     wave = 2.0 * impedance[0] * up[0] + lead
@@ -66,7 +100,8 @@ def _head(time, dt, force, w, x, k):
 @kernel
 def _ram(time, dt, force, wave, w, x, k):
     """Move the ram and return the mean force between it and the head (N)."""
-    state, head = view(x, k, A.ram_state), view(x, k, A.place)[0]
+    state = view(x, k, A.ram_state)
+    head = view(x, k, A.place)[0]
     drive = force + w[V.ram_mass] * w[V.gravity]
     ram = Ram(state[RAM.position], state[RAM.velocity], state[RAM.touching], w[V.ram_separation])
     end = End(view(x, k, A.impedance)[0], wave, head)
@@ -81,7 +116,7 @@ def _ram(time, dt, force, wave, w, x, k):
 
 @kernel
 def _node(i, impedance, drive, dt, w, x, k):
-    """Velocity (m/s) of a node inside the rod, mean over the step."""
+    """Return the velocity (m/s) of a node inside the rod, mean over the step."""
     shaft = shaft_soil(i, w, x, k)
     velocity = drive / impedance
     if shaft.ultimate > 0.0:
@@ -94,9 +129,11 @@ def _node(i, impedance, drive, dt, w, x, k):
 
 @kernel
 def _toe(arriving, dt, force, w, x, k):
-    """Velocity of the toe (m/s), mean over the step, from the wave that arrives there."""
-    impedance, n, what = view(x, k, A.impedance), k[A.impedance + 1], w[V.toe_condition]
-    below, lead = impedance[n - 1], weight(n, dt, w, x, k)
+    """Return the velocity of the toe (m/s), mean over the step, from the arriving wave."""
+    impedance = view(x, k, A.impedance)
+    n, what = k[A.impedance + 1], w[V.toe_condition]
+    below = impedance[n - 1]
+    lead = weight(n, dt, w, x, k)
     shaft, toe = shaft_soil(n, w, x, k), toe_soil(True, w, x, k)
     drive, leaving = 2.0 * below * arriving + lead, below
     if toe_is_fixed(w):

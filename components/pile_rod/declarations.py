@@ -31,16 +31,17 @@ _DENSITY = 7850.0
 
 Clock = namedtuple("Clock", "waiting head_impulse toe_impulse behind")
 CLOCK = Clock(*range(4))
-"""Numbers of ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in it, and the time (s) by which
-a rod that learns its forces afterwards is behind."""
+"""Places in ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in
+it, and the time (s) by which a rod that learns its forces afterwards is behind."""
 
 Ram = namedtuple("Ram", "position velocity touching")
 RAM = Ram(*range(3))
-"""Numbers of ``ram_state``: position (m) and velocity (m/s), downwards, and whether it lies on the head."""
+"""Places in ``ram_state``: position (m) and velocity (m/s), downwards, and whether it lies on the
+head."""
 
 
 def _nodes(sizes: Sizes) -> int:
-    """Head, lower end of each segment, lower end of each segment of the ground."""
+    """Return the number of nodes: head, lower ends of the segments of rod and ground."""
     return sizes["segments"] + 1 + sizes["ground_segments"]
 
 
@@ -52,8 +53,9 @@ LAYOUT = Layout(
     (
         choice(
             "scheme",
-            "characteristics: exact for every travelling wave; smith: masses and springs; modified_smith: the ground as a "
-            "rod of masses and springs; repaired: that with the mean mass at interfaces",
+            "characteristics: exact for every travelling wave; smith: masses and springs; "
+            "modified_smith: the ground as a rod of masses and springs; repaired: that with the "
+            "mean mass at interfaces",
             ("characteristics", "smith", "modified_smith", "repaired"),
             "characteristics",
             source="smith: Uto et al. 1974, eqs (2)-(5), corrected",
@@ -95,8 +97,9 @@ LAYOUT = Layout(
         ),
         choice(
             "head.port",
-            "kinematics: takes a force that is constant in the step, gives position and velocity; waves: gives the "
-            "wave that comes out of the rod in the next step, takes the mean force that goes with it",
+            "kinematics: takes a force that is constant in the step, gives position and velocity; "
+            "waves: gives the wave that comes out of the rod in the next step, takes the mean "
+            "force that goes with it",
             ("kinematics", "waves"),
             "kinematics",
         ),
@@ -108,23 +111,24 @@ LAYOUT = Layout(
         ),
         param(
             "head.preload",
-            "part of head.force that the rod carries at rest at the start; it is left out of everything else",
+            "part of head.force that the rod carries at rest at the start; it is left out of "
+            "everything else",
             0.0,
             "N",
             role=Role.LOAD_AT_REST,
         ),
         param(
             "head.partner.stiffness",
-            "stiffness of what acts on the head, 0 if unknown: the step of a port with kinematics is "
-            "limited to impedance / stiffness",
+            "stiffness of what acts on the head, 0 if unknown: the step of a port with kinematics "
+            "is limited to impedance / stiffness",
             0.0,
             "N/m",
             minimum=0.0,
         ),
         param(
             "head.partner.mass",
-            "mass of what acts on the head if that is a rigid mass, 0 if not: the step of a port with "
-            "kinematics is limited to mass / impedance",
+            "mass of what acts on the head if that is a rigid mass, 0 if not: the step of a port "
+            "with kinematics is limited to mass / impedance",
             0.0,
             "kg",
             minimum=0.0,
@@ -164,8 +168,8 @@ LAYOUT = Layout(
         ),
         param(
             "toe.reflection",
-            "reflected part of the displacement: -1 fixed, 0 matched, 1 free; used when toe.condition is "
-            "reflection",
+            "reflected part of the displacement: -1 fixed, 0 matched, 1 free; used when "
+            "toe.condition is reflection",
             0.0,
             minimum=-1.0,
             maximum=1.0,
@@ -221,7 +225,8 @@ LAYOUT = Layout(
         ),
         param(
             "gravity",
-            "acceleration of gravity on rod and ram, downwards; 0: everything counts from the position under the weight",
+            "acceleration of gravity on rod and ram, downwards; 0: everything counts from the "
+            "position under the weight",
             0.0,
             "m/s2",
             minimum=0.0,
@@ -230,15 +235,17 @@ LAYOUT = Layout(
         param("gauge.depth", "depth of the gauge below the head", 0.0, "m", minimum=0.0),
         choice(
             "exchange",
-            "what the mean force given to a port of waves belongs to. parallel: to the step that has ended; sequential: "
-            "to the step that follows, because the partner has made it already",
+            "what the mean force given to a port of waves belongs to. parallel: to the step that "
+            "has ended; sequential: to the step that follows, because the partner has made it "
+            "already",
             ("parallel", "sequential"),
             "parallel",
         ),
         internal_step(1.0),
         inp(
             "head.force",
-            "force on the head, or on the ram if there is one; positive in head.direction (down: compression)",
+            "force on the head, or on the ram if there is one; positive in head.direction (down: "
+            "compression)",
             "N",
         ),
         inp("toe.force", "force of the ground on the toe, upwards: compression positive", "N"),
@@ -338,7 +345,8 @@ LAYOUT = Layout(
         out("exchange_step", "length of the last communication step", "s", initial_dependencies=()),
         out(
             "delay",
-            "time by which everything that is computed lies before the end of the communication step",
+            "time by which everything that is computed lies before the end of the communication "
+            "step",
             "s",
             initial_dependencies=(),
             formerly=("lag",),
@@ -464,7 +472,8 @@ LAYOUT = Layout(
         out("energy.head", "work done on the head, by the ram or head.force", "J"),
         out(
             "energy.naive",
-            "kinetic + elastic energy with both at their own times, as printed; masses and springs only",
+            "kinetic + elastic energy with both at their own times, as printed; masses and springs "
+            "only",
             "J",
             source="Uto et al. 1974",
         ),
@@ -492,6 +501,9 @@ LAYOUT = Layout(
         State("free", lambda sizes: 3, integer=True),
     ),
 )
-"""Hidden arrays: ``down`` and ``up`` velocities (m/s) of the waves in each segment; ``place`` (m), ``rate`` (m/s), ``mass`` (kg) of
-nodes and ``spring`` (N/m) below each; ``soil``: elastic displacement (m) of the shaft's soil at each node, ``toe.soil`` of that
-below the toe; ``free``: segments without reflection at head and toe, last moving node."""
+"""Variables and hidden arrays of the pile rod.
+
+``down`` and ``up`` are velocities (m/s) of the waves in each segment; ``place`` (m), ``rate`` (m/s)
+and ``mass`` (kg) are those of the nodes, ``spring`` (N/m) is below each. ``soil`` is the elastic
+displacement (m) of the shaft's soil at each node, ``toe.soil`` of that below the toe. ``free`` has
+the numbers of segments without reflection at head and toe, and the last moving node."""

@@ -1,4 +1,8 @@
-"""Ports and clock: forces from outside over whole internal steps, and the waves that come out of the rod next."""
+"""Ports and clock of the rod.
+
+Forces from outside act over whole internal steps; the waves that come out of the rod next are known
+beforehand.
+"""
 
 from ..common.kernels import kernel, view
 from . import chain, characteristics
@@ -12,19 +16,31 @@ _ROUNDING = 1e-9
 
 @kernel
 def gives_waves(w):
-    """Whether a port of waves is in use."""
+    """Return whether a port of waves is in use."""
     return w[V.head_port] == WAVES or (w[V.toe_condition] == PORT and w[V.toe_port] == WAVES)
 
 
 @kernel
 def lies_behind(w):
-    """Whether forces are known only after the step they belong to."""
+    """Return whether forces are known only after the step to which they belong."""
     return gives_waves(w) and w[V.exchange] == PARALLEL
 
 
 @kernel
 def run(time, h, w, x, k):
-    """Advance by a communication step h (s) with the inputs in w, in whole internal steps; what is left waits for the next call."""
+    """Advance by a communication step with the inputs in w, in whole internal steps.
+
+    The rest of the communication step, shorter than an internal step, waits for the next call.
+
+    Parameters
+    ----------
+    time, h : float
+        Start and length of the communication step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
     clock = view(x, k, A.clock)
     left, now = h, time - clock[CLOCK.waiting]
     if lies_behind(w):
@@ -40,11 +56,8 @@ def run(time, h, w, x, k):
             head_mean = (clock[CLOCK.head_impulse] + on_head * part) / dt
             toe_mean = (clock[CLOCK.toe_impulse] + on_toe * part) / dt
             left -= part
-            clock[CLOCK.waiting], clock[CLOCK.head_impulse], clock[CLOCK.toe_impulse] = (
-                0.0,
-                0.0,
-                0.0,
-            )
+            clock[CLOCK.waiting], clock[CLOCK.head_impulse] = 0.0, 0.0
+            clock[CLOCK.toe_impulse] = 0.0
         else:
             left -= dt
         if w[V.scheme] == CHARACTERISTICS:
@@ -61,7 +74,22 @@ def run(time, h, w, x, k):
 
 @kernel
 def waves_known(h, w, x, k):
-    """Whether the waves of the next step h (s) no longer depend on forces that the rod has not been told."""
+    """Return whether the waves of the next step are independent of forces not yet known.
+
+    Parameters
+    ----------
+    h : float
+        Length of the next communication step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    bool
+        True where the rod can give the waves of both ports.
+    """
     clock, free = view(x, k, A.clock), view(k, k, A.free)
     needed = (clock[CLOCK.waiting] + clock[CLOCK.behind] + h) / w[V.time_step] - _ROUNDING
     head = w[V.head_port] != WAVES or needed <= free[0]
@@ -71,8 +99,9 @@ def waves_known(h, w, x, k):
 
 @kernel
 def publish_waves(h, w, x, k):
-    """Waves that come out of the ends, mean over a next step of length h (s)."""
-    clock, n = view(x, k, A.clock), k[A.impedance + 1]
+    """Write the waves (N) that come out of the ends, mean over a next step of length h (s)."""
+    clock = view(x, k, A.clock)
+    n = k[A.impedance + 1]
     begin = (clock[CLOCK.waiting] + clock[CLOCK.behind]) / w[V.time_step]
     end = begin + h / w[V.time_step]
     w[V.head_wave] = head_sign(w) * _mean(begin, end, n, True, w, x, k)
@@ -81,7 +110,10 @@ def publish_waves(h, w, x, k):
 
 @kernel
 def _mean(begin, end, n, at_head, w, x, k):
-    """Mean over the arrivals from begin to end (internal steps ahead) at an end of the rod; begin and end may coincide."""
+    """Return the mean wave (N) of the arrivals from begin to end (internal steps ahead) at an end.
+
+    begin and end may coincide.
+    """
     first, last = _cell(begin + _ROUNDING, n), _cell(end - _ROUNDING, n)
     if last <= first:
         return _arriving(first, n, at_head, w, x, k)
@@ -100,7 +132,10 @@ def _cell(steps, n):
 
 @kernel
 def _arriving(j, n, at_head, w, x, k):
-    """Wave (N) that arrives in the internal step j from now; the weight of the nodes in between is in it."""
+    """Return the wave (N) that arrives in the internal step j from now.
+
+    The weight of the nodes on its way is in it.
+    """
     impedance = view(x, k, A.impedance)
     own = impedance[0] if at_head else impedance[n - 1]
     wave = view(x, k, A.up)[j] if at_head else view(x, k, A.down)[n - 1 - j]

@@ -34,7 +34,20 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @kernel
 def initialise(w, x, k):
-    """State at the start, from the parameters: a rod at rest, a ram that touches it."""
+    """Set the state at the start from the parameters: a rod at rest, a ram that touches it.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or a fault of the parameters.
+    """
     if gives_waves(w) and w[V.scheme] != CHARACTERISTICS:
         return WAVES_NEED_CHARACTERISTICS
     if w[V.head_port] == WAVES and w[V.ram_mass] > 0.0:
@@ -58,7 +71,7 @@ def initialise(w, x, k):
 
 @kernel
 def _put_ram(w, x, k):
-    """The ram on the head, with its velocity."""
+    """Put the ram on the head, with its velocity."""
     ram = view(x, k, A.ram_state)
     if w[V.ram_mass] > 0.0:
         ram[RAM.velocity], ram[RAM.touching] = w[V.ram_velocity], 1.0
@@ -68,30 +81,22 @@ def _put_ram(w, x, k):
 
 @kernel
 def _clear(w, k):
-    """Accounts and envelopes at the start."""
+    """Clear energies, works and envelopes."""
     compression, tension = view(w, k, A.stress_compression), view(w, k, A.stress_tension)
     for i in range(len(compression)):
         compression[i], tension[i] = 0.0, 0.0
-    w[V.energy_radiated], w[V.energy_plastic], w[V.energy_damping], w[V.energy_contact] = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
+    w[V.energy_radiated], w[V.energy_plastic] = 0.0, 0.0
+    w[V.energy_damping], w[V.energy_contact] = 0.0, 0.0
     w[V.energy_work_head], w[V.energy_work_toe], w[V.energy_work_gravity] = 0.0, 0.0, 0.0
     w[V.energy_head], w[V.energy_transferred], w[V.energy_start] = 0.0, 0.0, 0.0
-    w[V.head_contact_force], w[V.toe_contact_force], w[V.exchange_step], w[V.delay] = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
+    w[V.head_contact_force], w[V.toe_contact_force] = 0.0, 0.0
+    w[V.exchange_step], w[V.delay] = 0.0, 0.0
     w[V.ram_separation] = -1.0
 
 
 @kernel
 def evaluate(w, x, k):
-    """Outputs at the start; the inputs act from then on."""
+    """Compute the outputs at the start; the inputs act from then on."""
     w[V.energy_start] = 0.0
     publish_waves(0.0, w, x, k)
     publish(w, x, k)
@@ -101,7 +106,22 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s) with the forces in the inputs."""
+    """Advance by a communication step with the forces in the inputs.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status: OK, STEP_TOO_LONG, WAVES_UNKNOWN or DIVERGED.
+    """
     w[V.exchange_step] = h
     if h > w[V.step_limit] * (1.0 + 1e-9):
         return STEP_TOO_LONG
@@ -146,13 +166,10 @@ def publish(w, x, k):
 
 @kernel
 def _publish_waves_inside(w, x, k):
-    """Forces, velocities and energies of the segments from their two waves."""
-    down, up, impedance, dt = (
-        view(x, k, A.down),
-        view(x, k, A.up),
-        view(x, k, A.impedance),
-        w[V.time_step],
-    )
+    """Write forces, velocities and energies of the segments from their two waves."""
+    down, up = view(x, k, A.down), view(x, k, A.up)
+    impedance = view(x, k, A.impedance)
+    dt = w[V.time_step]
     force, velocity = view(w, k, A.force), view(w, k, A.velocity)
     kinetic, elastic = 0.0, 0.0
     for i in range(len(impedance)):
@@ -167,20 +184,18 @@ def _publish_waves_inside(w, x, k):
 
 @kernel
 def _publish_chain(w, x, k):
-    """Forces, velocities and energies of masses and springs."""
-    rate, mass, n, last = (
-        view(x, k, A.rate),
-        view(x, k, A.mass),
-        k[A.impedance + 1],
-        view(k, k, A.free)[2],
-    )
+    """Write forces, velocities and energies of masses and springs."""
+    rate, mass = view(x, k, A.rate), view(x, k, A.mass)
+    n, last = k[A.impedance + 1], view(k, k, A.free)[2]
     force, velocity = view(w, k, A.force), view(w, k, A.velocity)
     for i in range(n):
-        force[i], velocity[i] = spring_force(i, w, x, k), rate[i + 1]
+        force[i] = spring_force(i, w, x, k)
+        velocity[i] = rate[i + 1]
     first = 1 if w[V.ram_mass] > 0.0 else 0
     kinetic, elastic, naive, moving, held = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(last + 1):
-        motion, ahead = 0.5 * mass[i] * rate[i] * rate[i], spring_energy(i, w[V.time_step], w, x, k)
+        motion = 0.5 * mass[i] * rate[i] * rate[i]
+        ahead = spring_energy(i, w[V.time_step], w, x, k)
         naive += motion + spring_energy(i, 0.0, w, x, k)
         if i < n:
             elastic += ahead
@@ -196,35 +211,28 @@ def _publish_chain(w, x, k):
 
 @kernel
 def _publish_ends(w, x, k):
-    place, rate, ram, n, sign = (
-        view(x, k, A.place),
-        view(x, k, A.rate),
-        view(x, k, A.ram_state),
-        k[A.impedance + 1],
-        head_sign(w),
-    )
+    place, rate = view(x, k, A.place), view(x, k, A.rate)
+    ram = view(x, k, A.ram_state)
+    n = k[A.impedance + 1]
+    sign = head_sign(w)
     head, speed = place[0], rate[0]
     if w[V.ram_mass] > 0.0 and w[V.scheme] != CHARACTERISTICS:
         ram[RAM.position], ram[RAM.velocity] = place[0], rate[0]
         if ram[RAM.touching] == 0.0:
             head, speed = place[1], rate[1]
-    w[V.head_position], w[V.head_velocity], w[V.head_zv] = (
-        sign * head,
-        sign * speed,
-        w[V.head_impedance] * speed,
-    )
+    w[V.head_position], w[V.head_velocity] = sign * head, sign * speed
+    w[V.head_zv] = w[V.head_impedance] * speed
     w[V.toe_position], w[V.toe_velocity] = place[n], rate[n]
-    w[V.ram_position], w[V.ram_speed], w[V.ram_touching] = (
-        ram[RAM.position],
-        ram[RAM.velocity],
-        ram[RAM.touching],
-    )
+    w[V.ram_position], w[V.ram_speed] = ram[RAM.position], ram[RAM.velocity]
+    w[V.ram_touching] = ram[RAM.touching]
     w[V.energy_ram] = 0.5 * w[V.ram_mass] * ram[RAM.velocity] * ram[RAM.velocity]
 
 
 @kernel
 def _publish_soil(w, x, k):
-    n, resistance, ahead = k[A.impedance + 1], view(w, k, A.shaft_force), 0.0
+    n = k[A.impedance + 1]
+    resistance = view(w, k, A.shaft_force)
+    ahead = 0.0
     rate = view(x, k, A.rate)
     if w[V.scheme] != CHARACTERISTICS:
         ahead = w[V.time_step]
@@ -244,9 +252,6 @@ def _publish_gauge(w, x, k):
     force = view(w, k, A.force)
     for j in range(len(stress)):
         stress[j] = force[j] / area[j]
-    w[V.gauge_force], w[V.gauge_velocity], w[V.gauge_stress] = (
-        force[i],
-        view(w, k, A.velocity)[i],
-        stress[i],
-    )
+    w[V.gauge_force], w[V.gauge_velocity] = force[i], view(w, k, A.velocity)[i]
+    w[V.gauge_stress] = stress[i]
     w[V.gauge_zv] = view(x, k, A.impedance)[i] * w[V.gauge_velocity]

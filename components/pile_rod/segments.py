@@ -1,4 +1,7 @@
-"""From sections to segments of equal travel time, and what follows from them: masses, springs, limits of the step."""
+"""Segments of equal travel time from sections, and what follows from them.
+
+That is masses, springs and the limits of the step.
+"""
 
 import math
 
@@ -20,24 +23,34 @@ from .declarations import (
 V, A = LAYOUT.scalar, LAYOUT.array
 
 UNBOUNDED = 1e6
-"""Published where nothing limits a step (s)."""
+"""Step (s) that is published where nothing limits it."""
 _EQUAL = 1e-9
 """Impedances that differ by less than this part are equal."""
 
 
 @kernel
 def divide(w, x, k):
-    """Travel time, impedance and area of each segment. Returns the travel time of one segment (s).
+    """Set travel time of the rod, impedance and area of each segment.
 
-    The rod is divided in equal travel times, not lengths. The impedance of a segment is the mean over its travel time: its mass is
-    then that of the rod there.
+    The rod is divided in equal travel times, not lengths. The impedance of a segment is the mean
+    over its travel time: its mass is then that of the rod there.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    float
+        Travel time of one segment (s).
     """
-    length, modulus, density = (
-        view(w, k, A.section_length),
-        view(w, k, A.section_modulus),
-        view(w, k, A.section_density),
-    )
-    n, sections = k[A.impedance + 1], len(length)
+    length, modulus = view(w, k, A.section_length), view(w, k, A.section_modulus)
+    density = view(w, k, A.section_density)
+    n = k[A.impedance + 1]
+    sections = len(length)
     total = 0.0
     for s in range(sections):
         total += length[s] * math.sqrt(density[s] / modulus[s])
@@ -51,7 +64,7 @@ def divide(w, x, k):
 
 @kernel
 def _mean(begin, end, w, k):
-    """Mean impedance (N s/m) and area (m2) over the travel times from begin to end (s) below the head."""
+    """Return mean impedance (N s/m) and area (m2) between two travel times (s) from the head."""
     length, area = view(w, k, A.section_length), view(w, k, A.section_area)
     modulus, density = view(w, k, A.section_modulus), view(w, k, A.section_density)
     top, shared, impedances, areas, last = 0.0, 0.0, 0.0, 0.0, len(length) - 1
@@ -70,8 +83,9 @@ def _mean(begin, end, w, k):
 
 @kernel
 def rod_length(w, k):
-    """Length of the rod (m)."""
-    length, total = view(w, k, A.section_length), 0.0
+    """Return the length of the rod (m)."""
+    length = view(w, k, A.section_length)
+    total = 0.0
     for s in range(len(length)):
         total += length[s]
     return total
@@ -79,12 +93,12 @@ def rod_length(w, k):
 
 @kernel
 def gauge_segment(w, k):
-    """Segment (from 0) in which the gauge is; the length of the rod above it is counted through the sections."""
-    length, modulus, density = (
-        view(w, k, A.section_length),
-        view(w, k, A.section_modulus),
-        view(w, k, A.section_density),
-    )
+    """Return the segment (from 0) in which the gauge is.
+
+    The length of the rod above the gauge is counted through the sections.
+    """
+    length, modulus = view(w, k, A.section_length), view(w, k, A.section_modulus)
+    density = view(w, k, A.section_density)
     left, time = w[V.gauge_depth], 0.0
     for s in range(len(length)):
         part = min(left, length[s])
@@ -96,7 +110,10 @@ def gauge_segment(w, k):
 
 @kernel
 def below_toe(w, x, k):
-    """Impedance (N s/m) of the rod that stands for the ground: (1 - alpha)/(1 + alpha) that of the toe. None: 0."""
+    """Return the impedance (N s/m) of the rod that stands for the ground; 0 if there is none.
+
+    It is (1 - alpha)/(1 + alpha) times that of the toe, with alpha the reflection at the toe.
+    """
     if w[V.toe_condition] != REFLECTION or toe_is_fixed(w):
         return 0.0
     impedance = view(x, k, A.impedance)
@@ -106,14 +123,27 @@ def below_toe(w, x, k):
 
 @kernel
 def lump(dt, w, x, k):
-    """Masses and springs of the chain: springs Z/dt, masses Z dt, both critical at the travel time dt (s) of a segment.
+    """Set masses and springs of the chain: springs Z/dt, masses Z dt.
 
-    Smith counts the mass of a segment at its lower end, below its spring; the repaired scheme gives an interface the mean of the
-    masses beside it. Node 0 is the ram, or without one half a segment.
+    Both are critical at the travel time dt of a segment. Smith counts the mass of a segment at its
+    lower end, below its spring; the repaired scheme gives an interface the mean of the masses on
+    its two sides. Node 0 is the ram, or without one half a segment.
+
+    Parameters
+    ----------
+    dt : float
+        Travel time of a segment (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
     """
     impedance, mass, spring = view(x, k, A.impedance), view(x, k, A.mass), view(x, k, A.spring)
-    n, ground, below = len(impedance), k[A.mass + 1] - k[A.impedance + 1] - 1, below_toe(w, x, k)
-    repaired, rod = w[V.scheme] == REPAIRED, below > 0.0 and w[V.scheme] != SMITH
+    n = len(impedance)
+    ground = k[A.mass + 1] - k[A.impedance + 1] - 1
+    below = below_toe(w, x, k)
+    repaired = w[V.scheme] == REPAIRED
+    rod = below > 0.0 and w[V.scheme] != SMITH
     mass[0] = w[V.ram_mass] if w[V.ram_mass] > 0.0 else 0.5 * impedance[0] * dt
     for i in range(1, n + 1):
         spring[i - 1], mass[i] = impedance[i - 1] / dt, impedance[i - 1] * dt
@@ -133,18 +163,36 @@ def lump(dt, w, x, k):
 
 @kernel
 def stable_limit(dt, w, x, k):
-    """Largest stable internal step (s) of masses and springs, by Gershgorin's circles; UNBOUNDED if the critical one is stable.
+    """Return the largest stable internal step of masses and springs, by Gershgorin's circles.
 
-    In a uniform chain the bound is exact: 2/omega = dx/c. It also is at the toe: a spring kappa times as stiff below it leaves the
-    critical step up to kappa = 2, a rod kappa times as heavy up to kappa = 1, or any with the repaired mass.
+    In a uniform chain the bound is exact: 2/omega = dx/c. The same holds at the toe: a spring kappa
+    times as stiff below it leaves the critical step up to kappa = 2, a rod kappa times as heavy up
+    to kappa = 1, or any with the repaired mass.
+
+    Parameters
+    ----------
+    dt : float
+        Travel time of a segment (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    float
+        Step (s); UNBOUNDED if the critical one is stable.
     """
     if w[V.scheme] == CHARACTERISTICS:
         return UNBOUNDED
-    mass, spring, last = view(x, k, A.mass), view(x, k, A.spring), view(k, k, A.free)[2]
-    shaft, quake, n = view(w, k, A.shaft_resistance), view(w, k, A.shaft_quake), k[A.impedance + 1]
+    mass, spring = view(x, k, A.mass), view(x, k, A.spring)
+    last = view(k, k, A.free)[2]
+    shaft, quake = view(w, k, A.shaft_resistance), view(w, k, A.shaft_quake)
+    n = k[A.impedance + 1]
     highest = 0.0
     for i in range(last + 1):
-        above, below = (spring[i - 1] if i > 0 else 0.0), spring[i]
+        above = spring[i - 1] if i > 0 else 0.0
+        below = spring[i]
         row = 2.0 * (above + below) / mass[i] if i < last else (2.0 * above + below) / mass[i]
         if 0 < i <= n:
             row += shaft[i - 1] / quake[i - 1] / mass[i]
@@ -157,12 +205,9 @@ def stable_limit(dt, w, x, k):
 
 @kernel
 def find_free_stretches(w, x, k):
-    """Numbers of segments from head and toe through which waves travel without reflection."""
-    impedance, shaft, free = (
-        view(x, k, A.impedance),
-        view(w, k, A.shaft_resistance),
-        view(k, k, A.free),
-    )
+    """Count the segments from head and toe through which waves travel without reflection."""
+    impedance, shaft = view(x, k, A.impedance), view(w, k, A.shaft_resistance)
+    free = view(k, k, A.free)
     n = len(impedance)
     free[0], free[1] = 1, 1
     while (
@@ -188,7 +233,17 @@ def _equal(one, other):
 
 @kernel
 def publish_limits(dt, w, x, k):
-    """Impedances at the ends and the longest communication steps."""
+    """Write the impedances at the ends and the longest communication steps.
+
+    Parameters
+    ----------
+    dt : float
+        Travel time of a segment (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
     impedance, free = view(x, k, A.impedance), view(k, k, A.free)
     w[V.head_impedance], w[V.toe_impedance] = impedance[0], impedance[len(impedance) - 1]
     share = 1.0 if w[V.exchange] == SEQUENTIAL else 0.5
@@ -210,7 +265,20 @@ def publish_limits(dt, w, x, k):
 
 @kernel
 def plain_limit(impedance, stiffness, mass):
-    """Longest step (s) of a port that takes force and gives kinematics: Z/k for a spring, M/Z for a mass."""
+    """Return the longest step of a port that takes force and gives kinematics.
+
+    Parameters
+    ----------
+    impedance : float
+        Z of the rod at the port (N s/m).
+    stiffness, mass : float
+        Spring k (N/m) or rigid mass M (kg) that acts there; 0 if there is none.
+
+    Returns
+    -------
+    float
+        Z/k for a spring, M/Z for a mass (s); UNBOUNDED for neither.
+    """
     limit = UNBOUNDED
     if stiffness > 0.0:
         limit = min(limit, impedance / stiffness)
@@ -221,13 +289,13 @@ def plain_limit(impedance, stiffness, mass):
 
 @kernel
 def head_sign(w):
-    """1 where the head's port counts downwards, -1 where upwards."""
+    """Return 1 where the head's port counts downwards, -1 where upwards."""
     return 1.0 if w[V.head_direction] == DOWN else -1.0
 
 
 @kernel
 def toe_is_fixed(w):
-    """Whether the toe does not move."""
+    """Return whether the toe does not move."""
     return w[V.toe_condition] == FIXED or (
         w[V.toe_condition] == REFLECTION and w[V.toe_reflection] == -1.0
     )

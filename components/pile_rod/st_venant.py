@@ -1,11 +1,17 @@
-"""St. Venant's problem in closed form: a rigid mass strikes an elastic rod whose toe reflects the part alpha of every wave.
+"""St. Venant's problem in closed form: a rigid mass strikes an elastic rod.
 
-With lambda = Z/M, tau = 2 L/c and f the velocity of the wave that leaves the head, b = alpha f(t - tau) that of the one that comes
-back, M (f + b)' = -Z (f - b) gives the transform f = V0 / (s + lambda) / (1 + alpha exp(-s tau) (s - lambda)/(s + lambda)) and thus
+The toe of the rod reflects the part alpha of every wave. With lambda = Z/M, tau = 2 L/c and f the
+velocity of the wave that leaves the head, b = alpha f(t - tau) that of the one that comes back,
+M (f + b)' = -Z (f - b) gives the transform
+
+    f = V0 / (s + lambda) / (1 + alpha exp(-s tau) (s - lambda)/(s + lambda))
+
+and thus
 
     f(t) = V0 sum over n of (-alpha)^n exp(-lambda t_n) L_n(2 lambda t_n),     t_n = t - n tau >= 0,
 
-L_n the Laguerre polynomials: every reflection has its term. Valid until the force first falls to zero: mass and rod then separate.
+L_n the Laguerre polynomials: every reflection has its term. Valid until the force first falls to
+zero: mass and rod then separate.
 """
 
 from dataclasses import dataclass
@@ -16,13 +22,25 @@ from scipy.optimize import brentq
 from scipy.special import eval_laguerre
 
 _SAMPLES = 400
-"""Times between two reflections at which a change of sign is looked for."""
+"""Times between two reflections at which the sign of the force is examined."""
 
 
 @dataclass(frozen=True)
 class StVenant:
-    """The problem. mass (kg), its velocity ``speed`` (m/s, downwards), impedance of the rod (N s/m), travel time L/c (s), and the
-    reflection alpha at the toe, from -1 (fixed) to 1 (free).
+    """A rigid mass that strikes the head of an elastic rod.
+
+    Attributes
+    ----------
+    mass : float
+        Of the rigid body, M (kg).
+    speed : float
+        With which it strikes, V0 (m/s, downwards).
+    impedance : float
+        Of the rod, Z (N s/m).
+    travel_time : float
+        Of a wave through the rod, L/c (s).
+    reflection : float
+        Part alpha of a wave that the toe reflects, from -1 (fixed) to 1 (free).
     """
 
     mass: float
@@ -37,7 +55,18 @@ class StVenant:
         return self.impedance * self.speed
 
     def wave(self, time: ArrayLike) -> NDArray[np.float64]:
-        """Velocity f (m/s) of the wave that leaves the head at these times (s)."""
+        """Return the velocity f of the wave that leaves the head.
+
+        Parameters
+        ----------
+        time : array_like
+            Times since the mass struck (s).
+
+        Returns
+        -------
+        ndarray
+            Velocities (m/s), in the shape of ``time``.
+        """
         times = np.asarray(time, dtype=float)
         rate, period = self.impedance / self.mass, 2.0 * self.travel_time
         total = np.zeros_like(times)
@@ -53,15 +82,49 @@ class StVenant:
         return self.speed * total
 
     def force(self, time: ArrayLike) -> NDArray[np.float64]:
-        """Force between mass and head (N, compression positive) at these times (s); where it jumps, the value after the jump."""
+        """Return the force between mass and head.
+
+        Parameters
+        ----------
+        time : array_like
+            Times since the mass struck (s).
+
+        Returns
+        -------
+        ndarray
+            Forces (N, compression positive), in the shape of ``time``; where the force jumps, the
+            value after the jump.
+        """
         return self.impedance * (self.wave(time) - self._returned(time))
 
     def velocity(self, time: ArrayLike) -> NDArray[np.float64]:
-        """Velocity of the mass (m/s, downwards) at these times (s)."""
+        """Return the velocity of the mass.
+
+        Parameters
+        ----------
+        time : array_like
+            Times since the mass struck (s).
+
+        Returns
+        -------
+        ndarray
+            Velocities (m/s, downwards), in the shape of ``time``.
+        """
         return self.wave(time) + self._returned(time)
 
     def separation(self, reflections: int = 60) -> float | None:
-        """Time (s) at which the force first falls to zero; None if it does not before this number of reflections."""
+        """Return the time at which the force first falls to zero.
+
+        Parameters
+        ----------
+        reflections : int
+            Number of reflections that are examined.
+
+        Returns
+        -------
+        float or None
+            Time (s); None if the force does not fall to zero before this number of reflections.
+        """
         period = 2.0 * self.travel_time
         for n in range(reflections):
             times = n * period + period * np.linspace(0.0, 1.0, _SAMPLES, endpoint=False)
@@ -90,7 +153,13 @@ class StVenant:
         return None
 
     def rebound(self) -> float | None:
-        """Velocity of the mass (m/s, downwards: negative where it jumps back) after the separation; None if there is none."""
+        """Return the velocity of the mass after the separation.
+
+        Returns
+        -------
+        float or None
+            Velocity (m/s, downwards: negative where it jumps back); None if there is no separation.
+        """
         time = self.separation()
         return None if time is None else float(self.velocity(time))
 

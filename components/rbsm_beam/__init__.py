@@ -1,4 +1,7 @@
-"""The beam: a chain of rigid discs with axial and bending springs (rigid bodies spring model, RBSM)."""
+"""The beam: a chain of rigid discs with axial and bending springs.
+
+It is a rigid bodies spring model (RBSM).
+"""
 
 from pathlib import Path
 

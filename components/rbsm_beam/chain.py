@@ -1,10 +1,17 @@
 """Mechanics of the chain: hinges, axial springs, supports, and one step of its discs.
 
-Arrays over the discs have one more place at each end: the mirror image of the end disc in the support. With it every disc has the
-same formula, and the end half-bar has the angle (v[1] - v[0]) / R like any other. Hidden arrays: displacements ``u`` to the right
-and ``v`` upwards (m), their rates (m/s), ``u_shape``, ``v_shape`` the shape that the springs are given and ``hinge_moment`` (N m)
-what follows from it, ``mass`` of the discs (kg) and ``kick``, their change of rate in a step under a unit force (m/s/N),
-``load.x``, ``load.y`` held forces with the couples of the torques (N), ``support.height`` (m).
+Arrays over the discs have one more place at each end: the mirror image of the end disc in the
+support. With it every disc has the same formula, and the end half-bar has the angle
+(v[1] - v[0]) / R like any other. Hidden arrays, n discs:
+
+* ``u`` to the right and ``v`` upwards, shape (n + 2): displacements (m); ``u_rate``, ``v_rate``:
+  their rates (m/s);
+* ``u_shape``, ``v_shape``, shape (n + 2): the shape under which the springs are evaluated;
+  ``hinge_moment`` (N m): what follows from it;
+* ``mass``, shape (n): mass of the discs (kg); ``kick``: their change of rate in a step under a unit
+  force (m/s/N);
+* ``load.x``, ``load.y``, shape (n): held forces with the couples of the torques (N);
+* ``support.height``, shape (2): heights of the supports (m).
 """
 
 from collections import namedtuple
@@ -15,17 +22,18 @@ from .declarations import FIXED, LAYOUT
 V, A = LAYOUT.scalar, LAYOUT.array
 
 WALL_HINGE, END_HINGE = 4.0, 4.0 / 3.0
-"""Stiffness of the hinges at a fixed support and at the disc beside it, in units of EI/R: the beam's length that bends in them is
-R/4 and 3R/4 (all others: R)."""
+"""Stiffness of the hinges at a fixed support and at the disc next to it, in units of EI/R.
+
+The beam's length that bends in them is R/4 and 3R/4 (all others: R)."""
 
 Chain = namedtuple("Chain", "n fixed spacing bending axial drag viscosity gravity")
-"""Constants: number of discs, whether supports are fixed, R (m), EI/R2 (N), EA/R (N/m), Rayleigh factors of
-mass (1/s) and stiffness (s), gravity (m/s2)."""
+"""Constants: number of discs, whether supports are fixed, R (m), EI/R2 (N), EA/R (N/m), Rayleigh
+factors of mass (1/s) and stiffness (s), gravity (m/s2)."""
 
 
 @kernel
 def chain(w, k):
-    """The constants that follow from the parameters."""
+    """Return the constants that follow from the parameters."""
     n = k[A.force_x + 1]
     spacing = w[V.span] / n
     return Chain(
@@ -42,15 +50,26 @@ def chain(w, k):
 
 @kernel
 def distribute(c, w, x, k):
-    """Give each disc its mass: its length of beam and deck, and of the box what stands on it."""
-    mass, own = view(x, k, A.mass), (w[V.density] * w[V.section_area] + w[V.deck_mass]) * c.spacing
+    """Give each disc its mass: its length of beam and deck, and its part of the box.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
+    mass = view(x, k, A.mass)
+    own = (w[V.density] * w[V.section_area] + w[V.deck_mass]) * c.spacing
     for i in range(c.n):
         mass[i] = own + w[V.box_mass] * box_share(c, i, w)
 
 
 @kernel
 def box_share(c, i, w):
-    """Part of the box's width that stands on disc i (from 0)."""
+    """Return the part of the box's width that stands on disc i (from 0)."""
     left, disc = w[V.box_left], w[V.axis_x] + i * c.spacing
     overlap = min(left + w[V.box_width], disc + c.spacing) - max(left, disc)
     return max(0.0, overlap) / w[V.box_width]
@@ -58,7 +77,10 @@ def box_share(c, i, w):
 
 @kernel
 def box_stands_on_beam(w):
-    """Whether a box that has mass or sand in it stands within the span, but for rounding."""
+    """Return whether a box with mass or sand stands within the span, but for rounding.
+
+    An empty box without mass may stand anywhere.
+    """
     margin, from_left = 1e-9 * w[V.span], w[V.box_left] - w[V.axis_x]
     empty = w[V.box_mass] == 0.0 and w[V.cushion_weight] == 0.0
     return empty or (from_left >= -margin and from_left + w[V.box_width] <= w[V.span] + margin)
@@ -66,9 +88,23 @@ def box_stands_on_beam(w):
 
 @kernel
 def deform(c, displacement_factor, rate_factor, w, x, k):
-    """Give the springs the shape displacement_factor * displacement + rate_factor * rate, the supports included; moments follow.
+    """Set the shape of the springs, the supports included, and the moments that follow from it.
 
-    (1, 0) gives the elastic moments, (0, 1) their rates, (1, viscosity) the elastic and viscous ones together.
+    The shape is displacement_factor * displacement + rate_factor * rate: (1, 0) gives the elastic
+    moments, (0, 1) their rates, (1, viscosity) the elastic and viscous ones together.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    displacement_factor : float
+        Dimensionless.
+    rate_factor : float
+        Time (s), or dimensionless where the displacements do not count.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
     """
     _shape_discs(
         c.n,
@@ -86,9 +122,11 @@ def deform(c, displacement_factor, rate_factor, w, x, k):
         view(x, k, A.v_rate),
         view(x, k, A.v_shape),
     )
-    u, v, n = view(x, k, A.u_shape), view(x, k, A.v_shape), c.n
+    u, v = view(x, k, A.u_shape), view(x, k, A.v_shape)
+    n = c.n
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
-    u[0], u[n + 1] = -u[1], -u[n] if c.fixed else u[n]
+    u[0] = -u[1]
+    u[n + 1] = -u[n] if c.fixed else u[n]
     v[0] = 2.0 * (displacement_factor * height[0] + rate_factor * speed[0]) - v[1]
     v[n + 1] = 2.0 * (displacement_factor * height[1] + rate_factor * speed[1]) - v[n]
     _bend(c, x, k)
@@ -102,7 +140,8 @@ def _shape_discs(n, displacement_factor, rate_factor, displacement, rate, shape)
 
 @kernel
 def _bend(c, x, k):
-    v, moment, n = view(x, k, A.v_shape), view(x, k, A.hinge_moment), c.n
+    v, moment = view(x, k, A.v_shape), view(x, k, A.hinge_moment)
+    n = c.n
     for i in range(n):
         moment[i + 1] = c.bending * ((v[i + 2] + v[i]) - 2.0 * v[i + 1])
     if c.fixed:
@@ -115,17 +154,25 @@ def _bend(c, x, k):
 
 @kernel
 def wall_moments(c, x, k):
-    """Moments at the left and right support (N m): of the wall hinge on the end half-bar's rotation, or none."""
+    """Return the moments at the left and right support (N m).
+
+    Each is that of the wall hinge on the end half-bar's rotation; it is 0 for simple supports.
+    """
     if not c.fixed:
         return 0.0, 0.0
-    v, n, stiffness = view(x, k, A.v_shape), c.n, WALL_HINGE * c.bending
+    v = view(x, k, A.v_shape)
+    n, stiffness = c.n, WALL_HINGE * c.bending
     return stiffness * (v[1] - v[0]), stiffness * (v[n] - v[n + 1])
 
 
 @kernel
 def reactions(c, w, x, k):
-    """Forces of the beam on the left and right support (N, upwards), from the moment equilibrium of the end half-bars."""
-    moment, torque, n = view(x, k, A.hinge_moment), view(w, k, A.torque), c.n
+    """Return the forces of the beam on the left and right support (N, upwards).
+
+    They follow from the moment equilibrium of the end half-bars.
+    """
+    moment, torque = view(x, k, A.hinge_moment), view(w, k, A.torque)
+    n = c.n
     return -(moment[1] - moment[0] + torque[0]) / c.spacing, (
         moment[n + 1] - moment[n] + torque[n - 1]
     ) / c.spacing
@@ -133,11 +180,22 @@ def reactions(c, w, x, k):
 
 @kernel
 def hold(c, w, x, k):
-    """Take over the input forces, and each torque as the couple that does the same work.
+    """Hold the input forces, and each torque as the couple that does the same work.
 
-    A disc's angle is (v[i+1] - v[i-1]) / 2R, so its torque T pulls the disc before it by -T / 2R and the next by T / 2R.
+    A disc's angle is (v[i+1] - v[i-1]) / 2R, so its torque T pulls the disc before it by -T / 2R
+    and the next by T / 2R.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
     """
-    load_x, load_y, per_length = view(x, k, A.load_x), view(x, k, A.load_y), 0.5 / c.spacing
+    load_x, load_y = view(x, k, A.load_x), view(x, k, A.load_y)
+    per_length = 0.5 / c.spacing
     force_x, force_y, torque = view(w, k, A.force_x), view(w, k, A.force_y), view(w, k, A.torque)
     for i in range(c.n):
         before, after = max(i - 1, 0), min(i + 1, c.n - 1)
@@ -147,13 +205,9 @@ def hold(c, w, x, k):
 
 @kernel
 def potential(c, w, x, k):
-    """Work (J) that the held loads do on the way from the undeformed beam to its present place."""
-    u, v, load_x, load_y = (
-        view(x, k, A.u),
-        view(x, k, A.v),
-        view(x, k, A.load_x),
-        view(x, k, A.load_y),
-    )
+    """Return the work (J) of the held loads from the undeformed beam to its present place."""
+    u, v = view(x, k, A.u), view(x, k, A.v)
+    load_x, load_y = view(x, k, A.load_x), view(x, k, A.load_y)
     torque, height = view(w, k, A.torque), view(x, k, A.support_height)
     total = (torque[c.n - 1] * height[1] - torque[0] * height[0]) / c.spacing
     for i in range(c.n):
@@ -171,8 +225,23 @@ def set_kicks(c, dt, x, k):
 
 @kernel
 def move(c, dt, w, x, k):
-    """One step dt (s), semi-implicit Euler: rates from the shape and its moments, then displacements with the new rates."""
-    kick, keep = view(x, k, A.kick), 1.0 - c.drag * dt
+    """Advance the discs by a step, semi-implicit Euler.
+
+    Rates follow from the shape and its moments, then displacements from the new rates.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    dt : float
+        Length of the step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
+    kick = view(x, k, A.kick)
+    keep = 1.0 - c.drag * dt
     _move_discs(
         c.n,
         dt,
@@ -204,7 +273,10 @@ def move(c, dt, w, x, k):
 
 @kernel
 def _move_discs(n, dt, kick, keep, fall, stiffness, field, load, rate, displacement):
-    """In one direction: every disc is pulled by stiffness times the second difference of ``field``."""
+    """Advance the discs by a step dt (s) in one direction.
+
+    Every disc is pulled by ``stiffness`` times the second difference of ``field``.
+    """
     for i in range(n):
         force = load[i] + stiffness * ((field[i + 2] + field[i]) - 2.0 * field[i + 1])
         rate[i + 1] = keep * rate[i + 1] + kick[i] * force - fall
@@ -213,7 +285,7 @@ def _move_discs(n, dt, kick, keep, fall, stiffness, field, load, rate, displacem
 
 @kernel
 def kinetic_energy(c, x, k):
-    """Kinetic energy of the discs (J); their rotation is no freedom and carries none."""
+    """Return the kinetic energy of the discs (J); their rotation is no freedom and carries none."""
     u_rate, v_rate, mass = view(x, k, A.u_rate), view(x, k, A.v_rate), view(x, k, A.mass)
     total = 0.0
     for i in range(c.n):
@@ -223,8 +295,12 @@ def kinetic_energy(c, x, k):
 
 @kernel
 def axial_energy(c, x, k):
-    """Energy of the axial springs (J) in the present shape: 1/2 sum k_N du2; half springs at the supports are twice as stiff."""
-    u, n = view(x, k, A.u_shape), c.n
+    """Return the energy of the axial springs (J) in the present shape: 1/2 sum k_N du2.
+
+    Half springs at the supports are twice as stiff.
+    """
+    u = view(x, k, A.u_shape)
+    n = c.n
     total = 0.5 * ((u[1] - u[0]) ** 2 + (u[n + 1] - u[n]) ** 2)
     for i in range(1, n):
         total += (u[i + 1] - u[i]) ** 2
@@ -233,8 +309,9 @@ def axial_energy(c, x, k):
 
 @kernel
 def bending_energy(c, x, k):
-    """Energy of the hinges (J) in the present shape: 1/2 sum M2 / k_M."""
-    moment, n = view(x, k, A.hinge_moment), c.n
+    """Return the energy of the hinges (J) in the present shape: 1/2 sum M2 / k_M."""
+    moment = view(x, k, A.hinge_moment)
+    n = c.n
     total = 0.0
     for i in range(1, n + 1):
         total += moment[i] * moment[i]
@@ -247,7 +324,7 @@ def bending_energy(c, x, k):
 
 @kernel
 def dissipation(c, w, x, k):
-    """Power (W) that the damping takes now. Leaves the rates as the shape."""
+    """Return the power (W) that the damping takes now. Leaves the rates as the shape."""
     deform(c, 0.0, 1.0, w, x, k)
     return 2.0 * (
         c.drag * kinetic_energy(c, x, k)

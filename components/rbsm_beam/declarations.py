@@ -39,7 +39,7 @@ def _per_element(name: str, description: str, unit: str, *depends: str):
 
 
 def _padded(sizes: Sizes) -> int:
-    """Length of an array over the discs that has one more place at each end, for what the support does there."""
+    """Return the length of an array over the discs with a place at each end for the support."""
     return sizes["elements"] + 2
 
 
@@ -55,7 +55,8 @@ LAYOUT = Layout(
         ),
         choice(
             "supports",
-            "simple: both ends turn freely, the right one slides along the axis; fixed: neither turns nor slides",
+            "simple: both ends turn freely, the right one slides along the axis; fixed: neither "
+            "turns nor slides",
             ("simple", "fixed"),
             "simple",
             source=_SONODA,
@@ -123,8 +124,8 @@ LAYOUT = Layout(
         ),
         param(
             "cushion.weight",
-            "weight of the sand in the box, even over its width, under which the beam is bent and at rest at the "
-            "start; from then on the inputs act, and this no longer",
+            "weight of the sand in the box, even over its width, under which the beam is bent and "
+            "at rest at the start; from then on the inputs act, and this no longer",
             0.0,
             "N",
             minimum=0.0,
@@ -132,8 +133,8 @@ LAYOUT = Layout(
         ),
         param(
             "gravity",
-            "acceleration of gravity, downwards; 0 leaves the weight of beam, deck and box out, deflections then count "
-            "from the position under it",
+            "acceleration of gravity, downwards; 0 leaves the weight of beam, deck and box out, "
+            "deflections then count from the position under it",
             0.0,
             "m/s2",
             minimum=0.0,
@@ -197,7 +198,8 @@ LAYOUT = Layout(
         ),
         out(
             "support.force.y",
-            "force of the beam on the support at the end of the step, upwards (negative under a load)",
+            "force of the beam on the support at the end of the step, upwards (negative under a "
+            "load)",
             "N",
             size="support_count",
         ),
@@ -270,7 +272,8 @@ LAYOUT = Layout(
         ),
         out(
             "energy.strain_estimate",
-            "elastic energy as estimated from what the strain at midspan has gained since the start",
+            "elastic energy as estimated from what the strain at midspan has gained since the "
+            "start",
             "J",
             source="Sonoda et al. 1993, eq. (7)",
             role=Role.ESTIMATED,

@@ -3,12 +3,13 @@
 DIVERGED, BOX_OFF_BEAM = range(1, 3)
 
 FAULTS = {
-    BOX_OFF_BEAM: "the box, from box.left = {box.left} m on, {box.width} m wide, does not stand within the span "
-    "from axis.x = {axis.x} m on, {span} m long, and has mass or sand in it: give box.left and "
-    "box.width, or box.mass = 0 and cushion.weight = 0",
-    DIVERGED: "the beam diverged: a displacement exceeds half the span ({span} m) or is no longer a number (midspan"
-    " deflection {midspan.deflection} m, transmitted force {transmitted_force} N); internal_step is "
-    "{internal_step} s and the largest stable one {stable_step} s: reduce internal_step below that, or,"
-    " if it is, the exchange step of the component that computes the forces",
+    BOX_OFF_BEAM: "the box, from box.left = {box.left} m on, {box.width} m wide, does not stand "
+    "within the span from axis.x = {axis.x} m on, {span} m long, and has mass or sand in it: give "
+    "box.left and box.width, or box.mass = 0 and cushion.weight = 0",
+    DIVERGED: "the beam diverged: a displacement exceeds half the span ({span} m) or is no longer "
+    "a number (midspan deflection {midspan.deflection} m, transmitted force {transmitted_force} "
+    "N); internal_step is {internal_step} s and the largest stable one {stable_step} s: reduce "
+    "internal_step below that, or, if it is, the exchange step of the component that computes the "
+    "forces",
 }
 """Message of each status; a name in braces stands for the value of that variable."""

@@ -27,7 +27,20 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @kernel
 def initialise(w, x, k):
-    """Compute the state that follows from the parameters alone."""
+    """Compute the constants of the chain and its stable step from the parameters alone.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or BOX_OFF_BEAM.
+    """
     if not box_stands_on_beam(w):
         return BOX_OFF_BEAM
     c = chain(w, k)
@@ -39,17 +52,28 @@ def initialise(w, x, k):
 
 @kernel
 def evaluate(w, x, k):
-    """The state at the start: at rest, in equilibrium with all weights, on the supports as they stand. Forces act from then on."""
+    """Compute state and outputs at the start: at rest, in equilibrium with all weights.
+
+    The supports stand where their inputs say. Forces act from then on.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or DIVERGED.
+    """
     c = chain(w, k)
     _place(view(x, k, A.support_height), view(w, k, A.support_position_y))
     rest(c, w, x, k)
     hold(c, w, x, k)
-    w[V.energy_damping], w[V.energy_work_contact], w[V.energy_work_support], w[V.energy_start] = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
+    w[V.energy_damping], w[V.energy_work_contact] = 0.0, 0.0
+    w[V.energy_work_support], w[V.energy_start] = 0.0, 0.0
     status = publish(w, x, k)
     w[V.midspan_start_strain], w[V.energy_strain_estimate] = w[V.midspan_strain], 0.0
     _place(view(w, k, A.support_mean_force_y), view(w, k, A.support_force_y))
@@ -65,7 +89,22 @@ def _place(pair, values):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s) with constant forces and torques, the supports moving with constant velocity."""
+    """Advance by h with constant forces and torques, the supports moving with constant velocity.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the communication step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status, OK or DIVERGED.
+    """
     n = substep_count(h, w[V.internal_step])
     advance(n, substep_length(h, n, w[V.internal_step]), w, x, k)
     return publish(w, x, k)
@@ -73,9 +112,22 @@ def step(t, h, w, x, k):
 
 @kernel
 def advance(n, dt, w, x, k):
-    """n steps of dt (s) with the inputs in w. Of the outputs only the works and support.mean_force are brought up to date.
+    """Advance by n internal steps with the inputs in w.
 
-    For programs that couple at every internal step: n calls with one step give the same motion to the bit as one call with n.
+    Of the outputs only the works and support.mean_force are brought up to date. For programs that
+    couple at every internal step: n calls with one step give the same motion to the bit as one call
+    with n.
+
+    Parameters
+    ----------
+    n : int
+        Number of steps.
+    dt : float
+        Length of one step (s).
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
     """
     c = chain(w, k)
     hold(c, w, x, k)
@@ -94,7 +146,7 @@ def advance(n, dt, w, x, k):
 
 @kernel
 def _move_and_react(c, n, dt, w, x, k):
-    """n steps of dt (s). Returns the sums of the forces on the left and right support (N)."""
+    """Advance by n steps of dt (s); return the sums of the forces on both supports (N)."""
     damped = c.drag > 0.0 or c.viscosity > 0.0
     left, right = 0.0, 0.0
     for _ in range(n):
@@ -110,7 +162,19 @@ def _move_and_react(c, n, dt, w, x, k):
 
 @kernel
 def settle(c, w, x, k):
-    """Put the supports at their given heights. The work of the jump is exact, as the elastic force is linear in it."""
+    """Put the supports at their input heights.
+
+    The work of the jump is exact, as the elastic force is linear in it.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
     height, given = view(x, k, A.support_height), view(w, k, A.support_position_y)
     left, right = given[0] - height[0], given[1] - height[1]
     if left == 0.0 and right == 0.0:
@@ -127,7 +191,20 @@ def settle(c, w, x, k):
 
 @kernel
 def publish(w, x, k):
-    """Refresh the outputs from the state. Returns the status: OK, or DIVERGED."""
+    """Write the outputs from the state.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    int
+        Status: OK, or DIVERGED where a displacement exceeds half the span or is no number.
+    """
     c = chain(w, k)
     _publish_forces(c, w, x, k)
     _publish_rates(c, w, x, k)
@@ -174,7 +251,7 @@ def _publish_places(c, w, x, k):
 
 @kernel
 def _publish_axis(n, first, spacing, padded, target):
-    """target[i] = first + i * spacing + what the padded array has for disc i."""
+    """Set target[i] = first + i * spacing + value of the padded array for disc i."""
     for i in range(n):
         target[i] = first + i * spacing + padded[i + 1]
 
@@ -187,7 +264,11 @@ def _publish_slopes(n, per_length, padded, target):
 
 @kernel
 def _publish_midspan(c, w, x, k):
-    """The middle disc, or for an even number the middle of the bar between the two middle discs."""
+    """Write the outputs of the midspan.
+
+    It is at the middle disc, or for an even number in the middle of the bar between the two middle
+    discs.
+    """
     v, moment = view(x, k, A.v), view(x, k, A.hinge_moment)
     one, other = (c.n + 1) // 2, c.n // 2 + 1
     stiffness = w[V.elastic_modulus] * w[V.section_second_moment]
@@ -222,7 +303,7 @@ def _publish_energies(c, w, x, k):
 
 @kernel
 def _within(n, limit, padded):
-    """Whether all discs' values are numbers not beyond the limit."""
+    """Return whether all discs' values are numbers not beyond the limit."""
     inside = True
     for i in range(1, n + 1):
         inside &= abs(padded[i]) <= limit

@@ -6,18 +6,26 @@ from ..common.kernels import kernel, view
 from .chain import END_HINGE, WALL_HINGE, A, V, box_share, deform
 
 POWER_ITERATIONS = 80
-"""Each halves the error of the highest mode's shape, and quarters that of its frequency."""
+"""Number of power iterations.
+
+Each halves the error of the highest mode's shape, and quarters that of its frequency."""
 
 
 @kernel
 def rest(c, w, x, k):
-    """Put the chain at rest in equilibrium with its weights and with the supports where they stand."""
-    u, u_rate, v_rate, height = (
-        view(x, k, A.u),
-        view(x, k, A.u_rate),
-        view(x, k, A.v_rate),
-        view(x, k, A.support_height),
-    )
+    """Put the chain at rest in equilibrium with its weights, the supports where they stand.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
+    u, u_rate = view(x, k, A.u), view(x, k, A.u_rate)
+    v_rate, height = view(x, k, A.v_rate), view(x, k, A.support_height)
     for i in range(c.n + 2):
         u[i] = u_rate[i] = v_rate[i] = 0.0
     rise = height[1] - height[0]
@@ -29,14 +37,18 @@ def rest(c, w, x, k):
 
 @kernel
 def _weight(c, i, w, x, k):
-    """Force (N, downwards) on disc i (from 0) at rest: weight of its mass, and of the cushion."""
+    """Return the weight (N) on disc i (from 0) at rest: of its mass and of the cushion."""
     return view(x, k, A.mass)[i] * c.gravity + w[V.cushion_weight] * box_share(c, i, w)
 
 
 @kernel
 def _weight_moments(c, w, x, k):
-    """Moments at the discs of a simply supported chain under its weights: the left reaction, then disc by disc."""
-    moment, n = view(x, k, A.hinge_moment), c.n
+    """Set the moments at the discs of a simply supported chain under its weights.
+
+    They come from the left reaction, then disc by disc.
+    """
+    moment = view(x, k, A.hinge_moment)
+    n = c.n
     shear = 0.0
     for i in range(n):
         shear += _weight(c, i, w, x, k) * (n - i - 0.5) / n
@@ -48,7 +60,7 @@ def _weight_moments(c, w, x, k):
 
 @kernel
 def _deflect(c, rise, height, moment, v):
-    """Deflections v from the moments: angles from bar to bar, then heights, from the left support on.
+    """Set the deflections v from the moments: angles from bar to bar, then heights, from the left.
 
     The first bar's angle is the one with which the last ends at the right support.
     """
@@ -64,7 +76,7 @@ def _deflect(c, rise, height, moment, v):
 
 @kernel
 def _flexibility(c, i):
-    """Rotation of the hinge at disc i (from 0) under a unit moment."""
+    """Return the rotation of the hinge at disc i (from 0) under a unit moment (rad/(N m))."""
     end = i in (0, c.n - 1)
     return 1.0 / (c.bending * c.spacing * (END_HINGE if c.fixed and end else 1.0))
 
@@ -92,12 +104,30 @@ def _add_redundant_moments(c, rise, moment):
 
 @kernel
 def stable_step(c, w, x, k):
-    """Largest step (s) for which no mode grows, damping included.
+    """Return the largest step for which no mode grows, damping included.
 
-    Semi-implicit Euler with the damping force of the old velocity turns a mode of frequency omega and decay rate
-    a = drag + viscosity omega2 by lambda2 - (2 - a dt - omega2 dt2) lambda + 1 - a dt = 0; both roots stay in the unit circle for
-    dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest frequency decides: that of a chain of discs as light as the lightest one,
-    which more mass can only lower. It is exact without a box or with one that leaves no disc free.
+    Semi-implicit Euler with the damping force of the old velocity turns a mode of frequency omega
+    and decay rate a = drag + viscosity omega2 by
+
+        lambda2 - (2 - a dt - omega2 dt2) lambda + 1 - a dt = 0;
+
+    both roots stay in the unit circle for dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest
+    frequency decides: that of a chain of discs as light as the lightest one, which more mass can
+    only lower. It is exact without a box or with one that leaves no disc free.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    float
+        Step (s).
     """
     mass = _lightest(c, x, k)
     bending = (
@@ -110,7 +140,7 @@ def stable_step(c, w, x, k):
 
 @kernel
 def _lightest(c, x, k):
-    """Least mass (kg) of a disc."""
+    """Return the least mass (kg) of a disc."""
     mass = view(x, k, A.mass)
     least = mass[0]
     for i in range(1, c.n):
@@ -120,14 +150,20 @@ def _lightest(c, x, k):
 
 @kernel
 def _axial_frequency2(c, mass):
-    """Square of the highest axial frequency: a chain held at both ends, or at the left one only."""
+    """Return the square of the highest axial frequency (1/s2).
+
+    The chain is held at both ends, or at the left one only.
+    """
     factor = 1.0 if c.fixed else math.cos(0.25 * math.pi / c.n)
     return 4.0 * c.axial / mass * factor * factor
 
 
 @kernel
 def _fixed_frequency2(c, mass, w, x, k):
-    """Square of the highest bending frequency with fixed supports: symmetric and antisymmetric modes apart, as they lie close."""
+    """Return the square of the highest bending frequency with fixed supports (1/s2).
+
+    Symmetric and antisymmetric modes are computed apart, as their frequencies lie close.
+    """
     return max(
         _highest_frequency2(c, mass, 1.0, w, x, k), _highest_frequency2(c, mass, -1.0, w, x, k)
     )
@@ -135,7 +171,11 @@ def _fixed_frequency2(c, mass, w, x, k):
 
 @kernel
 def _highest_frequency2(c, mass, parity, w, x, k):
-    """Power iteration on the chain's own deflections, from the end discs deflected. Overwrites the state."""
+    """Return the square of the highest bending frequency of the modes of one parity (1/s2).
+
+    Power iteration on the chain's own deflections, which begin with the end discs deflected.
+    Overwrites the state.
+    """
     v, moment, height = view(x, k, A.v), view(x, k, A.hinge_moment), view(x, k, A.support_height)
     height[0] = height[1] = 0.0
     for i in range(c.n + 2):

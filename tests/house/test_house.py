@@ -5,11 +5,11 @@ import pytest
 from tests.house import rules
 
 BUDGETS = {
-    rules.too_long: 9,
-    rules.nested_condition: 3,
-    rules.unlike_things: 77,
-    rules.begins_with_what: 41,
-    rules.says_little: 23,
+    rules.too_long: 4,
+    rules.nested_condition: 0,
+    rules.unlike_things: 28,
+    rules.begins_with_what: 2,
+    rules.says_little: 4,
 }
 """Breaches that are left from before the rule; the numbers only fall."""
 
