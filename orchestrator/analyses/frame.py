@@ -329,7 +329,8 @@ class Result(ABC):
         list of Path
             Of the files.
         """
-        folder.mkdir(exist_ok=True)
+        with refusing_unwritable(folder):
+            folder.mkdir(parents=True, exist_ok=True)
         drawings: Mapping[str, Drawing] = self.pictures_module().drawings(self)
         files = [folder / f"{name}.png" for name in drawings]
         progress("drawing", 0, len(files))

@@ -13,10 +13,10 @@ from ..runs.request import AUTO, Request
 from ..runs.run import Run
 from ..runs.simulation import simulate
 from ..runs.system import System
+from .analysis import options_named
 from .assignments import sizes_of, values_of
 from .drawing import draw
 from .options import (
-    RESULTS,
     Assignments,
     CaseSizes,
     CouplingScheme,
@@ -26,6 +26,7 @@ from .options import (
     Quiet,
     Target,
 )
+from .results_place import results_folder
 from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
 from .streams import stdout_for_results, tell_leftovers
 
@@ -129,19 +130,30 @@ def _simulate(
 ) -> Run:
     """Carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
-        system = System.prepared(request, screen.note, problems)
+        with options_named(request.options, request.target):
+            system = System.prepared(request, screen.note, problems)
         facts = system.job.facts
         if "runtime" in facts:
             screen.note(f"{facts['runtime']} FMUs ({facts['runtime_reason']})")
-        folder = output_dir or RESULTS / system.name
+        folder = output_dir or _folder(system, screen)
         if is_cold(system.job.components):
             progress.describe(COLD_START)
         tell_leftovers(folder, screen)
         try:
-            return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
+            with options_named(request.options):
+                return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
         except RunFailed as failure:
             done: Run = failure.run
             return done
+
+
+def _folder(system: System, screen: Screen) -> Path:
+    """Return the folder of the results of a system that the user has named no folder for."""
+    facts = system.job.facts
+    which = "case" if "case" in facts else "system_file"
+    return results_folder(
+        system.name, facts.get("system_file", system.name), {which: facts[which]}, screen
+    )
 
 
 def show_run(done: Run, screen: Screen, with_figures: bool) -> None:

@@ -18,6 +18,7 @@ from ..core.system.names import nearest
 from ..files import whole_file, write_file, write_json
 from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
 from ..runs.building import Note, silent
+from ..runs.kept import KeptRuns
 from ..tables import Table
 from ..temporary import TemporaryFolder
 from ..versions import versions
@@ -33,6 +34,8 @@ PAPERS = {
 }
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
+FINISHED = ".finished-runs"
+"""Folder of the runs that have ended, until all have: a reproduction that was killed goes on."""
 _PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
 
@@ -172,7 +175,8 @@ def reproduce(
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
-    outcomes = Outcomes(run_all(tasks, workers, note, counted), quick)
+    kept = KeptRuns(folder / FINISHED)
+    outcomes = Outcomes(run_all(tasks, workers, note, counted, kept), quick)
     with TemporaryFolder() as drawn:
         parts = [_part(study, outcomes, drawn, folder / FIGURES) for study in selected]
     facts = {
@@ -186,7 +190,10 @@ def reproduce(
     content = as_data(parts, tasks, list(outcomes.by_key.values()), folder, facts)
     write_json(folder / DATA, content)
     write_file(folder / PAGE, page(parts, content))
-    return Reproduction(parts, content, [folder / DATA, folder / PAGE])
+    made = Reproduction(parts, content, [folder / DATA, folder / PAGE])
+    if not made.interrupted:
+        kept.clear()
+    return made
 
 
 def _part(study: Study, outcomes: Outcomes, drawn: Path, figures: Path) -> Part:

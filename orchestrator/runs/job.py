@@ -150,8 +150,8 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
         "system_file": request.target,
         "differences": {**request.values, **request.options},
     }
-    path = Path(request.target)
-    return Job(path.stem, load_system(path), {}, facts)
+    system = load_system(Path(request.target))
+    return Job(system.name, system, {}, facts)
 
 
 def _from_case(chosen: Case, request: Request, problems: list[Problem], note: Note) -> Job:

@@ -4,8 +4,6 @@ A system is read from a TOML file or built in Python; both are checked for their
 against the FMUs in :mod:`rockshed.core.system.planning`.
 """
 
-import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -13,6 +11,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import InputRefused, Problem
+from ..form_faults import UNKNOWN_KEY, sentences
+from ..input_text import read_text, toml_content
 from .names import matches, nearest
 
 Value = bool | int | float | str
@@ -220,12 +220,15 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
     try:
         return SystemSpec.model_validate(data)
     except ValidationError as error:
-        found: dict[str, list[str]] = {}
-        for entry in error.errors():
-            found.setdefault(_path(entry["loc"]), []).append(_sentence(entry))
+        found = sentences(error.errors())
         raise InputRefused(
-            [Problem(f"{where}: {key}", " or ".join(sentences)) for key, sentences in found.items()]
+            [_form_problem(where, key, texts) for key, texts in found.items()]
         ) from error
+
+
+def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem:
+    hints = [nearest(str(key[-1]), _KEYS)] if UNKNOWN_KEY in texts else []
+    return Problem(f"{where}: {'.'.join(map(str, key))}", "; ".join([" or ".join(texts), *hints]))
 
 
 def load_system(path: Path) -> SystemSpec:
@@ -245,16 +248,7 @@ def load_system(path: Path) -> SystemSpec:
     InputRefused
         No such file, not TOML, or :func:`system_from` refuses the content.
     """
-    try:
-        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except OSError as error:
-        raise InputRefused(
-            [Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]
-        ) from error
-    except UnicodeDecodeError as error:
-        raise InputRefused([_not_utf_8(path)]) from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
+    data = toml_content(path, read_text(path))
     system = system_from(data, str(path))
     folder = path.resolve().parent
     components = {
@@ -262,14 +256,6 @@ def load_system(path: Path) -> SystemSpec:
         for name, spec in system.components.items()
     }
     return system.model_copy(update={"components": components})
-
-
-def _not_utf_8(path: Path) -> Problem:
-    is_utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
-    encoding = "written in UTF-16" if is_utf_16 else "no text in UTF-8"
-    return Problem(
-        str(path), f"is {encoding}, and TOML is UTF-8", "save it again with the encoding UTF-8"
-    )
 
 
 def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
@@ -338,31 +324,6 @@ def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
     listed = ", ".join(f"{name} = {value}" for name, value in given.items())
     what = f"is one value for all its targets, and is given several: {listed}"
     return [Problem(key, what, "give one of them")]
-
-
-def _path(location: tuple[int | str, ...]) -> str:
-    """Return the path of a key, ``components.rock.step``.
-
-    The names that pydantic gives to the alternatives of a type are left out.
-    """
-    kept = [
-        part
-        for part in location
-        if not (isinstance(part, str) and re.fullmatch(r"bool|int|float|str|constrained-.*", part))
-    ]
-    return ".".join(map(str, kept))
-
-
-def _sentence(error: Any) -> str:
-    if error["type"] == "extra_forbidden":
-        return f"there is no such key; {nearest(str(error['loc'][-1]), _KEYS)}"
-    if error["type"] == "missing":
-        return "is missing"
-    given = f" (given: {error['input']!r})"
-    if isinstance(error["input"], dict | list) or error["type"] == "value_error":
-        given = ""
-    message = str(error["msg"]).removeprefix("Value error, ")
-    return message[0].lower() + message[1:] + given
 
 
 _KEYS = sorted(
