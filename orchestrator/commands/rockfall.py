@@ -15,7 +15,7 @@ from ..runs.building import is_cold
 from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site
-from .screen import COLD_START, RUN_FAILED, opened
+from .screen import COLD_START, RUN_FAILED, Screen, opened
 from .streams import tell_leftovers
 
 PRESETS = {"paper": 200}
@@ -87,10 +87,7 @@ def command(
         count = _count(trials, preset)
         folder = output_dir or folder_of_site(site, "rockfall", screen)
         tell_leftovers(folder, screen)
-        if is_cold(["SlopeRockfall"]):
-            screen.note(COLD_START)
-        if replay and animation is None and not can_write_mp4():
-            screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
+        _tell(screen, bool(replay) and animation is None)
         try:
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = rockfall(
@@ -110,6 +107,14 @@ def command(
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
         show(screen, result)
+
+
+def _tell(screen: Screen, animates: bool) -> None:
+    """Note what makes the first campaign slow, and how animations come."""
+    if is_cold(["SlopeRockfall"]):
+        screen.note(COLD_START)
+    if animates and not can_write_mp4():
+        screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
 
 
 def _certificates(
