@@ -84,7 +84,6 @@ def command(
     Percentiles have confidence intervals.
     """
     with opened(quiet, as_json) as screen:
-        count = _count(trials, preset)
         folder = output_dir or folder_of_site(site, "rockfall", screen)
         tell_leftovers(folder, screen)
         _tell(screen, bool(replay) and animation is None)
@@ -92,7 +91,7 @@ def command(
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = rockfall(
                     site,
-                    trials=count,
+                    trials=_count(trials, preset),
                     seed=seed,
                     workers=workers,
                     scheduler=scheduler,

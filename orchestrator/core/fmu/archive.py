@@ -24,7 +24,7 @@ _UNREADABLE = (
     OverflowError,
     ValueError,
 )
-"""What the reader raises for members that are damaged, encrypted, or packed in an unknown way."""
+"""Errors that the reader raises for members that are damaged, encrypted, or packed oddly."""
 
 
 class ArchiveError(Exception):
@@ -77,7 +77,7 @@ class Archive:
 
     @property
     def names(self) -> set[str]:
-        """Names of the files."""
+        """Names of the files in the archive, in its order."""
         return {name for name, info in self._members.items() if not _is_folder(info)}
 
     def check_size(self) -> None:
