@@ -1,12 +1,12 @@
 """Parts of the commands of all analyses: progress, names of options, display of a result."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from typing import Any
 
 from ..analyses.frame import Result, StageProgress
-from ..core.errors import InputRefused
+from ..core.errors import InputRefused, Problem
 from .screen import Screen
 
 
@@ -39,13 +39,15 @@ def stages(screen: Screen) -> Iterator[StageProgress]:
 
 
 @contextmanager
-def options_named(options: Sequence[str]) -> Iterator[None]:
+def options_named(options: Collection[str], target: str = "") -> Iterator[None]:
     """Name the arguments of a function in its refusals as the options of a command.
 
     Parameters
     ----------
-    options : sequence of str
+    options : collection of str
         Arguments that are options: a problem of ``scheduler x`` is shown as ``--scheduler x``.
+    target : str
+        What they change: ``lab-impact: stop_time`` is shown as ``--stop-time``.
 
     Raises
     ------
@@ -55,14 +57,16 @@ def options_named(options: Sequence[str]) -> Iterator[None]:
     try:
         yield
     except InputRefused as refusal:
-        raise InputRefused(
-            [
-                replace(problem, where=f"--{problem.where}")
-                if problem.where.split(" ")[0] in options
-                else problem
-                for problem in refusal.problems
-            ]
-        ) from None
+        problems = [_of_option(problem, options, target) for problem in refusal.problems]
+        raise InputRefused(problems) from None
+
+
+def _of_option(problem: Problem, options: Collection[str], target: str) -> Problem:
+    where = problem.where.removeprefix(f"{target}: ")
+    name, blank, rest = where.partition(" ")
+    if name not in options:
+        return problem
+    return replace(problem, where=f"--{name.replace('_', '-')}{blank}{rest}")
 
 
 def show(screen: Screen, result: Result) -> None:

@@ -1,19 +1,23 @@
 """The command ``rockshed calibrate``: E_bar of a sand from a measurement."""
 
+import json
 import re
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from ..analyses.calibration.files import DATA
 from ..analyses.calibration.measurement import FORCES, LENGTHS, Measurement, of_stiffness, table_4
 from ..analyses.calibration.result import CalibrationResult
-from ..analyses.calibration.run import calibrate
+from ..analyses.calibration.run import MeasurementLike, calibrate, measurements_of
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.system.values import finite_number
 from .analysis import options_named, stages
 from .assignments import values_of
-from .options import RESULTS, Assignments, Json, Quiet, Workers
+from .options import Assignments, Json, Quiet, Workers
+from .results_place import Origin, free_folder
 from .screen import RUN_FAILED, Screen, opened
 
 PAPER = "sonoda1993"
@@ -83,7 +87,7 @@ def command(
                     values=values,
                     seeds=seeds,
                     workers=workers,
-                    folder=output_dir or RESULTS / "calibration",
+                    folder=output_dir or _folder(measurement, screen),
                     pictures=True,
                     progress=progress,
                     note=screen.note,
@@ -92,6 +96,25 @@ def command(
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
         _show(screen, result)
+
+
+def _folder(measurement: MeasurementLike, screen: Screen) -> Path:
+    """Return the folder of the results of a measurement that the user has named no folder for."""
+    origin: Origin = {}
+    with suppress(InputRefused):  # the calibration itself refuses it, with all other problems
+        measured = measurements_of(measurement)
+        origin = {
+            "measurement": [entry.name for entry in measured],
+            "measured_load": [entry.load.tolist() for entry in measured],
+        }
+    return free_folder("calibration", origin, _measured, screen)
+
+
+def _measured(folder: Path) -> Any:
+    """Return the measurements of a calibration that is in a folder."""
+    content = json.loads((folder / DATA).read_text(encoding="utf-8"))
+    results = content["calibrations"][0]["results"]
+    return {key: [entry[key] for entry in results] for key in ("measurement", "measured_load")}
 
 
 def _show(screen: Screen, result: CalibrationResult) -> None:

@@ -7,10 +7,11 @@ import typer
 
 from ..analyses.pile.run import pile
 from ..runs.building import is_cold
-from ..sites.source import site_source
-from .analysis import show, stages
-from .options import RESULTS, Json, NoFigures, Quiet
+from .analysis import options_named, show, stages
+from .options import Json, NoFigures, Quiet
+from .results_place import folder_of_site
 from .screen import COLD_START, opened
+from .streams import tell_leftovers
 
 _Site = Annotated[
     Path,
@@ -35,10 +36,11 @@ def command(
     Residual stresses between blows are computed where the file asks for them.
     """
     with opened(quiet, as_json) as screen:
-        folder = output_dir or RESULTS / site_source(site).name
+        folder = output_dir or folder_of_site(site, "pile", screen)
+        tell_leftovers(folder, screen)
         if is_cold(["Hammer", "PileRod"]):
             screen.note(COLD_START)
         pictures = not no_figures
-        with stages(screen) as progress:
+        with options_named(("blows",)), stages(screen) as progress:
             result = pile(site, blows=blows, folder=folder, pictures=pictures, progress=progress)
         show(screen, result)

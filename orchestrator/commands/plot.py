@@ -5,14 +5,21 @@ from typing import Annotated
 
 import typer
 
+from ..analyses.saved import saved_result
 from ..core.errors import InputRefused, Problem
 from ..core.results.run_folder import running_folder
 from ..runs.run import read_run
+from .analysis import stages
 from .drawing import draw
 from .options import Quiet
 from .screen import opened
 
-_Folder = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run, finished or not.")]
+_Folder = Annotated[
+    Path,
+    typer.Argument(
+        metavar="RUN", help="Folder of a run, finished or not, or of `rockfall` or `pile`."
+    ),
+]
 _Pictures = Annotated[
     Path | None, typer.Option(help="Folder of the pictures; default RUN/figures.")
 ]
@@ -21,6 +28,13 @@ _Pictures = Annotated[
 def command(run: _Folder, output_dir: _Pictures = None, quiet: Quiet = False) -> None:
     """Draw a run again, also one that failed or was killed."""
     with opened(quiet) as screen:
+        result = saved_result(run)
+        if result is not None:
+            with stages(screen) as progress:
+                files = result.write_pictures(output_dir or run / "figures", progress)
+            for file in files:
+                screen.say(str(file))
+            return
         found = read_run(run)
         if found.folder.absolute() == run.absolute() and running_folder(run.absolute()).exists():
             screen.warn(f"there is a newer run that has not ended, in {running_folder(run)}")

@@ -5,13 +5,11 @@ from typing import Annotated
 
 import typer
 
-from ..papers.reproduction import Reproduction, reproduce
+from ..papers.reproduction import PAPERS, Reproduction, reproduce
 from .options import RESULTS, Json, Quiet, Workers
 from .screen import INTERRUPTED, Screen, opened
 
-_Paper = Annotated[
-    str, typer.Argument(metavar="PAPER", help="sonoda1993, mogami1973, uto1974 or ushiro.")
-]
+_Paper = Annotated[str, typer.Argument(metavar="PAPER", help=f"One of {', '.join(PAPERS)}.")]
 _Only = Annotated[
     list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")
 ]

@@ -7,18 +7,20 @@ import typer
 
 from ..analyses.rockfall.animation_format import can_write_mp4
 from ..analyses.rockfall.campaign import CampaignFailed
+from ..analyses.rockfall.cluster import Certificates
 from ..analyses.rockfall.run import rockfall
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold
-from ..sites.source import site_source
 from .analysis import options_named, show, stages
-from .options import RESULTS, Json, NoFigures, Quiet
-from .screen import COLD_START, RUN_FAILED, opened
+from .options import Json, NoFigures, Quiet
+from .results_place import folder_of_site
+from .screen import COLD_START, RUN_FAILED, Screen, opened
+from .streams import tell_leftovers
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
-_OPTIONS = ("replay", "animation", "workers", "scheduler")
+_OPTIONS = ("trials", "seed", "replay", "animation", "workers", "scheduler")
 """Arguments of the analysis that are options of the command."""
 
 _Site = Annotated[
@@ -46,11 +48,18 @@ _Threads = Annotated[
 _Scheduler = Annotated[
     str | None,
     typer.Option(
-        metavar="local|tcp://HOST:PORT",
+        metavar="local|tls://HOST:PORT|tcp://HOST:PORT",
         help="Compute on Dask: on processes of this computer, or on the workers of a running "
-        "scheduler.",
+        "scheduler. Whoever reaches a scheduler without certificates (tcp) runs programs on it.",
     ),
 ]
+_Authority = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Certificate of a cluster's authority (PEM).")
+]
+_Certificate = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Your certificate for a cluster (PEM).")
+]
+_Key = Annotated[Path | None, typer.Option(metavar="FILE", help="The key that belongs to it.")]
 
 
 def command(
@@ -63,6 +72,9 @@ def command(
     output_dir: _Folder = None,
     workers: _Threads = None,
     scheduler: _Scheduler = None,
+    tls_ca: _Authority = None,
+    tls_cert: _Certificate = None,
+    tls_key: _Key = None,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -72,20 +84,18 @@ def command(
     Percentiles have confidence intervals.
     """
     with opened(quiet, as_json) as screen:
-        count = _count(trials, preset)
-        folder = output_dir or RESULTS / site_source(site).name
-        if is_cold(["SlopeRockfall"]):
-            screen.note(COLD_START)
-        if replay and animation is None and not can_write_mp4():
-            screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
+        folder = output_dir or folder_of_site(site, "rockfall", screen)
+        tell_leftovers(folder, screen)
+        _tell(screen, bool(replay) and animation is None)
         try:
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = rockfall(
                     site,
-                    trials=count,
+                    trials=_count(trials, preset),
                     seed=seed,
                     workers=workers,
                     scheduler=scheduler,
+                    certificates=_certificates(tls_ca, tls_cert, tls_key),
                     replay=replay or [],
                     animation=animation,
                     folder=folder,
@@ -96,6 +106,28 @@ def command(
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
         show(screen, result)
+
+
+def _tell(screen: Screen, animates: bool) -> None:
+    """Note what makes the first campaign slow, and how animations come."""
+    if is_cold(["SlopeRockfall"]):
+        screen.note(COLD_START)
+    if animates and not can_write_mp4():
+        screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
+
+
+def _certificates(
+    authority: Path | None, certificate: Path | None, key: Path | None
+) -> Certificates | None:
+    """Return the certificates of a cluster; all three files belong together."""
+    given = {"--tls-ca": authority, "--tls-cert": certificate, "--tls-key": key}
+    if authority and certificate and key:
+        return Certificates(authority, certificate, key)
+    missing = [option for option, file in given.items() if file is None]
+    if len(missing) == len(given):
+        return None
+    remedy = f"give {', '.join(given)} together"
+    raise InputRefused([Problem(option, "is missing", remedy) for option in missing])
 
 
 def _count(trials: int | None, preset: str | None) -> int | None:

@@ -13,10 +13,10 @@ from ..runs.request import AUTO, Request
 from ..runs.run import Run
 from ..runs.simulation import simulate
 from ..runs.system import System
+from .analysis import options_named
 from .assignments import sizes_of, values_of
 from .drawing import draw
 from .options import (
-    RESULTS,
     Assignments,
     CaseSizes,
     CouplingScheme,
@@ -26,7 +26,9 @@ from .options import (
     Quiet,
     Target,
 )
+from .results_place import results_folder
 from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
+from .streams import stdout_for_results, tell_leftovers
 
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
 _StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")]
@@ -107,9 +109,11 @@ def command(
     request = Request(
         target, values, sizes, coupling, options, in_process, load_cell, model, runtime
     )
+    announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
-        done = _simulate(request, problems, output_dir, allow_unstable, screen)
-        _show_run(done, screen, not no_figures)
+        with stdout_for_results():
+            done = _simulate(request, problems, output_dir, allow_unstable, screen)
+        show_run(done, screen, not no_figures)
 
 
 def _chosen(**options: Any) -> dict[str, Any]:
@@ -126,30 +130,57 @@ def _simulate(
 ) -> Run:
     """Carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
-        system = System.prepared(request, screen.note, problems)
+        with options_named(request.options, request.target):
+            system = System.prepared(request, screen.note, problems)
         facts = system.job.facts
         if "runtime" in facts:
             screen.note(f"{facts['runtime']} FMUs ({facts['runtime_reason']})")
-        folder = output_dir or RESULTS / system.name
+        folder = output_dir or _folder(system, screen)
         if is_cold(system.job.components):
             progress.describe(COLD_START)
-        announce(folder)
+        tell_leftovers(folder, screen)
         try:
-            return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
+            with options_named(request.options):
+                return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
         except RunFailed as failure:
             done: Run = failure.run
             return done
 
 
-def _show_run(done: Run, screen: Screen, with_figures: bool) -> None:
+def _folder(system: System, screen: Screen) -> Path:
+    """Return the folder of the results of a system that the user has named no folder for."""
+    facts = system.job.facts
+    which = "case" if "case" in facts else "system_file"
+    return results_folder(
+        system.name, facts.get("system_file", system.name), {which: facts[which]}, screen
+    )
+
+
+def show_run(done: Run, screen: Screen, with_figures: bool) -> None:
     """Draw and show a run; one that is not complete gives its exit code.
 
     Why a run failed is said before drawing, which takes its time and may be interrupted.
+
+    Parameters
+    ----------
+    done : Run
+        Complete or not.
+    screen : Screen
+        Of the command.
+    with_figures : bool
+        Whether pictures are drawn.
+
+    Raises
+    ------
+    typer.Exit
+        The run is not complete, or drawing was interrupted.
     """
     if done.status == "failed":
         screen.fail(str(done.error))
     if done.status == "interrupted":
-        reached = f"interrupted at t = {1e3 * done.time[-1]:g} ms"
+        reached = (
+            f"interrupted at t = {1e3 * done.time[-1]:g} ms" if done.time.size else "interrupted"
+        )
         screen.warn(f"{reached}; the results until then are kept")
     pictures: list[Path] = []
     drawn = True

@@ -1,8 +1,12 @@
 """The screen of a command: notes, progress and problems on stderr, results on stdout."""
 
 import json
+import logging
 import os
+import sys
 import time
+import unicodedata
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -10,10 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 from rich import table as rich_table
+from rich.cells import cell_len
 from rich.console import Console
 from rich.markup import escape
 from rich.padding import Padding
+from rich.text import Text
 
+from ..core.ending import asked_to_end, interrupt
 from ..core.errors import InputRefused, Problem
 from ..tables import Table
 
@@ -160,7 +167,8 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     """
     screen = Screen(quiet, as_json)
     try:
-        yield screen
+        with asked_to_end(interrupt), without_warnings_of_libraries():
+            yield screen
     except InputRefused as refusal:
         screen.refuse(refusal.problems)
         raise typer.Exit(REFUSED) from None
@@ -170,6 +178,27 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     except OSError as error:
         screen.fail(str(error))
         raise typer.Exit(RUN_FAILED) from error
+    except MemoryError as error:
+        screen.fail("there is not enough memory for it")
+        raise typer.Exit(RUN_FAILED) from error
+
+
+@contextmanager
+def without_warnings_of_libraries() -> Iterator[None]:
+    """Keep from the screen what libraries say to programmers, unless Python was asked for it."""
+    loud = [logging.getLogger(name) for name in ("matplotlib", "ezdxf")]
+    before = [logger.level for logger in loud]
+    with warnings.catch_warnings():
+        if not sys.warnoptions:
+            for logger in loud:
+                logger.setLevel(logging.CRITICAL)
+            for category in (UserWarning, RuntimeWarning, FutureWarning):
+                warnings.simplefilter("ignore", category)
+        try:
+            yield
+        finally:
+            for logger, level in zip(loud, before, strict=True):
+                logger.setLevel(level)
 
 
 class Screen:
@@ -185,25 +214,28 @@ class Screen:
 
     def __init__(self, quiet: bool = False, as_json: bool = False) -> None:
         self.quiet, self.as_json = quiet, as_json
-        self.out = Console(highlight=False)
+        self.out = Console(highlight=False, emoji=False)
         if not self.out.is_terminal and "COLUMNS" not in os.environ:
             self.out.width = WIDTH_ELSEWHERE
-        self.err = Console(stderr=True, highlight=False)
+        self.err = Console(stderr=True, highlight=False, emoji=False)
 
     # ------------------------------------------------------------------ stderr
 
     def note(self, text: str) -> None:
         """Say what is being done, unless the command is quiet."""
         if not self.quiet:
-            self.err.print(escape(text), style="dim", soft_wrap=True)
+            self.err.print(escape(printable(text)), style="dim", soft_wrap=True)
 
     def warn(self, text: str) -> None:
         """Say something that the user should know although it went on."""
-        self.err.print(f"[yellow]warning:[/] {escape(text)}", soft_wrap=True)
+        self._marked("yellow", "warning:", text)
 
     def fail(self, text: str) -> None:
         """Say why the command did not go on."""
-        self.err.print(f"[bold red]failed:[/] {escape(text)}", soft_wrap=True)
+        self._marked("bold red", "failed:", text)
+
+    def _marked(self, style: str, word: str, text: str) -> None:
+        self.err.print(Text.assemble((word, style), " ", printable(text)), soft_wrap=True)
 
     def refuse(self, problems: Sequence[Problem]) -> None:
         """Say what has to be changed before the command can be tried again."""
@@ -212,11 +244,12 @@ class Screen:
         count = "" if len(problems) == 1 else f"{len(problems)} problems"
         self.err.print(f"[bold red]refused:[/] {count}" if count else "[bold red]refused:[/]")
         for problem in problems:
-            self.err.print(
-                Padding(f"[bold]{escape(problem.where)}[/]: {escape(problem.what)}", (0, 0, 0, 2))
-            )
+            where = printable(problem.where, ends="")
+            told = Text.assemble((where, "bold"), ": ", printable(problem.what))
+            self.err.print(Padding(told, (0, 0, 0, 2)))
             if problem.remedy:
-                self.err.print(Padding(f"[dim]→[/] {escape(problem.remedy)}", (0, 0, 0, 4)))
+                hint = Text.assemble(("→", "dim"), " ", printable(problem.remedy))
+                self.err.print(Padding(hint, (0, 0, 0, 4)))
 
     @contextmanager
     def busy(self, text: str) -> Iterator[None]:
@@ -338,7 +371,7 @@ class Screen:
             if isinstance(part, Table):
                 self.table(part)
             else:
-                self.out.print(escape(part))
+                self.out.print(Text(printable(part)))
 
     def overview(self, overview: "Overview") -> None:
         """Print texts and tables with an empty line between two."""
@@ -348,17 +381,33 @@ class Screen:
     def table(self, table: Table) -> None:
         """Print a table under its title; the title alone where the table has no rows."""
         if table.title:
-            self.out.print(f"[bold]{escape(table.title)}[/]", soft_wrap=True)
-        if len(table):
-            shown = plain_table(*table.columns, right=table.right)
-            shown.show_header = any(table.columns)
-            for row in table.rows:
-                shown.add_row(*map(escape, row))
-            self.out.print(shown)
+            title = Text(printable(table.title, ends=""), style="bold")
+            self.out.print(title, soft_wrap=True)
+        if not len(table):
+            return
+        cells = [[printable(cell, ends="") for cell in row] for row in table.rows]
+        widths = column_widths(table, cells, self.out.width)
+        if widths is None:
+            self._turned(table, cells)
+            return
+        shown = plain_table(*table.columns, right=table.right, widths=widths)
+        shown.show_header = any(table.columns)
+        for row in cells:
+            shown.add_row(*map(Text, row))
+        self.out.print(shown, crop=False)
+
+    def _turned(self, table: Table, cells: Sequence[Sequence[str]]) -> None:
+        """Print a table that is wider than the screen row by row: a line for each cell."""
+        for row in cells:
+            self.out.print(Text(row[0], style="bold"), soft_wrap=True)
+            for title, cell in zip(table.columns[1:], row[1:], strict=True):
+                if cell:
+                    words = " ".join(filter(None, (printable(title, ends=""), cell)))
+                    self.out.print(Text(f"  {words}"), soft_wrap=True)
 
     def say(self, text: str) -> None:
         """Print a line as it stands, however long it is."""
-        self.out.print(escape(text), soft_wrap=True)
+        self.out.print(Text(printable(text)), soft_wrap=True)
 
     def dump(self, content: Any) -> None:
         """Print results for a program, in letters that every encoding has."""
@@ -369,7 +418,84 @@ def _reached(reached: float, stop: float) -> str:
     return f"{1e3 * reached:.1f} of {1e3 * stop:g} ms"
 
 
-def plain_table(*columns: str, right: Sequence[str] = ()) -> rich_table.Table:
+def printable(text: str, ends: str = "\n") -> str:
+    """Write control characters, which would move the cursor of a terminal, as escapes.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+    ends : str
+        Control characters that stay.
+
+    Returns
+    -------
+    str
+        With escapes in the place of the others, as Python writes them.
+    """
+    return "".join(
+        letter
+        if letter in ends or unicodedata.category(letter) not in ("Cc", "Cs")
+        else _escaped(letter)
+        for letter in text
+    )
+
+
+def _escaped(letter: str) -> str:
+    return repr(letter)[1:-1]
+
+
+GAP = 2
+"""Blanks between two columns."""
+
+
+def column_widths(table: Table, cells: Sequence[Sequence[str]], width: int) -> list[int] | None:
+    """Return the widths of the columns of a table on a screen, so that every letter is seen.
+
+    Parameters
+    ----------
+    table : Table
+        With the titles.
+    cells : sequence of sequences of str
+        Of its rows.
+    width : int
+        Letters in a line of the screen.
+
+    Returns
+    -------
+    list of int or None
+        Columns of words are broken into lines between words where that is needed, but for the
+        first, which has the names; None if the table does not fit all the same.
+    """
+    columns = [
+        [printable(title, ends=""), *column]
+        for title, column in zip(table.columns, zip(*cells, strict=True), strict=True)
+    ]
+    widths = [max(map(cell_len, column)) for column in columns]
+    least = [
+        wide if title in table.right or not number else max(map(_longest_word, column))
+        for number, (title, column, wide) in enumerate(
+            zip(table.columns, columns, widths, strict=True)
+        )
+    ]
+    excess = sum(widths) + GAP * (len(widths) - 1) - width
+    while excess > 0:
+        spare = [wide - few for wide, few in zip(widths, least, strict=True)]
+        widest = spare.index(max(spare))
+        if spare[widest] <= 0:
+            return None
+        widths[widest] -= 1
+        excess -= 1
+    return widths
+
+
+def _longest_word(text: str) -> int:
+    return max(map(cell_len, text.split()), default=0)
+
+
+def plain_table(
+    *columns: str, right: Sequence[str] = (), widths: Sequence[int] = ()
+) -> rich_table.Table:
     """Return an empty table in the style of all commands.
 
     Parameters
@@ -378,13 +504,21 @@ def plain_table(*columns: str, right: Sequence[str] = ()) -> rich_table.Table:
         Titles.
     right : sequence of str
         Titles of columns of numbers, which are not broken into lines.
+    widths : sequence of int
+        Of the columns; without them, as wide as their cells.
 
     Returns
     -------
     rich.table.Table
         Without rows.
     """
-    table = rich_table.Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for name in columns:
-        table.add_column(name, justify="right" if name in right else "left", no_wrap=name in right)
+    table = rich_table.Table(box=None, pad_edge=False, header_style="bold", padding=(0, GAP, 0, 0))
+    for number, name in enumerate(columns):
+        table.add_column(
+            Text(printable(name, ends="")),
+            justify="right" if name in right else "left",
+            no_wrap=name in right,
+            overflow="fold",
+            width=widths[number] if widths else None,
+        )
     return table

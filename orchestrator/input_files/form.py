@@ -1,24 +1,36 @@
 """From a TOML file, or the same in Python, to data of the right form."""
 
-import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import Problem
+from ..core.form_faults import UNKNOWN_KEY, sentences
+from ..core.input_text import read_text, toml_content
 from ..core.system.names import nearest
-from .places import Key, Places, line_and_column, places
+from .places import Key, Places, places
 
-Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False, strict=True)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False, strict=True)]
+
+def _not_tiny(value: float) -> float:
+    if value < SMALLEST:
+        raise ValueError(f"must be {SMALLEST:g} or more (given: {value:g})")
+    return value
+
+
+LARGEST, SMALLEST = 1e30, 1e-30
+"""Limits of the values in SI units; products of several are finite, and so are quotients."""
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False, strict=True)]
+Positive = Annotated[
+    float,
+    Field(gt=0.0, le=LARGEST, allow_inf_nan=False, strict=True),
+    AfterValidator(_not_tiny),
+]
+NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST, allow_inf_nan=False, strict=True)]
 
 _MOST_SHOWN = 20
 """Problems that a person reads at once."""
-_UNKNOWN_KEY = "there is no such key"
 
 
 class Data(BaseModel):
@@ -50,18 +62,9 @@ def read_toml(path: Path) -> tuple[dict[str, Any], Places]:
     InputRefused
         It cannot be read, or is not TOML.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-        return tomllib.loads(text), places(str(path), text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
-    except UnicodeDecodeError as error:
-        before = path.read_bytes()[: error.start]
-        where = f"{path}, {line_and_column(before)}"
-        raise InputRefused([Problem(where, "is not UTF-8 text", "save it as UTF-8")]) from error
-    except OSError as error:
-        reason = f"cannot be read: {error.strerror or error}"
-        raise InputRefused([Problem(str(path), reason, "correct the path")]) from error
+    text = read_text(path)
+    content = toml_content(path, text)
+    return content, places(str(path), text)
 
 
 def formed(
@@ -88,18 +91,17 @@ def formed(
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        sentences: dict[Key, list[str]] = {}
-        for entry in error.errors():
-            sentences.setdefault(_key(entry["loc"]), []).append(_sentence(entry))
         problems += [
-            Problem(
-                where.of(key),
-                f"{_name(key)}: {' or '.join(dict.fromkeys(texts))}",
-                _remedy(model, key, texts),
-            )
-            for key, texts in sentences.items()
+            _problem(model, key, texts, where) for key, texts in sentences(error.errors()).items()
         ]
         return None
+
+
+def _problem(model: type[BaseModel], key: Key, texts: list[str], where: Places) -> Problem:
+    place = where.of(key)
+    name = _name(key)
+    prefix = f"{name}: " if place != name else ""  # an argument of this name is its own place
+    return Problem(place, prefix + " or ".join(texts), _remedy(model, key, texts))
 
 
 def first(problems: list[Problem]) -> list[Problem]:
@@ -112,28 +114,14 @@ def first(problems: list[Problem]) -> list[Problem]:
     return [*each[:_MOST_SHOWN], rest]
 
 
-def _key(location: tuple[Any, ...]) -> Key:
-    return tuple(part for part in location if part not in ("bool", "float", "str"))
-
-
 def _name(key: Key) -> str:
     """Write a key for people, who count from 1: ``barrier[1].height``."""
     parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in key]
     return "".join(parts).removeprefix(".")
 
 
-def _sentence(error: Any) -> str:
-    if error["type"] == "extra_forbidden":
-        return _UNKNOWN_KEY
-    if error["type"] == "missing":
-        return "is missing"
-    value = "" if isinstance(error["input"], dict | list) else f" (given: {error['input']!r})"
-    message = re.sub(r"a valid dictionary.*", "a table", str(error["msg"]))
-    return message[0].lower() + message[1:] + value
-
-
 def _remedy(model: type[BaseModel], key: Key, texts: list[str]) -> str:
-    if _UNKNOWN_KEY not in texts:
+    if UNKNOWN_KEY not in texts:
         return ""
     return nearest(str(key[-1]), known_keys(model, key[:-1]))
 

@@ -1,11 +1,13 @@
 """Positions of the values in a TOML file, which the standard library does not tell."""
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import tree_sitter_toml
 from tree_sitter import Language, Node, Parser
+
+from ..core.input_text import line_and_column
 
 Key = tuple[str | int, ...]
 """Keys and numbers of elements that lead to a value: ``("barrier", 0, "height")``."""
@@ -23,11 +25,14 @@ class Places:
         Of the file.
     offsets : mapping of Key to int
         First byte of each value, or of the key before it.
+    replaced : collection of str
+        Keys whose values are not those of the file: arguments of the same name replace them.
     """
 
     source: str
     content: bytes = b""
     offsets: Mapping[Key, int] = field(default_factory=dict)
+    replaced: Collection[str] = ()
 
     def of(self, key: Key) -> str:
         """Return the place of a value in words.
@@ -40,19 +45,17 @@ class Places:
         Returns
         -------
         str
-            ``slope.toml, line 3, column 5``; the source alone where nothing above it is known.
+            ``slope.toml, line 3, column 5``; the source alone where nothing above it is known; the
+            name of the argument that replaces the value.
         """
+        if key and key[0] in self.replaced:
+            return str(key[0])
         while key and key not in self.offsets:
             key = key[:-1]
         if key not in self.offsets:
             return self.source
-        return f"{self.source}, {line_and_column(self.content[: self.offsets[key]])}"
-
-
-def line_and_column(before: bytes) -> str:
-    """Return the place that follows some UTF-8 text: ``line 3, column 5``, counted from 1."""
-    text = before.decode("utf-8")
-    return f"line {text.count(chr(10)) + 1}, column {len(text) - text.rfind(chr(10))}"
+        before = self.content[: self.offsets[key]].decode("utf-8")
+        return f"{self.source}, {line_and_column(before)}"
 
 
 def places(source: str, text: str) -> Places:

@@ -23,6 +23,8 @@ TRANSMITTED, ROCK, BEAM, SAND = "#1f5a94", "#c0561a", "#3d7d3f", "#c9a66b"
 _DPI = 140
 _LETTERS = 20
 """Letters of the caption in an inch."""
+_LONGEST_NAME = 80
+"""Letters of a name in a picture, at most."""
 _LOOK = {
     "font.family": "sans-serif",
     "font.size": 9.0,
@@ -98,6 +100,27 @@ def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Figure
             "\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3
         )
         yield made
+
+
+def literal(text: str) -> str:
+    """Return what a user has named as a picture shows it: letter for letter, on one line.
+
+    Parameters
+    ----------
+    text : str
+        Any name.
+
+    Returns
+    -------
+    str
+        Without formulas between dollars, control characters, or the _ that hides a label; cut
+        where it is longer than a line.
+    """
+    plain = "".join(letter if letter.isprintable() else " " for letter in text)
+    if len(plain) > _LONGEST_NAME:
+        plain = f"{plain[:_LONGEST_NAME]}..."
+    hidden = " " if plain.startswith("_") else ""
+    return hidden + plain.replace("$", r"\$")
 
 
 def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> None:

@@ -5,26 +5,26 @@ Each process keeps its FMUs' code compiled from run to run.
 
 import os
 import signal
-import tempfile
 import time
+from _thread import interrupt_main
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from dataclasses import dataclass, field
-from multiprocessing import get_context
-from pathlib import Path
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import active_children, get_context, parent_process
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
 from ..core.system.system import SystemSpec
+from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import prepare
+from .kept import KeptRuns
+from .outcome import Outcome
 from .request import Request
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from ..core.errors import RunFailed
     from ..core.results.reading import StoredRun
 
@@ -121,45 +121,18 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """Result of a task. A run that failed has the series until then, and no metrics.
+class _Order:
+    """Run as it is sent to a process.
 
     Attributes
     ----------
     key : str
-        Key of the task.
-    status : str
-        ``complete``, ``failed`` or ``interrupted``.
-    error : str
-        Reason of a failure.
-    failed_at : float, optional
-        Time (s) of a failure in the run.
-    metrics : mapping of str to float
-        Values (SI) by the names of the metrics.
-    series : mapping of str to array, shape (rows,)
-        Columns of the results by name.
-    options : mapping
-        Parameters of sand and beam that make up the model.
-    fmus : mapping of str to str
-        SHA-256 by component.
-    wall_time : float
-        Seconds.
+        Of the task.
+    system : System
+        With the recorded variables only.
+    allow_unstable : bool
+        Whether a step may be longer than the stable one.
     """
-
-    key: str
-    status: str
-    error: str = ""
-    failed_at: float | None = None
-    metrics: Mapping[str, float] = field(default_factory=dict)
-    series: "Mapping[str, NDArray[np.float64]]" = field(default_factory=dict)
-    options: Mapping[str, Any] = field(default_factory=dict)
-    fmus: Mapping[str, str] = field(default_factory=dict)
-    wall_time: float = 0.0
-
-
-@dataclass(frozen=True)
-class _Order:
-    """Run as it is sent to a process."""
 
     key: str
     system: SystemSpec
@@ -171,6 +144,7 @@ def run_all(
     workers: int | None = None,
     note: Note = silent,
     counted: Counted = uncounted,
+    kept: KeptRuns | None = None,
 ) -> dict[str, Outcome]:
     """Carry out all tasks, each different one once.
 
@@ -184,6 +158,8 @@ def run_all(
         Called with a line for each FMU that is built.
     counted : callable
         Called with the number of runs that have ended, and of all.
+    kept : KeptRuns, optional
+        Runs that have ended before, which are not carried out again, and to which others are added.
 
     Returns
     -------
@@ -196,11 +172,17 @@ def run_all(
         A task cannot be prepared.
     """
     orders = [_order(task, note) for task in {task.key: task for task in tasks}.values()]
-    outcomes: dict[str, Outcome] = {}
-    processes = min(workers or os.cpu_count() or 1, max(len(orders), 1))
+    outcomes = _ended(orders, kept)
+    if outcomes:
+        note(f"{len(outcomes)} of {len(orders)} runs have ended before, and are not run again")
+    waiting = {order.key: order for order in orders if order.key not in outcomes}
+    processes = min(workers or os.cpu_count() or 1, max(len(waiting), 1))
     try:
-        for outcome in _carry_out(orders, processes):
+        for outcome in _carry_out(list(waiting.values()), processes):
             outcomes[outcome.key] = outcome
+            if kept and outcome.status == COMPLETE:
+                done = waiting[outcome.key]
+                kept.keep(done.system, done.allow_unstable, outcome)
             counted(len(outcomes), len(orders))
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
@@ -208,6 +190,16 @@ def run_all(
         order.key: outcomes.get(order.key, Outcome(order.key, INTERRUPTED, "not run"))
         for order in orders
     }
+
+
+def _ended(orders: Sequence[_Order], kept: KeptRuns | None) -> dict[str, Outcome]:
+    """Return the outcomes of the runs that have ended before."""
+    if kept is None:
+        return {}
+    found = {
+        order.key: kept.find(order.key, order.system, order.allow_unstable) for order in orders
+    }
+    return {key: outcome for key, outcome in found.items() if outcome is not None}
 
 
 def run_here(task: Task, note: Note = silent) -> Outcome:
@@ -278,32 +270,63 @@ def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
 @contextmanager
 def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Yield processes that start afresh; left early, runs that have not begun are dropped."""
-    pool = ProcessPoolExecutor(
-        workers, mp_context=get_context("spawn"), initializer=_leave_interrupts_to_the_run
-    )
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin_process)
     try:
         yield pool
+    except BaseException:
+        for child in active_children():  # only a terminal tells Ctrl-C to all processes
+            with suppress(OSError):
+                os.kill(child.pid or 0, signal.SIGINT)
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _leave_interrupts_to_the_run() -> None:
-    """Ignore Ctrl-C between two runs.
+def _begin_process() -> None:
+    """Ignore Ctrl-C between two runs, and end when the parent does.
 
-    It reaches every process: a run takes it for itself while it goes on, between runs the parent.
+    Ctrl-C reaches every process: a run takes it for itself while it goes on, between runs the
+    parent. A parent that is killed tells nothing: its end is waited for.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+    if parent is not None:
+        Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+_RUNNING = Event()
+"""Whether this process carries out a run."""
+_LONGEST_END = 20.0
+"""Time (s) after which a run that has been interrupted is no longer waited for."""
+
+
+def _end_with(parent: Any) -> None:
+    """Wait for the end of the parent; then interrupt the run, so that it tidies up, and end."""
+    parent.join()
+    last = time.monotonic() + _LONGEST_END
+    while _RUNNING.is_set() and time.monotonic() < last:
+        interrupt_main()  # not heard before the run has begun
+        time.sleep(0.5)
+    os._exit(1)
 
 
 def run_one(order: _Order) -> Outcome:
     """Carry out one run in the process in which this is called."""
+    began = time.perf_counter()
+    _RUNNING.set()
+    try:
+        return _run(order, began)
+    finally:
+        _RUNNING.clear()
+
+
+def _run(order: _Order, began: float) -> Outcome:
     from ..core.errors import InputRefused, RunFailed
     from ..core.results.reading import read_run
     from ..core.run import simulate
 
-    began = time.perf_counter()
-    with tempfile.TemporaryDirectory(prefix="rockshed-") as folder:
-        place = Path(folder) / "run"
+    with TemporaryFolder("rockshed-") as folder:
+        place = folder / "run"
         failure = None
         try:
             run = simulate(order.system, place, allow_unstable=order.allow_unstable)

@@ -1,7 +1,7 @@
 """Where a site comes from: a TOML file, or the same data made in Python."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -67,8 +67,8 @@ def site_source(site: SiteLike, **replaced: Any) -> SiteSource:
     changes = {key: value for key, value in replaced.items() if value is not None}
     if isinstance(site, Data):
         content = site.model_dump(by_alias=True, exclude_unset=True)
-        return SiteSource({**content, **changes}, Places("site"))
+        return SiteSource({**content, **changes}, Places("site", replaced=tuple(changes)))
     if isinstance(site, Mapping):
-        return SiteSource({**site, **changes}, Places("site"))
+        return SiteSource({**site, **changes}, Places("site", replaced=tuple(changes)))
     content, places = read_toml(Path(site))
-    return SiteSource({**content, **changes}, places, Path(site))
+    return SiteSource({**content, **changes}, replace(places, replaced=tuple(changes)), Path(site))

@@ -22,6 +22,8 @@ from rockshed.analyses.rockfall.passages import line_passages
 from rockshed.analyses.rockfall.replay import replay
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE
+from rockshed.core.errors import InputRefused
+from rockshed.core.results.reading import read_run
 from rockshed.sites.rockfall.preparation import prepare
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
@@ -207,10 +209,12 @@ def test_a_folder_with_something_else_is_not_touched(rockshed):
     assert [file.name for file in Path("mine").iterdir()] == ["letter"]
 
 
-def test_plot_says_that_a_campaign_is_no_run(rockshed, finished):
-    result = rockshed("plot", finished[0])
-    assert result.exit_code == 2
-    assert "is a rockfall campaign, which has no time series" in result.stderr
+def test_a_campaign_is_no_run_and_plot_draws_it_all_the_same(rockshed, finished):
+    with pytest.raises(InputRefused, match="holds the results of rockfall, which have no time"):
+        read_run(finished[0])
+    result = rockshed("plot", finished[0], "--output-dir", "drawn")
+    assert result.exit_code == 0, result.output
+    assert {file.name for file in Path("drawn").iterdir()} >= {"envelopes.png", "ends.png"}
 
 
 def test_ctrl_c_leaves_nothing(tmp_path):

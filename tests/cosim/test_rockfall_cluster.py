@@ -129,9 +129,32 @@ def test_workers_with_another_version_are_refused(client, made, monkeypatch):
         cluster._run(client, made, lambda count, total: None)
 
 
-def test_the_command_takes_a_running_scheduler(client, rockshed):
+@pytest.fixture
+def certificates(client, tmp_path_factory):
+    """Options of the command that name the client's own certificates."""
+    security, folder = client.security, tmp_path_factory.mktemp("tls")
+    files = {
+        "--tls-ca": security.tls_ca_file,
+        "--tls-cert": security.tls_client_cert,
+        "--tls-key": security.tls_client_key,
+    }
+    for option, content in files.items():
+        (folder / option).write_text(content)
+    return [word for option in files for word in (option, folder / option)]
+
+
+def test_the_command_takes_a_running_scheduler(client, rockshed, certificates):
     address = client.scheduler.address
-    result = rockshed("rockfall", EXAMPLE, "--trials", 6000, "--no-figures", "--scheduler", address)
+    result = rockshed(
+        "rockfall",
+        EXAMPLE,
+        "--trials",
+        6000,
+        "--no-figures",
+        "--scheduler",
+        address,
+        *certificates,
+    )
     assert result.exit_code == 0, result.output
     assert "trials: 6000 of 6000" in result.stderr
     facts = json.loads(Path("results/slope/run.json").read_text())
@@ -181,14 +204,62 @@ def test_an_unreachable_scheduler_is_refused_within_seconds(rockshed, monkeypatc
     assert not list(Path().iterdir())
 
 
-def test_a_scheduler_without_workers_is_refused(client, rockshed, monkeypatch):
+def test_a_scheduler_without_workers_is_refused(client, rockshed, certificates, monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_TIMEOUT", 0.5)
     client.cluster.scale(0)
     while client.nthreads():
         time.sleep(0.05)
-    result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", client.scheduler.address)
+    address = client.scheduler.address
+    result = rockshed("rockfall", EXAMPLE, "--trials", 100, "--scheduler", address, *certificates)
     assert result.exit_code == 2
     assert "the scheduler has no workers" in result.stderr
+
+
+@pytest.mark.parametrize("scheme", ["tcp", "tls"])
+def test_nobody_without_the_certificate_runs_code_on_a_local_scheduler(client, tmp_path, scheme):
+    """Neither on the scheduler nor on a worker, whose ports any account of the machine reaches."""
+    from distributed import Client, Security
+
+    client.cluster.scale(1)
+    client.wait_for_workers(1)
+    stranger = Security.temporary() if scheme == "tls" else None
+    addresses = [client.scheduler.address, *client.nthreads()]
+    assert all(address.startswith("tls://127.0.0.1:") for address in addresses)
+    for address in addresses:
+        with pytest.raises((OSError, TimeoutError)):
+            Client(address.replace("tls", scheme), security=stranger, timeout=1)
+
+
+def test_a_cluster_with_certificates_asks_for_all_of_them(rockshed):
+    result = rockshed("rockfall", EXAMPLE, "--scheduler", "tls://localhost:8786")
+    assert result.exit_code == 2
+    assert "needs certificates" in result.stderr
+    result = rockshed("rockfall", EXAMPLE, "--scheduler", "tls://localhost:1", "--tls-ca", "x")
+    assert result.exit_code == 2
+    assert "--tls-key: is missing" in " ".join(result.stderr.split())
+    assert not list(Path().iterdir())
+
+
+def test_workers_end_with_a_campaign_that_is_killed(tmp_path):
+    run = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "rockshed.commands.app", "rockfall", str(EXAMPLE)),
+            *("--trials", "400000", "--scheduler", "local", "--workers", "2"),
+            *("--output-dir", str(tmp_path / "out")),
+        ],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+    )
+    assert run.stderr is not None
+    assert any("trials: " in line for line in run.stderr)
+    started = psutil.Process(run.pid).children(recursive=True)
+    assert started
+    run.kill()
+    run.wait(timeout=60)
+    run.stderr.close()
+    _, left = psutil.wait_procs(started, timeout=30)
+    assert not [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
 
 
 def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):

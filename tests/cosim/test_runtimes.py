@@ -144,7 +144,7 @@ def test_an_exported_system_of_both_runtimes_keeps_all_its_fmus(rockshed, needs_
     assert rockshed("export", "two.toml", "away").exit_code == 0
     result = rockshed("run", "away/system.toml", "--json", "--quiet")
     assert json.loads(result.stdout)["status"] == "complete"
-    run = read_run(tmp_path / "results/system")
+    run = read_run(tmp_path / "results/two")
     assert len({part["sha256"] for part in run.provenance["components"].values()}) == 2
     assert (run.series["one.position.y"] == run.series["other.position.y"]).all()
 

@@ -67,7 +67,7 @@ def test_what_is_wrong_with_a_mapping_is_told_by_its_keys():
     with pytest.raises(InputRefused) as refusal:
         rockfall({**SLOPE, "rock": {"radius": -1, "density": 2600}, "lines": []})
     assert [str(problem) for problem in refusal.value.problems] == [
-        "site: rock.radius: input should be greater than 0 (given: -1)",
+        "site: rock.radius: must be greater than 0 (given: -1)",
         "site: lines: there is no such key; did you mean line?",
     ]
 

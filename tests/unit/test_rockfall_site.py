@@ -228,12 +228,12 @@ def test_a_drawing_without_ezdxf_says_what_to_install(refused, tmp_path, monkeyp
         (
             PROFILE + "[[line]]\nname = 5\n",
             "line 16, column 1",
-            "line[1].name: input should be a valid string",
+            "line[1].name: must be text",
         ),
         (
             PROFILE + "[material]\nrock = 3\n",
             "line 16, column 1",
-            "material.rock: input should be a table",
+            "material.rock: must be a table",
         ),
         (
             PROFILE + 'colour = "red"\n',
@@ -256,13 +256,13 @@ def test_a_fault_is_told_with_line_and_column(refused, text, place, what):
             "[rock]",
             "trials = 0\n[rock]",
             "line 1, column 1",
-            "trials: input should be greater than or equal to 1",
+            "trials: must be greater than or equal to 1",
         ),
         (
             "radius = 0.5",
             "radius = -1",
             "line 2, column 1",
-            "rock.radius: input should be greater than 0",
+            "rock.radius: must be greater than 0",
         ),
         ("density = 2600", "", "line 1, column 1", "a rock has a mass, or the density of a sphere"),
     ],

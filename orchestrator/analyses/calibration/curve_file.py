@@ -1,6 +1,5 @@
 """Load-penetration curves from CSV files."""
 
-import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,9 @@ import numpy as np
 from rockshed.components.common.units import cm
 
 from ...core.errors import InputRefused, Problem
-from ...core.system.values import finite_number
+from ...core.input_text import shown
+from ...input_files.csv_table import CsvRow, CsvTable, read_csv
+from ...input_files.form import LARGEST, first
 from .measurement import FORCES, LENGTHS, Measurement
 
 DEEPEST = 8 * cm
@@ -39,8 +40,8 @@ def read_curve(file: Path) -> Measurement:
     Parameters
     ----------
     file : Path
-        CSV file with the columns ``penetration (unit)`` and ``load (unit)``; lines that begin
-        with # are comments.
+        CSV file with the columns ``penetration (unit)`` and ``load (unit)``, see
+        :mod:`rockshed.input_files.csv_table`.
 
     Returns
     -------
@@ -52,58 +53,44 @@ def read_curve(file: Path) -> Measurement:
     InputRefused
         Everything that is wrong with the file, by line and column.
     """
-    lines = _lines(file)
-    if not lines:
+    table = read_csv(file)
+    if not table.rows:
         raise InputRefused([Problem(str(file), "is empty", _FORM)])
-    columns = _header(file, *lines[0])
+    columns = _header(table)
     problems: list[Problem] = []
     rows = []
-    for number, fields in lines[1:]:
-        row = _row(f"{file}, line {number}", number, fields, columns, problems)
+    for line in table.rows[1:]:
+        row = _row(table, line, columns, problems)
         if row is not None:
             rows.append(row)
     problems += _curve_problems(file, rows) if not problems else []
     if problems:
-        raise InputRefused(problems)
+        raise InputRefused(first(problems))
     depth = np.array([row.depth for row in rows])
     return Measurement(file.name, depth, np.array([row.load for row in rows]))
 
 
-def _lines(file: Path) -> list[tuple[int, list[str]]]:
-    """Return number and fields of each line that is neither blank nor a comment."""
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
-        remedy = "give a text file with comma-separated values"
-        raise InputRefused([Problem(str(file), reason, remedy)]) from error
-    return [
-        (number, next(csv.reader([line]), []))
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-
-
-def _header(file: Path, line: int, fields: Sequence[str]) -> list[tuple[str, float]]:
+def _header(table: CsvTable) -> list[tuple[str, float]]:
     """Return name, and size of the unit in SI, of each column."""
+    titles = table.rows[0]
     problems = []
     columns = []
-    for place, text in enumerate(fields, 1):
-        where = f"{file}, line {line}, column {place}"
-        name, unit = _title(text)
+    for place, field in enumerate(titles.fields, 1):
+        where = f"{table.place(titles)}, column {place}"
+        name, unit = _title(field.text)
         if name not in _COLUMNS:
-            fault = f"{text.strip()!r} is not penetration or load with a unit"
+            fault = f"{shown(field.text)} is not penetration or load with a unit"
             problems.append(Problem(where, fault, _FORM))
         elif unit not in _COLUMNS[name]:
             remedy = f"choose of {', '.join(_COLUMNS[name])}: {_FORM}"
-            problems.append(Problem(where, f"{text.strip()!r} has no known unit", remedy))
+            problems.append(Problem(where, f"{shown(field.text)} has no known unit", remedy))
         else:
             columns.append((name, _COLUMNS[name][unit]))
     if not problems and sorted(name for name, _ in columns) != sorted(_COLUMNS):
         fault = "must have the columns penetration and load, each once"
-        problems = [Problem(f"{file}, line {line}", fault, _FORM)]
+        problems = [Problem(table.place(titles), fault, _FORM)]
     if problems:
-        raise InputRefused(problems)
+        raise InputRefused(first(problems))
     return columns
 
 
@@ -114,28 +101,28 @@ def _title(text: str) -> tuple[str, str]:
 
 
 def _row(
-    where: str,
-    line: int,
-    fields: Sequence[str],
+    table: CsvTable,
+    line: CsvRow,
     columns: Sequence[tuple[str, float]],
     problems: list[Problem],
 ) -> _Row | None:
-    if len(fields) != len(columns):
-        fault = f"has {len(fields)} fields instead of {len(columns)}"
-        remedy = "separate penetration and load by a comma, with a point in the numbers"
+    where = table.place(line)
+    if len(line.fields) != len(columns):
+        fault = f"has {len(line.fields)} fields instead of {len(columns)}"
+        remedy = "separate penetration and load as in the first line"
         problems.append(Problem(where, fault, remedy))
         return None
     values = {}
-    for place, (text, (name, unit)) in enumerate(zip(fields, columns, strict=True), 1):
-        value = finite_number(text)
-        if value is None:
-            fault = f"{text.strip()!r} is no finite number"
+    for place, (field, (name, unit)) in enumerate(zip(line.fields, columns, strict=True), 1):
+        value = table.number(field)
+        if value is None or abs(value) > LARGEST:
+            fault = f"{shown(field.text)} is no finite number"
             problems.append(Problem(f"{where}, column {place} ({name})", fault, "write a number"))
         else:
             values[name] = value * unit
     if len(values) < len(columns):
         return None
-    return _Row(line, values["penetration"], values["load"])
+    return _Row(line.line, values["penetration"], values["load"])
 
 
 def _curve_problems(file: Path, rows: Sequence[_Row]) -> Iterator[Problem]:

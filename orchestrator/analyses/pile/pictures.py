@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from rockshed.components.common.units import kJ, kN, mm, ms
 
-from ...pictures.style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH, legend
+from ...pictures.style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH, legend, literal
 from ...sites.pile.preparation import PreparedPile
 from ..drawing import drawn
 from ..frame import Drawing
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 MPa = 1e6
 """Pascal in a megapascal."""
+_WIDE = 50.0
+"""Largest over smallest blow count from which on the scale of a bearing graph is logarithmic."""
 _TRAVELS = 8.0
 """Travel times of a wave that the traces show at least."""
 _PRESSING = 0.05
@@ -37,7 +39,7 @@ def caption(pile: PreparedPile) -> list[str]:
         stiffness = f"cushion {site.cushion.stiffness / kN:.4g} kN/m"
         cushion = f"{stiffness}, restitution {site.cushion.restitution:g}"
     return [
-        f"{pile.name}: {site.description}".removesuffix(": "),
+        ": ".join(filter(None, (literal(pile.name), literal(site.description)))),
         f"ram {site.hammer.mass:g} kg x {site.hammer.drop:g} m, "
         f"efficiency {site.hammer.efficiency:g}, {cushion}; "
         f"rod {length:g} m in {len(site.rod)} section(s), {site.segments} segments; "
@@ -233,23 +235,33 @@ def bearing(pile: PreparedPile, graph: Sequence[Blow]) -> Figure:
         Ultimate resistance and largest stresses over the blow count.
     """
     shown = [blow for blow in graph if blow.count is not None]
-    refused = len(graph) - len(shown)
     words = "First blow each; the soil of the file scaled to R_u."
-    if refused:
+    if refused := len(graph) - len(shown):
         words += f" {refused} without a set are not shown."
+    count = [blow.count or 0.0 for blow in shown]
+    wide = bool(count) and max(count) > _WIDE * min(count)
+    if wide:
+        words += " Blow counts on a logarithmic scale."
     with drawn([*caption(pile), words], WIDTH, 5.8) as figure:
         resistance, stress = figure.subplots(2, 1, sharex=True, height_ratios=[1.3, 1])
-        count = [blow.count or 0.0 for blow in shown]
         values = [blow.resistance / kN for blow in shown]
         resistance.plot(count, values, "o-", color=INK, markersize=4.0)
         resistance.set(ylabel="ultimate resistance R_u (kN)")
         resistance.set_ylim(bottom=0.0)
-        pressed = [blow.compression.max() / MPa for blow in shown]
-        pulled = [blow.tension.max() / MPa for blow in shown]
-        stress.plot(count, pressed, "o-", color=TRANSMITTED, markersize=3.5, label="compression")
-        stress.plot(count, pulled, "o-", color=ROCK, markersize=3.5, label="tension")
-        stress.set(ylabel="largest stress (MPa)", xlabel="blows per 0.3 m")
+        _stresses_over(count, shown, stress)
         stress.set_ylim(0.0, 1.15 * max(blow.compression.max() / MPa for blow in graph))
-        stress.set_xlim(left=0.0)
+        if wide:
+            stress.set_xscale("log")
+            stress.xaxis.set_major_formatter("{x:g}")
+        else:
+            stress.set_xlim(left=0.0)
         legend(stress, loc="center right")
     return figure
+
+
+def _stresses_over(count: Sequence[float], blows: Sequence[Blow], axes: Axes) -> None:
+    pressed = [blow.compression.max() / MPa for blow in blows]
+    pulled = [blow.tension.max() / MPa for blow in blows]
+    axes.plot(count, pressed, "o-", color=TRANSMITTED, markersize=3.5, label="compression")
+    axes.plot(count, pulled, "o-", color=ROCK, markersize=3.5, label="tension")
+    axes.set(ylabel="largest stress (MPa)", xlabel="blows per 0.3 m")

@@ -119,7 +119,7 @@ def campaign_of(slope: PreparedSlope) -> Campaign:
         stations=np.linspace(nodes[0].x, right, site.stations),
         names=tuple(entry.name for entry in entries),
     )
-    _check_memory(campaign)
+    _check_memory(campaign, slope.source.places.of(("trials",)))
     return campaign
 
 
@@ -133,7 +133,7 @@ def _ends(entry: Line | Barrier, nodes: Sequence[Node]) -> tuple[float, float, f
     return x, foot, x, foot + SKY
 
 
-def _check_memory(campaign: Campaign) -> None:
+def _check_memory(campaign: Campaign, where: str) -> None:
     needed = campaign.trials * campaign.bytes_per_trial
     if needed > MOST_MEMORY:
         most = MOST_MEMORY // campaign.bytes_per_trial
@@ -142,7 +142,7 @@ def _check_memory(campaign: Campaign) -> None:
             f"{MOST_MEMORY / 2**30:.0f}"
         )
         remedy = f"at most {most} trials, or fewer stations or lines"
-        raise InputRefused([Problem("trials", text, remedy)])
+        raise InputRefused([Problem(where, text, remedy)])
 
 
 # --- trials ---
@@ -182,12 +182,23 @@ def empty_records(campaign: Campaign, count: int) -> TrialRecords:
     -------
     TrialRecords
         Of undefined content.
+
+    Raises
+    ------
+    InputRefused
+        The computer has not so much memory.
     """
-    return TrialRecords(
-        np.empty((count, len(campaign.lines), len(PASSAGE))),
-        np.empty((count, len(campaign.stations), len(PEAK)), np.float32),
-        np.empty((count, len(OUTCOME))),
-    )
+    try:
+        return TrialRecords(
+            np.empty((count, len(campaign.lines), len(PASSAGE))),
+            np.empty((count, len(campaign.stations), len(PEAK)), np.float32),
+            np.empty((count, len(OUTCOME))),
+        )
+    except MemoryError as error:
+        size = count * campaign.bytes_per_trial / 2**30
+        text = f"the records of {count} trials need {size:.2g} GiB, which cannot be had here"
+        remedy = "give fewer trials, stations or lines"
+        raise InputRefused([Problem("trials", text, remedy)]) from error
 
 
 def compute(campaign: Campaign, first: int, count: int) -> TrialRecords:

@@ -7,10 +7,12 @@ another.
 
 import logging
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
@@ -45,10 +47,35 @@ RETRIES = 2
 CONNECT_TIMEOUT = 5.0
 """Time (s) after which a scheduler counts as unreachable, and one without workers as useless."""
 _COMPONENT = "SlopeRockfall"
+_NO_PAGES: Mapping[str, Any] = {
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+    "distributed.nanny.http.routes": [],
+}
+"""Settings of Dask with which its web servers show nothing."""
+
+
+@dataclass(frozen=True)
+class Certificates:
+    """Files (PEM) with which the scheduler of a cluster knows its users, and they know it.
+
+    Attributes
+    ----------
+    authority : str or Path
+        Certificate of the authority that has signed those of the cluster.
+    certificate, key : str or Path
+        Of this user.
+    """
+
+    authority: str | Path
+    certificate: str | Path
+    key: str | Path
 
 
 @contextmanager
-def dask_workers(scheduler: str, workers: int | None) -> Iterator[Executor]:
+def dask_workers(
+    scheduler: str, workers: int | None, certificates: Certificates | None = None
+) -> Iterator[Executor]:
     """Open an executor of the workers of a Dask scheduler.
 
     Parameters
@@ -57,6 +84,8 @@ def dask_workers(scheduler: str, workers: int | None) -> Iterator[Executor]:
         ``local`` for one that is started here, or the address of a running one.
     workers : int or None
         Number of processes of the local scheduler, by default one for each core.
+    certificates : Certificates, optional
+        For a scheduler at an address ``tls://HOST:PORT``.
 
     Yields
     ------
@@ -68,17 +97,17 @@ def dask_workers(scheduler: str, workers: int | None) -> Iterator[Executor]:
     InputRefused
         An address that is none, a scheduler that does not answer or has no workers, or no Dask.
     """
-    _check(scheduler, workers)
+    _check(scheduler, workers, certificates)
     # messages of Dask that matter are raised in our own words
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    with _local(workers) if scheduler == LOCAL else _running(scheduler) as client:
+    with _local(workers) if scheduler == LOCAL else _running(scheduler, certificates) as client:
         facts = {"workers": sum(client.nthreads().values()), "scheduler": scheduler}
         yield Executor(lambda campaign, count: _run(client, campaign, count), facts)
 
 
-def _check(scheduler: str, workers: int | None) -> None:
-    problems = []
+def _check(scheduler: str, workers: int | None, certificates: Certificates | None) -> None:
     where = f"scheduler {scheduler}"
+    problems = list(_certificate_problems(scheduler, certificates))
     if find_spec("distributed") is None:
         remedy = 'install it: pip install "rockshed[cluster]"'
         problems.append(Problem(where, "needs the package distributed", remedy))
@@ -92,12 +121,39 @@ def _check(scheduler: str, workers: int | None) -> None:
         raise InputRefused(problems)
 
 
+def _certificate_problems(scheduler: str, certificates: Certificates | None) -> Iterator[Problem]:
+    """Yield the certificates that are missing, or have no use."""
+    if scheduler == LOCAL and find_spec("cryptography") is None:
+        remedy = 'install it: pip install "rockshed[cluster]"'
+        text = "needs the package cryptography: nobody else may reach its processes"
+        yield Problem(f"scheduler {LOCAL}", text, remedy)
+    is_secure = scheduler.startswith("tls://")
+    if certificates is None:
+        if is_secure:
+            remedy = "give the files with --tls-ca, --tls-cert and --tls-key"
+            yield Problem(f"scheduler {scheduler}", "needs certificates", remedy)
+        return
+    if not is_secure:
+        text = "are for a scheduler at an address tls://HOST:PORT"
+        yield Problem("certificates", text, "leave them out, or correct the address")
+    for name, file in vars(certificates).items():
+        if not Path(file).is_file():
+            yield Problem(f"certificates: {name}", f"there is no file {file}", "correct the path")
+
+
 @contextmanager
 def _local(workers: int | None) -> "Iterator[Client]":
-    """Start a scheduler with worker processes of one thread each; dead ones are replaced."""
-    from distributed import Client, LocalCluster
+    """Start a scheduler with worker processes of one thread each; dead ones are replaced.
 
-    with TemporaryDirectory(prefix="rockshed-dask-") as folder:
+    Who can hand a task to a scheduler runs code as its user. This one and its workers talk TLS,
+    with a certificate that is made here, is in their memory only, and is asked of everybody who
+    connects; their web servers have no pages.
+    """
+    import dask
+    from distributed import Client, LocalCluster, Security
+
+    security = Security.temporary()
+    with TemporaryDirectory(prefix="rockshed-dask-") as folder, dask.config.set(_NO_PAGES):
         with _deaf_to_ctrl_c():
             cluster = LocalCluster(
                 n_workers=workers,
@@ -108,8 +164,10 @@ def _local(workers: int | None) -> "Iterator[Client]":
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
                 local_directory=folder,
+                security=security,
+                protocol="tls://",
             )
-        with cluster, Client(cluster, direct_to_workers=True) as client:
+        with cluster, Client(cluster, direct_to_workers=True, security=security) as client:
             yield client
 
 
@@ -132,13 +190,13 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
 
 
 @contextmanager
-def _running(address: str) -> "Iterator[Client]":
+def _running(address: str, certificates: Certificates | None) -> "Iterator[Client]":
     """Connect to a running scheduler that has workers."""
     from distributed import Client
 
     where = f"scheduler {address}"
     try:
-        client = Client(address, timeout=CONNECT_TIMEOUT)
+        client = Client(address, timeout=CONNECT_TIMEOUT, security=_security(certificates))
     except Exception as error:  # a server that is no scheduler may end this in anything
         text = f"no scheduler answers there within {CONNECT_TIMEOUT:g} s ({_first_line(error)})"
         remedy = "start it with `dask scheduler`, correct the address, or take local"
@@ -150,6 +208,20 @@ def _running(address: str) -> "Iterator[Client]":
             remedy = f"start some: `dask worker {address}`"
             raise InputRefused([Problem(where, "the scheduler has no workers", remedy)]) from error
         yield client
+
+
+def _security(certificates: Certificates | None) -> Any:
+    """Return the certificates as Dask takes them; None for a scheduler without."""
+    from distributed import Security
+
+    if certificates is None:
+        return None
+    return Security(
+        require_encryption=True,
+        tls_ca_file=str(certificates.authority),
+        tls_client_cert=str(certificates.certificate),
+        tls_client_key=str(certificates.key),
+    )
 
 
 def _first_line(error: Exception) -> str:

@@ -115,7 +115,7 @@ def write_facts(
 
 # --- the table of the trials ---
 
-_AT_END = (
+AT_END = (
     ("x", OUTCOME.x, "m", "place of the centre at the end, to the right"),
     ("y", OUTCOME.y, "m", "the same, upwards"),
     ("time", OUTCOME.time, "s", "time at the end"),
@@ -124,11 +124,13 @@ _AT_END = (
     ("largest.energy", OUTCOME.kinetic, "J", "kinetic energy"),
     ("limit_speed", OUTCOME.limit_speed, "m/s", "V_lim of the trial"),
 )
-_NUMBERS = (
+"""Name, column of the outcomes, unit and description of the values of a whole trial."""
+NUMBERS = (
     ("impacts", OUTCOME.impacts, "number of impacts"),
     ("events", OUTCOME.events, "number of impacts and changes of motion"),
 )
-_AT_PASSAGE = (
+"""Name, column of the outcomes and description of the numbers of a whole trial."""
+AT_PASSAGE = (
     ("time", PASSAGE.time, "s"),
     ("x", PASSAGE.x, "m"),
     ("y", PASSAGE.y, "m"),
@@ -137,6 +139,7 @@ _AT_PASSAGE = (
     ("angular_velocity", PASSAGE.omega, "rad/s"),
     ("energy", PASSAGE.kinetic, "J"),
 )
+"""Name, column of the passages and unit of the values at a line."""
 
 
 def trial_table(campaign: Campaign, records: TrialRecords) -> Any:
@@ -156,9 +159,9 @@ def trial_table(campaign: Campaign, records: TrialRecords) -> Any:
     """
     outcomes = records.outcomes
     columns = [*_end_columns(campaign, outcomes)]
-    for name, column, unit, words in _AT_END:
+    for name, column, unit, words in AT_END:
         columns.append(result_column(name, outcomes[:, column], unit, words))
-    for name, column, words in _NUMBERS:
+    for name, column, words in NUMBERS:
         columns.append(result_column(name, outcomes[:, column].astype(np.int64), "1", words))
     for i, name in enumerate(campaign.names):
         columns += _passage_columns(name, records.passages[:, i])
@@ -182,7 +185,7 @@ def _end_columns(campaign: Campaign, outcomes: NDArray[np.float64]) -> Iterator[
 def _passage_columns(line: str, rows: NDArray[np.float64]) -> Iterator[ArrowColumn]:
     count = rows[:, PASSAGE.count].astype(np.int64)
     yield result_column(f"{line}.passages", count, "1", f"passages of {line}")
-    for name, column, unit in _AT_PASSAGE:
+    for name, column, unit in AT_PASSAGE:
         values = np.where(count > 0, rows[:, column], np.nan)
         words = f"{name} at the first passage of {line}"
         yield result_column(f"{line}.{name}", values, unit, words)

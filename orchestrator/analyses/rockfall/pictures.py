@@ -25,6 +25,7 @@ from ...pictures.style import (
     TRANSMITTED,
     WIDTH,
     legend,
+    literal,
     styled,
 )
 from ...sites.rockfall.profile import surface
@@ -69,6 +70,10 @@ _MOST_FRAMES = 400
 """Number of frames above which an animation runs faster than the rock."""
 _STILL = FRAMES_PER_SECOND
 """Number of frames for which the end of a replay stands still."""
+_LEVEL = 0.05
+"""Height of a picture of a level profile / its length."""
+_FEWEST_RADII = 20.0
+"""Height of a picture of a level profile / radius of the rock, at least."""
 _ALIKE = 1e-9
 """Part of the largest value by which values may differ and still be one."""
 
@@ -81,7 +86,7 @@ def caption(result: "RockfallResult") -> list[str]:
     rock = f"rock: r = {site.rock.radius:g} m, m = {mass:.0f} kg, {site.rock.shape}"
     chance = f"Latin hypercube of {site.hypercube}" if site.hypercube else "independent trials"
     return [
-        f"{result.name}: {site.description}".removesuffix(": "),
+        ": ".join(filter(None, (literal(result.name), literal(site.description)))),
         f"{campaign.trials} trials, seed {campaign.seed}, {chance}; {rock}; "
         f"V_lim {site.limit_speed.mean:g} ± {site.limit_speed.deviation:g} m/s",
     ]
@@ -117,7 +122,9 @@ def _slope(result: "RockfallResult", axes: Axes) -> None:
     nodes = result.slope.nodes
     x = np.array([node.x for node in nodes])
     y = np.array([node.y for node in nodes])
-    bottom = y.min() - 0.04 * (y.max() - y.min())
+    radius = result.slope.site.rock.radius
+    rise = max(y.max() - y.min(), _LEVEL * (x[-1] - x[0]), _FEWEST_RADII * radius)
+    bottom = y.min() - 0.04 * rise
     names = [str(node.material) for node in nodes[:-1]]
     colours = dict(zip(result.slope.materials, cycle(_GROUNDS)))
     for name, cells in groupby(range(len(names)), names.__getitem__):
@@ -130,10 +137,10 @@ def _slope(result: "RockfallResult", axes: Axes) -> None:
             color=colours[name],
             linewidth=0.0,
             zorder=1,
-            label=name if names.index(name) == numbers[0] else None,
+            label=literal(name) if names.index(name) == numbers[0] else None,
         )
     axes.plot(x, y, color=INK, linewidth=1.0, zorder=3)
-    top = y.max() + 0.12 * (y.max() - y.min())
+    top = y.max() + 0.12 * rise
     axes.set(xlim=(x[0], x[-1]), ylim=(bottom, top), ylabel="y (m)")
     _search_lines(result, axes)
     for barrier in result.slope.site.barrier:
@@ -147,7 +154,7 @@ def _search_lines(result: "RockfallResult", axes: Axes) -> None:
         upper = np.minimum(line[[1, 3]], top)
         axes.plot(line[[0, 2]], upper, color=GREY, linewidth=0.9, linestyle="--", zorder=2)
         axes.annotate(
-            name,
+            literal(name),
             (line[2], min(line[3], top)),
             xytext=(2, -2),
             rotation=90,
@@ -162,7 +169,7 @@ def _barrier(barrier: Barrier, foot: float, axes: Axes) -> None:
     top = foot + barrier.height
     axes.plot([barrier.x, barrier.x], [foot, top], color=BEAM, linewidth=2.2, zorder=5)
     axes.annotate(
-        f"{barrier.name}: {barrier.height:g} m, {barrier.capacity / kJ:g} kJ",
+        f"{literal(barrier.name)}: {barrier.height:g} m, {barrier.capacity / kJ:g} kJ",
         (barrier.x, top),
         xytext=(0, 4),
         ha="center",
@@ -248,7 +255,7 @@ def histograms(result: "RockfallResult") -> Figure:
                 _histogram(axes, line.values[quantity.name] / quantity.scale)
                 axes.set(xlabel=f"{quantity.words} ({quantity.shown})", yticks=[])
                 _interval(axes, line, quantity)
-            panels[0].set_title(f"{line.name}: {line.count} of {line.trials} rocks")
+            panels[0].set_title(f"{literal(line.name)}: {line.count} of {line.trials} rocks")
     return figure
 
 

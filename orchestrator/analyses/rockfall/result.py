@@ -49,6 +49,7 @@ class RockfallResult(Result):
         records: TrialRecords,
         wall_time: float,
         executor: Mapping[str, Any],
+        along: Envelopes | None = None,
     ) -> None:
         super().__init__()
         self.slope = slope
@@ -56,6 +57,7 @@ class RockfallResult(Result):
         self.records = records
         self.wall_time = wall_time
         self.executor = executor
+        self._along = along
         self.animated: tuple[int, ...] = ()
         self.animation = "gif"
 
@@ -72,7 +74,7 @@ class RockfallResult(Result):
     @cached_property
     def envelopes(self) -> Envelopes:
         """Largest values and percentiles at the stations by quantity and name, NaN for no rock."""
-        return envelopes(self.records)
+        return self._along or envelopes(self.records)
 
     def metric_list(self) -> list[Metric]:
         """Return ends of the trials, and each line with mean, deviation and percentiles."""

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 
+from ...core.errors import InputRefused, Problem
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
 from .animation_format import animation_format
 from .campaign import Executor, campaign_of, threads
-from .cluster import dask_workers
+from .cluster import Certificates, dask_workers
 from .replay import check
 from .result import RockfallResult
 
@@ -23,6 +24,7 @@ def rockfall(
     seed: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    certificates: Certificates | None = None,
     replay: Sequence[int] = (),
     animation: str | None = None,
     folder: str | Path | None = None,
@@ -42,6 +44,8 @@ def rockfall(
     scheduler : str, optional
         ``local`` for processes of this computer, or the address of a running Dask scheduler. The
         results are the same to the bit.
+    certificates : Certificates, optional
+        Of a running scheduler that knows its users by them (``tls://HOST:PORT``).
     replay : sequence of int
         Trials of which animations are written.
     animation : str, optional
@@ -91,7 +95,7 @@ def rockfall(
     with ExitStack() as opened:
         place = opened.enter_context(RockfallResult.opened(folder)) if folder else None
         show("trials", 0, campaign.trials)
-        with _executor(scheduler, workers) as executor:
+        with _executor(scheduler, workers, certificates) as executor:
             began = time.perf_counter()
             records = executor.run(campaign, counter(show, "trials"))
             wall_time = time.perf_counter() - began
@@ -103,8 +107,13 @@ def rockfall(
     return result
 
 
-def _executor(scheduler: str | None, workers: int | None) -> AbstractContextManager[Executor]:
+def _executor(
+    scheduler: str | None, workers: int | None, certificates: Certificates | None
+) -> AbstractContextManager[Executor]:
     """Open threads of this process, or the workers of a Dask scheduler."""
     if scheduler is None:
+        if certificates is not None:
+            text = "are for a running scheduler"
+            raise InputRefused([Problem("certificates", text, "name it with --scheduler")])
         return threads(workers or os.cpu_count() or 1)
-    return dask_workers(scheduler, workers)
+    return dask_workers(scheduler, workers, certificates)

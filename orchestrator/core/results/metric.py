@@ -32,9 +32,9 @@ class Beside:
 def identifier(name: str) -> str:
     """Turn a name in words into a stable identifier.
 
-    ``peak transmitted force`` becomes ``peak_transmitted_force``.
+    ``peak transmitted force`` becomes ``peak_transmitted_force``; letters of any script stay.
     """
-    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+    return re.sub(r"[\W_]+", "_", name.lower()).strip("_")
 
 
 @dataclass(frozen=True)

@@ -162,7 +162,7 @@ class StoredRun:
 def _stored_states(path: Path, component: str) -> Iterator[tuple[float, bytes]]:
     import h5py
 
-    with _undamaged(path), h5py.File(path) as file:
+    with undamaged(path), h5py.File(path) as file:
         if component in file:
             for number, at in enumerate(file[f"{component}/time"][:]):
                 yield float(at), file[f"{component}/state/{number}"][:].tobytes()
@@ -186,27 +186,31 @@ def read_run(folder: Path) -> StoredRun:
         There is no run, or a file of it is damaged.
     """
     place = _place_of(folder)
-    with _undamaged(place / RUN):
+    with undamaged(place / RUN):
         provenance = json.loads((place / RUN).read_text(encoding="utf-8"))
         if not isinstance(provenance, dict) or "status" not in provenance:
             raise ValueError("it does not describe a run")
     if not (place / COLUMNS).is_file() and "kind" in provenance:
         raise _refusal(
             folder,
-            f"is a {provenance['kind']} campaign, which has no time series",
-            "give the folder of a run; the campaign's pictures are in its folder figures",
+            f"holds the results of {provenance['kind']}, which have no time series",
+            "give the folder of a run; `rockshed plot` draws the results of an analysis too",
         )
-    with _undamaged(place / COLUMNS):
+    with undamaged(place / COLUMNS):
         columns = read_columns(place / COLUMNS)
-    with _undamaged(place / SUMMARY):
+    with undamaged(place / SUMMARY):
         metrics = _read_metrics(place / SUMMARY)
     return StoredRun(place, provenance, metrics, columns, _read_series(place, columns))
 
 
 def _place_of(folder: Path) -> Path:
-    for place in (folder, running_folder(folder.absolute())):
+    running = running_folder(folder)
+    for place in (folder, running):
         if (place / RUN).is_file():
             return place
+    if running.is_dir():
+        what = f"a run was killed before it computed anything; it has left {running}"
+        raise _refusal(folder, what, "run it again")
     raise _refusal(folder, f"is no folder of a run: there is no {RUN}", "give the folder of a run")
 
 
@@ -222,11 +226,22 @@ def _read_metrics(path: Path) -> Metrics:
 
 
 @contextmanager
-def _undamaged(path: Path) -> Iterator[None]:
-    """Read a file of a run; what is wrong with its content becomes a refusal that names it."""
+def undamaged(path: Path) -> Iterator[None]:
+    """Read a file of results; what is wrong with its content becomes a refusal that names it.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+
+    Raises
+    ------
+    InputRefused
+        The block has raised an error.
+    """
     try:
         yield
-    except (ValueError, TypeError, KeyError, AttributeError, OSError) as error:
+    except (ValueError, TypeError, LookupError, AttributeError, OSError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise _refusal(
             path, f"cannot be read: {reason}", "the results are damaged; run it again"
@@ -240,11 +255,11 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
         path = folder / PARQUET
         # read_table would import more
-        with _undamaged(path), pyarrow.parquet.ParquetFile(path) as file:
+        with undamaged(path), pyarrow.parquet.ParquetFile(path) as file:
             table = file.read(columns=[column.name for column in columns])
     else:
         table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
-    with _undamaged(folder / COLUMNS):
+    with undamaged(folder / COLUMNS):
         return {column.name: _numbers(table[column.name]) for column in columns}
 
 
@@ -264,6 +279,7 @@ def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:
         One with a name that is there already replaces it.
     """
     path = folder / SUMMARY
-    entries = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}
+    known = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else []
+    entries = {entry["name"]: entry for entry in known}
     entries |= {metric.name: metric.as_entry() for metric in metrics}
     write_json(path, list(entries.values()))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused, Problem
 from ..fmu.description import Description, Port, UnitDefinition
-from ..fmu.fmu_slave import read_description
+from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import REAL, Source
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select
@@ -21,7 +21,7 @@ from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
 from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
-from .units import is_joule, unit_text, units_agree
+from .units import is_force, is_joule, unit_text, units_agree
 from .values import value_for
 
 
@@ -155,12 +155,8 @@ class _Planner:
                 self.problems += [
                     Problem(name, f"{p.where}: {p.what}", p.remedy) for p in refusal.problems
                 ]
-            except ValueError as error:
-                self._refuse(
-                    name,
-                    f"{self.system.components[name].fmu} {error}",
-                    "use an FMU of it for FMI 2.0",
-                )
+            except UnusableError as error:
+                self._refuse(name, f"{self.system.components[name].fmu} {error}", error.remedy)
         self._check_instances()
 
     def _check_instances(self) -> None:
@@ -463,6 +459,13 @@ class _Planner:
         self, where: str, force: list[End], position: list[End], work: list[End]
     ) -> None:
         for f, p in zip(force, position, strict=True):
+            if is_force(f.port.unit) is False:
+                self._refuse(
+                    where,
+                    f"{f.name} is in {f.port.unit_name}, and no force or torque",
+                    "name the forces first, then the positions",
+                )
+                return
             if is_joule(f.port.unit, p.port.unit) is False:
                 self._refuse(
                     where,

@@ -4,19 +4,62 @@ A system is read from a TOML file or built in Python; both are checked for their
 against the FMUs in :mod:`rockshed.core.system.planning`.
 """
 
-import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from ..errors import InputRefused, Problem
+from ..form_faults import UNKNOWN_KEY, sentences
+from ..input_text import read_text, toml_content
 from .names import matches, nearest
 
 Value = bool | int | float | str
 """Value of a parameter or input; of an enumeration, the name or the number of an item."""
+
+
+def plain_value(value: Any) -> Any:
+    """Return a number of numpy as one of Python; refuse a list.
+
+    Parameters
+    ----------
+    value : Any
+        Value for a parameter or input.
+
+    Returns
+    -------
+    Any
+        The value; its type is not checked.
+
+    Raises
+    ------
+    ValueError
+        It is a list, an array or a mapping.
+    """
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, list | tuple | dict | np.ndarray):
+        raise ValueError(ONE_VALUE)
+    return value
+
+
+ONE_VALUE = (
+    "takes one number, true or false, or a word; give array elements one by one as name[1], "
+    "name[2], ..., or all the same value as name[*]"
+)
+"""Why a list is refused as a value."""
+
+_PlainValue = Annotated[Value, BeforeValidator(plain_value)]
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
@@ -58,7 +101,7 @@ class ComponentSpec(_Data):
 
     fmu: str
     step: Seconds | None = None
-    parameters: dict[str, Value] = {}
+    parameters: dict[str, _PlainValue] = {}
     record_states: bool = False
 
 
@@ -91,7 +134,7 @@ class SharedValue(_Data):
     Targets are ``component.parameter``.
     """
 
-    value: Value
+    value: _PlainValue
     targets: list[str] = Field(min_length=1)
 
 
@@ -220,12 +263,15 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
     try:
         return SystemSpec.model_validate(data)
     except ValidationError as error:
-        found: dict[str, list[str]] = {}
-        for entry in error.errors():
-            found.setdefault(_path(entry["loc"]), []).append(_sentence(entry))
+        found = sentences(error.errors())
         raise InputRefused(
-            [Problem(f"{where}: {key}", " or ".join(sentences)) for key, sentences in found.items()]
+            [_form_problem(where, key, texts) for key, texts in found.items()]
         ) from error
+
+
+def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem:
+    hints = [nearest(str(key[-1]), _KEYS)] if UNKNOWN_KEY in texts else []
+    return Problem(f"{where}: {'.'.join(map(str, key))}", "; ".join([" or ".join(texts), *hints]))
 
 
 def load_system(path: Path) -> SystemSpec:
@@ -245,16 +291,7 @@ def load_system(path: Path) -> SystemSpec:
     InputRefused
         No such file, not TOML, or :func:`system_from` refuses the content.
     """
-    try:
-        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except OSError as error:
-        raise InputRefused(
-            [Problem(str(path), f"cannot be read: {error.strerror or error}", "correct the path")]
-        ) from error
-    except UnicodeDecodeError as error:
-        raise InputRefused([_not_utf_8(path)]) from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputRefused([Problem(str(path), f"is not valid TOML: {error}")]) from error
+    data = toml_content(path, read_text(path))
     system = system_from(data, str(path))
     folder = path.resolve().parent
     components = {
@@ -262,14 +299,6 @@ def load_system(path: Path) -> SystemSpec:
         for name, spec in system.components.items()
     }
     return system.model_copy(update={"components": components})
-
-
-def _not_utf_8(path: Path) -> Problem:
-    is_utf_16 = path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff")
-    encoding = "written in UTF-16" if is_utf_16 else "no text in UTF-8"
-    return Problem(
-        str(path), f"is {encoding}, and TOML is UTF-8", "save it again with the encoding UTF-8"
-    )
 
 
 def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
@@ -296,7 +325,12 @@ def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
     parameters = {name: dict(spec.parameters) for name, spec in system.components.items()}
     shared: dict[str, dict[str, Value]] = {}
     problems = []
-    for name, value in values.items():
+    for name, entry in values.items():
+        try:
+            value: Value = plain_value(entry)
+        except ValueError as error:
+            problems.append(Problem(name, str(error)))
+            continue
         component, _, parameter = name.partition(".")
         owner = _owner(system, name)
         if owner is not None:
@@ -338,31 +372,6 @@ def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
     listed = ", ".join(f"{name} = {value}" for name, value in given.items())
     what = f"is one value for all its targets, and is given several: {listed}"
     return [Problem(key, what, "give one of them")]
-
-
-def _path(location: tuple[int | str, ...]) -> str:
-    """Return the path of a key, ``components.rock.step``.
-
-    The names that pydantic gives to the alternatives of a type are left out.
-    """
-    kept = [
-        part
-        for part in location
-        if not (isinstance(part, str) and re.fullmatch(r"bool|int|float|str|constrained-.*", part))
-    ]
-    return ".".join(map(str, kept))
-
-
-def _sentence(error: Any) -> str:
-    if error["type"] == "extra_forbidden":
-        return f"there is no such key; {nearest(str(error['loc'][-1]), _KEYS)}"
-    if error["type"] == "missing":
-        return "is missing"
-    given = f" (given: {error['input']!r})"
-    if isinstance(error["input"], dict | list) or error["type"] == "value_error":
-        given = ""
-    message = str(error["msg"]).removeprefix("Value error, ")
-    return message[0].lower() + message[1:] + given
 
 
 _KEYS = sorted(

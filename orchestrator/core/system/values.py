@@ -67,7 +67,9 @@ def _number(port: Port, value: Value) -> float:
         number = float(value)
     except ValueError:
         raise ValueError("must be a number") from None
-    if port.kind == INTEGER and number != math.floor(number):
+    except OverflowError:  # an integer of hundreds of digits
+        number = math.inf
+    if port.kind == INTEGER and math.isfinite(number) and number != math.floor(number):
         raise ValueError("must be a whole number")
     return number
 

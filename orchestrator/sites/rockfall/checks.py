@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from ...core.errors import Problem
+from ...core.input_text import shown
+from ...core.results.metric import identifier
 from ...core.system.names import nearest
 from ...input_files.places import Key, Places
 from .profile import Node
@@ -17,6 +19,10 @@ MODEL = {
     "tilt_meaning": "tilt.meaning",
 }
 """Keys of the section [model], and the parameters of the component that they set."""
+
+
+RESERVED = "largest"
+"""Name that no line can have: columns of the table of the trials begin with it."""
 
 
 def site_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iterator[Problem]:
@@ -70,10 +76,15 @@ def _name_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
         *((line.name, ("line", i, "name")) for i, line in enumerate(site.line)),
         *((barrier.name, ("barrier", i, "name")) for i, barrier in enumerate(site.barrier)),
     ]
-    every = [name for name, _ in names]
     for name, key in names:
-        if every.count(name) > 1:
-            text = f"several lines or barriers are called {name!r}"
+        if name == RESERVED:
+            text = f"{name!r} is the name of columns of the results"
+            yield Problem(where.of(key), text, "call it something else")
+        alike = [other for other, _ in names if identifier(other) == identifier(name)]
+        if len(alike) > 1:
+            text = f"several lines or barriers are called {shown(name)}"
+            if len(set(alike)) > 1:
+                text = f"{', '.join(map(shown, alike))} are one name in the results"
             yield Problem(where.of(key), text, "give each a name of its own")
 
 

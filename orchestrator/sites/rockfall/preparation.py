@@ -20,7 +20,7 @@ from ...input_files.setting import Setting, setter
 from ..source import SiteLike, SiteSource, site_source
 from . import materials as ground
 from .checks import MODEL, site_problems
-from .profile import Node, with_ground
+from .profile import Node, unfolded, with_ground
 from .reading import read_nodes
 from .site import Material, Profile, SlopeSite
 
@@ -85,9 +85,9 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
     data = formed(SlopeSite, source.content, where, problems)
     if data is None:
         _check_profile_alone(source, problems)
-        raise InputRefused(problems)
+        raise InputRefused(first(problems))
     known = ground.materials(data.material, where, problems)
-    nodes = read_nodes(data.profile, source.folder, where, known, problems)
+    nodes = unfolded(read_nodes(data.profile, source.folder, where, known, problems), problems)
     nodes = with_ground(nodes, data.ground, where, known, problems)
     problems += site_problems(data, nodes, where)
     instance = _instance(data, nodes, known, where, problems) if len(nodes) > 1 else None
@@ -100,10 +100,13 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
 def _check_profile_alone(source: SiteSource, problems: list[Problem]) -> None:
     """Append the faults of the profile, where the form of something else is wrong."""
     profile = source.content.get("profile")
-    if isinstance(profile, dict) and not any("profile" in found.what for found in problems):
-        known = {*ground.shipped(), *source.content.get("material", {})}
-        shape = Profile.model_validate(profile)
-        read_nodes(shape, source.folder, source.places, known, problems)
+    own = source.content.get("material", {})
+    if isinstance(profile, dict) and isinstance(own, dict):
+        shape = formed(Profile, profile, source.places, [])  # its faults have been told
+        if shape is not None:
+            known = {*ground.shipped(), *own}
+            nodes = read_nodes(shape, source.folder, source.places, known, problems)
+            unfolded(nodes, problems)
 
 
 def _instance(

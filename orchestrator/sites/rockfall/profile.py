@@ -30,6 +30,37 @@ class Node:
     where: str
 
 
+def unfolded(nodes: list[Node], problems: list[Problem]) -> list[Node]:
+    """Return the nodes of a profile that runs from left to right, and none of another one.
+
+    What else would be wrong with a profile that folds back follows from that, and is not told.
+
+    Parameters
+    ----------
+    nodes : list of Node
+        As they were read.
+    problems : list of Problem
+        The nodes at which the profile folds back are appended.
+
+    Returns
+    -------
+    list of Node
+        Empty where it folds back.
+    """
+    folded = [
+        Problem(
+            after.where,
+            f"the profile folds back from x = {node.x:.6g} m to {after.x:.6g} m: its right node "
+            "must lie to the right of its left node",
+            "order the nodes by x, remove repeated ones, and give an overhang as a steep cell",
+        )
+        for node, after in pairwise(nodes)
+        if after.x <= node.x
+    ]
+    problems += folded
+    return [] if folded else nodes
+
+
 # --- materials of the cells ---
 
 

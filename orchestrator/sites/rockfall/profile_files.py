@@ -5,14 +5,51 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import Problem
-from ...core.system.values import finite_number
+from ...core.errors import InputRefused, Problem
+from ...core.input_text import shown
+from ...input_files.csv_table import CsvRow, CsvTable, read_csv
+from ...input_files.form import LARGEST
 from .profile import Node
 
 FLAT = 0.01
 """Distance (m) between a curve of a drawing and the straight cells that replace it."""
 TOUCH = 1e-6
 """Distance (m) at which ends of lines in a drawing are one point."""
+
+MOST_POINTS = 100_000
+"""Largest number of straight cells that replace a curve."""
+_FOOT, _SURVEY_FOOT = 0.3048, 1200.0 / 3937.0
+UNITS = {
+    0: 1.0,
+    1: _FOOT / 12.0,
+    2: _FOOT,
+    3: 5280.0 * _FOOT,
+    4: 1e-3,
+    5: 1e-2,
+    6: 1.0,
+    7: 1e3,
+    8: 1e-6 * _FOOT / 12.0,
+    9: 1e-3 * _FOOT / 12.0,
+    10: 3.0 * _FOOT,
+    11: 1e-10,
+    12: 1e-9,
+    13: 1e-6,
+    14: 0.1,
+    15: 10.0,
+    16: 100.0,
+    17: 1e9,
+    18: 149597870700.0,
+    19: 9460730472580800.0,
+    20: 3.0856775814913673e16,
+    21: _SURVEY_FOOT,
+    22: _SURVEY_FOOT / 12.0,
+    23: 3.0 * _SURVEY_FOOT,
+    24: 5280.0 * _SURVEY_FOOT,
+}
+"""Lengths (m) of the units of a drawing by their number in DXF ($INSUNITS).
+
+A foot is 0.3048 m, a US survey foot 1200/3937 m; a drawing without a unit counts in metres.
+"""
 
 # --- CSV ---
 
@@ -23,8 +60,8 @@ def nodes_of_csv(path: Path, problems: list[Problem]) -> Iterator[Node]:
     Parameters
     ----------
     path : Path
-        Of the file. Its first line names the columns: ``x,y`` or ``x,y,material`` (m); lines that
-        begin with # are comments.
+        Of the file, see :mod:`rockshed.input_files.csv_table`. Its first line names the columns:
+        ``x,y`` or ``x,y,material`` (m).
     problems : list of Problem
         Faults are appended, with line and column.
 
@@ -34,47 +71,40 @@ def nodes_of_csv(path: Path, problems: list[Problem]) -> Iterator[Node]:
         In the order of the file.
     """
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        problems.append(Problem(str(path), f"cannot be read: {error}", "save it as UTF-8 text"))
+        table = read_csv(path)
+    except InputRefused as refusal:
+        problems += refusal.problems
         return
-    rows = [
-        (i, line)
-        for i, line in enumerate(lines, 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    header = [name.strip().lower() for name in rows[0][1].split(",")] if rows else []
+    header = [field.text.lower() for field in table.rows[0].fields] if table.rows else []
     if header[:2] != ["x", "y"] or header[2:] not in ([], ["material"]):
-        remedy = "write x,y or x,y,material, with commas between the columns and decimal points"
-        place = f"{path}, line {rows[0][0] if rows else 1}, column 1"
+        remedy = "write x,y or x,y,material; commas, semicolons or tabs separate the columns"
+        place = table.place(table.rows[0], 0) if table.rows else f"{path}, line 1, column 1"
         problems.append(Problem(place, "the first line does not name the columns", remedy))
         return
-    for number, line in rows[1:]:
-        yield from _csv_node(f"{path}, line {number}", line.split(","), len(header), problems)
+    for row in table.rows[1:]:
+        yield from _csv_node(table, row, len(header), problems)
 
 
 def _csv_node(
-    place: str, fields: Sequence[str], columns: int, problems: list[Problem]
+    table: CsvTable, row: CsvRow, columns: int, problems: list[Problem]
 ) -> Iterator[Node]:
-    if not 2 <= len(fields) <= columns:
-        text = f"has {len(fields)} fields"
-        remedy = f"give {columns}, with commas between"
-        problems.append(Problem(f"{place}, column 1", text, remedy))
+    place = table.place(row, 0)
+    if not 2 <= len(row.fields) <= columns:
+        text = f"has {len(row.fields)} fields"
+        remedy = f"give {columns}, separated as in the first line"
+        problems.append(Problem(place, text, remedy))
         return
     values = []
-    for i, text in enumerate(fields[:2]):
-        value = finite_number(text)
-        if value is None:
-            blanks = len(text) - len(text.lstrip())
-            column = 1 + sum(len(before) + 1 for before in fields[:i]) + blanks
-            fault = f"{text.strip()!r} is no finite number"
-            remedy = "give a coordinate in m, with a point for decimals"
-            problems.append(Problem(f"{place}, column {column}", fault, remedy))
+    for i, field in enumerate(row.fields[:2]):
+        value = table.number(field)
+        if value is None or abs(value) > LARGEST:
+            fault = f"{shown(field.text)} is no finite number"
+            problems.append(Problem(table.place(row, i), fault, "give a coordinate in m"))
         else:
             values.append(value)
     if len(values) == 2:
-        material = fields[2].strip() if len(fields) == 3 else ""
-        yield Node(values[0], values[1], material or None, f"{place}, column 1")
+        material = row.fields[2].text if len(row.fields) == 3 else ""
+        yield Node(values[0], values[1], material or None, place)
 
 
 # --- DXF ---
@@ -109,44 +139,91 @@ def nodes_of_dxf(
         return []
     try:
         drawing = ezdxf.readfile(path)
-    except (OSError, ezdxf.DXFError) as error:
-        text = f"is no DXF drawing that can be read: {error}"
+        scale = _metres(path, drawing.units, problems)
+        pieces = list(_pieces(path, drawing, layers, known, scale)) if scale else []
+    except InputRefused as refusal:
+        problems += refusal.problems
+        return []
+    except Exception as error:  # what a damaged drawing ends in is anything
+        text = f"is no DXF drawing that can be read: {_reason(error)}"
         problems.append(Problem(str(path), text, "save it again as DXF"))
         return []
-    pieces = [piece for piece in _pieces(path, drawing, layers, known) if len(piece) > 1]
-    if not pieces:
-        names = sorted({entity.dxf.layer for entity in drawing.modelspace()})
+    if scale and not pieces:
+        names = sorted({str(entity.dxf.layer) for entity in drawing.modelspace()})
         text = "has no line, polyline or curve on the layers that are read"
-        remedy = f"set profile.layers; there are {', '.join(names)}" if names else ""
+        remedy = f"set profile.layers; there are {', '.join(names[:12])}" if names else ""
         problems.append(Problem(str(path), text, remedy or "draw the profile"))
-        return []
-    return _joined(pieces, problems)
+    return _joined(pieces, problems) if pieces else []
+
+
+def _reason(error: Exception) -> str:
+    """Return the first line of an error's message, or its kind where it has none."""
+    lines = str(error).splitlines()
+    return lines[0][:200] if lines and lines[0] else type(error).__name__
+
+
+def _metres(path: Path, code: Any, problems: list[Problem]) -> float | None:
+    """Return the length (m) of the drawing's unit; one without a unit counts in metres."""
+    if isinstance(code, int) and code in UNITS:
+        return UNITS[code]
+    text = f"has the unit number {shown(code)} ($INSUNITS), which DXF does not have"
+    remedy = "set the unit of the drawing, and save it again: 6 is m, 2 ft, 21 US survey feet"
+    problems.append(Problem(str(path), text, remedy))
+    return None
 
 
 def _pieces(
-    path: Path, drawing: Any, layers: Collection[str] | None, known: Collection[str]
+    path: Path, drawing: Any, layers: Collection[str] | None, known: Collection[str], scale: float
 ) -> Iterator[list[Node]]:
     """Yield the nodes (m) of each line, polyline and curve."""
-    from ezdxf.path import make_path
-
-    scale = _metres(drawing)
+    lines = []
     for entity in drawing.modelspace().query("LINE LWPOLYLINE POLYLINE ARC SPLINE"):
         layer = entity.dxf.layer
-        if layers is not None and layer not in layers:
-            continue
+        if layers is None or layer in layers:
+            place = f"{path}, entity {entity.dxf.handle} ({entity.dxftype()} on layer {layer})"
+            lines.append((place, layer, _points(place, entity, scale)))
+    height = _height(path, [point for _, _, points in lines for point in points])
+    for place, layer, points in lines:
         material = layer if layer in known else None
-        place = f"{path}, entity {entity.dxf.handle} ({entity.dxftype()} on layer {layer})"
-        points = make_path(entity).flattening(FLAT / scale)
-        yield [Node(scale * p.x, scale * p.y, material, place) for p in points]
+        nodes = [Node(p[0], p[height], material, place) for p in points]
+        if len(nodes) > 1:
+            yield nodes
 
 
-def _metres(drawing: Any) -> float:
-    """Return the length (m) of the drawing's unit; one without a unit counts in metres."""
-    from ezdxf import units
+def _points(place: str, entity: Any, scale: float) -> list[tuple[float, float, float]]:
+    """Return the points (m) of an entity; of a curve, those of straight cells along it."""
+    from ezdxf.path import make_path
 
-    if not drawing.units:
-        return 1.0
-    return units.conversion_factor(units.InsertUnits(drawing.units), units.InsertUnits.Meters)
+    points = []
+    for point in make_path(entity).flattening(FLAT / scale):
+        values = (scale * point.x, scale * point.y, scale * point.z)
+        if not all(abs(value) <= LARGEST for value in values):
+            problem = Problem(place, "has a coordinate that is no finite number", "draw it again")
+            raise InputRefused([problem])
+        points.append(values)
+        if len(points) > MOST_POINTS:
+            text = f"is a curve of more than {MOST_POINTS} straight cells of {FLAT:g} m precision"
+            raise InputRefused([Problem(place, text, "check the unit of the drawing")])
+    return points
+
+
+def _height(path: Path, points: Sequence[tuple[float, float, float]]) -> int:
+    """Return the coordinate that is the height: z of a section that is drawn upright in space.
+
+    Raises
+    ------
+    InputRefused
+        y and z both change: the lines are no section.
+    """
+    y = [point[1] for point in points]
+    z = [point[2] for point in points]
+    if not points or max(z) - min(z) <= TOUCH:
+        return 1
+    if max(y) - min(y) <= TOUCH:
+        return 2
+    text = "has lines that run through space: both y and z change along them"
+    remedy = "draw the section in the plane x, y, or upright in x, z with one y"
+    raise InputRefused([Problem(str(path), text, remedy)])
 
 
 def _joined(pieces: Sequence[list[Node]], problems: list[Problem]) -> list[Node]:

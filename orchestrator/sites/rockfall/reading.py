@@ -1,12 +1,13 @@
 """The nodes of a profile: from the site itself, from a CSV file or from a DXF drawing."""
 
-import math
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from ...core.errors import Problem
+from ...core.input_text import shown
 from ...core.system.names import nearest
+from ...input_files.form import LARGEST
 from ...input_files.places import Places
 from .profile import Node
 from .profile_files import nodes_of_csv, nodes_of_dxf
@@ -65,7 +66,7 @@ def _from_points(points: Sequence[Any], where: Places, problems: list[Problem]) 
             yield Node(float(point[0]), float(point[1]), material, place)
         else:
             remedy = 'write [x, y] or [x, y, "material"], finite numbers in m'
-            problems.append(Problem(place, f"{point!r} is no point", remedy))
+            problems.append(Problem(place, f"{shown(point)} is no point", remedy))
 
 
 def _is_point(point: Any) -> bool:
@@ -78,7 +79,7 @@ def _is_point(point: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 def _from_file(

@@ -1,0 +1,49 @@
+"""Results of analyses that have been saved, of whichever analysis they are."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..core.results.reading import undamaged
+from ..core.results.run_folder import RUN
+from .frame import Result
+
+
+def saved_result(folder: Path) -> Result | None:
+    """Read the results of an analysis.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the results.
+
+    Returns
+    -------
+    Result or None
+        None where there are no results of an analysis.
+
+    Raises
+    ------
+    InputRefused
+        The files are damaged.
+    """
+    if not (folder / RUN).is_file():
+        return None
+    with undamaged(folder / RUN):
+        content = json.loads((folder / RUN).read_text(encoding="utf-8"))
+        kind = content.get("kind")
+    if kind == "rockfall":
+        from .rockfall.reading import read_campaign
+
+        return read_campaign(folder, content)
+    return _blows(folder, content) if kind == "pile" else None
+
+
+def _blows(folder: Path, content: Mapping[str, Any]) -> Result:
+    """Compute the blows of a pile again, which takes less time than the reading of many traces."""
+    from .pile.run import pile
+
+    with undamaged(folder / RUN):
+        site = {**content["site"], "name": content["name"]}
+    return pile(site)

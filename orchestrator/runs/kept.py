@@ -1,0 +1,130 @@
+"""Runs that have ended, kept until all of a batch have: what is killed in between goes on there.
+
+A file for each run, named by everything that its result follows from: system, FMUs and program. It
+has numbers and JSON, is written whole, and one that is damaged is as if it were not there.
+"""
+
+import hashlib
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ..core.system.system import SystemSpec
+from ..files import whole_file
+from ..versions import versions
+from .outcome import Outcome
+
+_PROGRAM = ("core", "metrics", "runs")
+"""Rooms of the package from which the outcome of a run follows, besides the FMUs."""
+_DAMAGED = (OSError, ValueError, LookupError, TypeError, EOFError, zipfile.BadZipFile, zlib.error)
+
+
+@dataclass(frozen=True)
+class KeptRuns:
+    """Outcomes of complete runs in a folder.
+
+    Attributes
+    ----------
+    folder : Path
+        Is made with the first outcome.
+    """
+
+    folder: Path
+
+    def find(self, key: str, system: SystemSpec, allow_unstable: bool) -> Outcome | None:
+        """Return the outcome of a run that has ended before.
+
+        Parameters
+        ----------
+        key : str
+            Of its task.
+        system : System
+            That is run.
+        allow_unstable : bool
+            Whether a step may be longer than the stable one.
+
+        Returns
+        -------
+        Outcome or None
+            None where there is none, or its file is damaged.
+        """
+        file = self._file(system, allow_unstable)
+        if file is None or not file.is_file():
+            return None
+        with suppress(*_DAMAGED):
+            return _read(file, key)
+        return None
+
+    def keep(self, system: SystemSpec, allow_unstable: bool, outcome: Outcome) -> None:
+        """Keep the outcome of a run of this system."""
+        file = self._file(system, allow_unstable)
+        if file is not None:
+            with suppress(OSError):  # then it is run again
+                self.folder.mkdir(parents=True, exist_ok=True)
+                _write(file, outcome)
+
+    def clear(self) -> None:
+        """Remove all outcomes, and the folder if it holds nothing else."""
+        for file in self.folder.glob("run-*.npz"):
+            file.unlink(missing_ok=True)
+        with suppress(OSError):
+            self.folder.rmdir()
+
+    def _file(self, system: SystemSpec, allow_unstable: bool) -> Path | None:
+        """Return the file of a run; None if its components are not FMU files."""
+        fmus = {name: spec.fmu for name, spec in system.components.items()}
+        if not all(Path(fmu).is_file() for fmu in fmus.values()):
+            return None
+        content = {
+            "system": system.model_dump(mode="json"),
+            "fmus": {name: _sha256(Path(fmu)) for name, fmu in fmus.items()},
+            "allow_unstable": allow_unstable,
+            "program": _program(),
+            "versions": versions("numpy", "fmpy"),
+        }
+        text = json.dumps(content, sort_keys=True)
+        return self.folder / f"run-{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+
+
+def _sha256(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+@cache
+def _program() -> str:
+    """Return a digest of the sources that carry out a run."""
+    digest = hashlib.sha256()
+    for room in _PROGRAM:
+        for file in sorted((Path(__file__).parents[1] / room).rglob("*.py")):
+            digest.update(file.read_bytes())
+    return digest.hexdigest()
+
+
+def _write(file: Path, outcome: Outcome) -> None:
+    import numpy as np
+
+    facts = {name: value for name, value in asdict(outcome).items() if name != "series"}
+    facts["columns"] = list(outcome.series)
+    arrays: dict[str, Any] = {
+        f"column-{i}": column for i, column in enumerate(outcome.series.values())
+    }
+    words = np.frombuffer(json.dumps(facts).encode(), np.uint8)
+    with whole_file(file) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, facts=words, **arrays)
+
+
+def _read(file: Path, key: str) -> Outcome:
+    import numpy as np
+
+    with np.load(file, allow_pickle=False) as stored:
+        facts: Mapping[str, Any] = json.loads(stored["facts"].tobytes())
+        columns = facts["columns"]
+        series = {name: stored[f"column-{i}"] for i, name in enumerate(columns)}
+    rest = {name: value for name, value in facts.items() if name not in ("columns", "key")}
+    return Outcome(key, series=series, **rest)
