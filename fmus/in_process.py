@@ -135,9 +135,9 @@ class InProcessSlave:
         """Nothing is held that Python does not give back by itself."""
 
     def _call(self, function: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
-        """Result of a call, and the worst status it has logged."""
+        """Result of a call, and the worst status it has logged, save that of steps to come."""
         result = function(*arguments)
         logged = [(int(entry.status), entry.msg) for entry in self._slave.log_queue]
         self._slave.log_queue.clear()
         self.messages += logged
-        return result, max((status for status, _ in logged), default=OK)
+        return result, max((status for status, _ in logged if status != DISCARD), default=OK)

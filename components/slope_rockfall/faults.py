@@ -1,5 +1,7 @@
 """Statuses of the rock on a slope other than OK."""
 
+from ..common.stepping import STEPPING_FAULTS
+
 FOLDED, STEEP, ROUGH, LOCKED, ROUGHNESS_SIGN, TILT_SIGN = range(1, 7)
 """Faults of a cell, by number."""
 LIMIT_SIGN, RECEIVER_EMPTY, START_BELOW = range(7, 10)
@@ -26,24 +28,26 @@ _FACTS = {
     "mu tan(phi) = {fault.locking}",
 }
 
-FAULTS = {
-    fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()
-} | {
-    LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal distribution: choose another "
-    "limit_speed.distribution",
-    RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than receiver.right = {receiver.right} "
-    "m, and receiver.bottom = {receiver.bottom} m less than receiver.top = {receiver.top} m",
-    START_BELOW: "the rock starts below the surface: its lowest point is at {height} m along the normal of cell {cell}; raise "
-    "position0.y = {position0.y} m or set on_slope",
-    FORCE_OUTSIDE: "a force ({force.x}, {force.y}) N, {torque} N m acts on the rock at ({position.x}, {position.y}) m, "
-    "which is not handed over: enlarge the receiver until it contains all that can touch the rock",
-    LEFT_BELOW: "the rock has left the receiver at ({position.x}, {position.y}) m and is below the slope's surface "
-    "(height {height} m): let the receiver end where what is in it meets the slope",
-    DIVERGED: "the position is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
-    "reduce the exchange step or the step of the component that computes it",
-    NEVER_RECEIVED: "trial {trial} of seed {seed} never enters the receiver, and lead_time counts from there: choose "
-    "another trial or receiver, or leave lead_time out",
-    RESTLESS: "a million events in one step, at ({position.x}, {position.y}) m: give cell {cell} some roughness, or "
-    "hardening below 1",
-}
+FAULTS = (
+    STEPPING_FAULTS
+    | {fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()}
+    | {
+        LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal distribution: choose another "
+        "limit_speed.distribution",
+        RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than receiver.right = {receiver.right} "
+        "m, and receiver.bottom = {receiver.bottom} m less than receiver.top = {receiver.top} m",
+        START_BELOW: "the rock starts below the surface: its lowest point is at {height} m along the normal of cell {cell}; raise "
+        "position0.y = {position0.y} m or set on_slope",
+        FORCE_OUTSIDE: "a force ({force.x}, {force.y}) N, {torque} N m acts on the rock at ({position.x}, {position.y}) m, "
+        "which is not handed over: enlarge the receiver until it contains all that can touch the rock",
+        LEFT_BELOW: "the rock has left the receiver at ({position.x}, {position.y}) m and is below the slope's surface "
+        "(height {height} m): let the receiver end where what is in it meets the slope",
+        DIVERGED: "the position is no longer a finite number; the force on the rock was ({force.x}, {force.y}) N: "
+        "reduce the exchange step or the step of the component that computes it",
+        NEVER_RECEIVED: "trial {trial} of seed {seed} never enters the receiver, and lead_time counts from there: choose "
+        "another trial or receiver, or leave lead_time out",
+        RESTLESS: "a million events in one step, at ({position.x}, {position.y}) m: give cell {cell} some roughness, or "
+        "hardening below 1",
+    }
+)
 """Message of each status; a name in braces stands for the value of that variable."""

@@ -123,19 +123,44 @@ def native_files(
     compilers = {name: compiler(name) for name in platforms}
     guid = stamp(component, sizes, fmi)
     files = _described(component, sizes, guid, fmi)
-    objects = _objects(component, sizes, platforms)
-    header = model_header(component, sizes, guid, CPU)
-    for name in platforms:
+    for name, sources in library_sources(component, sizes, platforms, fmi).items():
         path = _library(component, name, fmi)
-        sources = {
-            "model.h": header,
-            "kernels.o": objects[name],
-            **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])},
-        }
         files[path] = _linked(
             component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources
         )
     return files
+
+
+def library_sources(
+    component: Component, sizes: Sizes, platforms: Sequence[str], fmi: Fmi = Fmi.TWO
+) -> dict[str, Files]:
+    """Return the files that a compiler makes a library of: the shim with all that it includes, and the kernels.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        Sizes to build it with.
+    platforms : sequence of str
+        Keys of :data:`PLATFORMS`.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to Files
+        By platform: ``model.h``, ``slave.h``, the shim and ``kernels.o``.
+
+    Raises
+    ------
+    BuildError
+        A kernel needs Python.
+    """
+    header = model_header(component, sizes, stamp(component, sizes, fmi), CPU)
+    shared = {"model.h": header, **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
+    objects = _objects(component, sizes, platforms)
+    return {name: {**shared, "kernels.o": objects[name]} for name in platforms}
 
 
 def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:

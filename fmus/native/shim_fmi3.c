@@ -114,7 +114,7 @@ static int is_first(Reference r) { return r < NW && VARIABLES[VARIABLE_OF[r]].fi
    there is, is for the functions below. */
 static int get_slices(const Slave *m, const Reference r[], size_t n, double v[], size_t values) {
   size_t at = 0;
-  if (m->s.phase == INITIALISING) return 0;
+  if (m->s.phase == INITIALISING || m->s.phase == FAILED) return 0;
   for (size_t i = 0; i < n; at += length_of(r[i++])) if (!is_first(r[i]) || !(TRAITS[r[i]] & IS_REAL)) return 0;
   if (at != values) return 0;
   for (size_t i = at = 0; i < n; at += length_of(r[i++])) memcpy(v + at, m->s.w + r[i], length_of(r[i]) * sizeof *v);

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import InputRefused, Problem
 from ..fmu.description import Port
-from ..fmu.slave import ERROR, STATUS_NAMES, WARNING, Slave, Source, without_name
+from ..fmu.slave import DISCARD, STATUS_NAMES, WARNING, Slave, Source, without_name
 from ..system.plan import Plan
 from .buses import Buses
 
@@ -160,8 +160,11 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: 
 
 
 def _refusals(slave: Slave, status: int) -> list[Problem]:
-    """Return what a slave refused, by its status or by a message with the status Error."""
-    errors = [text for severity, text in slave.messages if severity >= ERROR]
+    """Return what a slave refused, by its status or by a message with the status Error.
+
+    A message with the status Discard tells that the first step will be refused.
+    """
+    errors = [text for severity, text in slave.messages if severity >= DISCARD]
     if status <= WARNING and not errors:
         return []
     silence = [f"returned {STATUS_NAMES[status]} without a message"]
