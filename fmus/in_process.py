@@ -92,9 +92,9 @@ class InProcessSlave:
         """Refused: no component has a string."""
         return self._call(self._slave.set_string, [reference], [text])[1]
 
-    def setup_experiment(self, start: float, stop: float) -> int:
-        """Tell start and end of the run (s)."""
-        return self._call(self._slave.setup_experiment, start, stop, None)[1]
+    def setup_experiment(self, start: float, stop: float, tolerance: float | None = None) -> int:
+        """Tell start and end of the run (s). No component has a use for a tolerance."""
+        return self._call(self._slave.setup_experiment, start, stop, tolerance)[1]
 
     def enter_initialisation(self) -> int:
         """Enter the initialization mode; return the status."""

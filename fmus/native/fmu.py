@@ -15,6 +15,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -22,8 +23,8 @@ from pathlib import Path
 
 from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import Component
+from rockshed.components.common.kept import keep, kept
 from rockshed.components.common.ports import Sizes
-from rockshed.files import write_file
 from rockshed.versions import version_of
 
 from ..description.documentation import documentation
@@ -227,31 +228,42 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
     stamp = digest(
         made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()}
     )[:24]
-    folder = cache_directory()
-    kept = (
-        {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms}
-        if folder
-        else {}
-    )
-    if kept and all(path.is_file() for path in kept.values()):
-        return {name: path.read_bytes() for name, path in kept.items()}
+    files = _object_files(f"{component.name}-%s-{stamp}.o", platforms)
+    found = {name: kept(path) for name, path in files.items()}
+    sound = {name: content for name, content in found.items() if content is not None}
+    if sound.keys() == set(platforms):
+        return sound
     with tempfile.TemporaryDirectory(prefix="rockshed_") as work:
-        if problems := _compile(component, sizes, platforms, Path(work)):
-            if any(
-                UNKNOWN_PLACE in problem for problem in problems
-            ):  # once more from the sources, for the lines
-                settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
-                problems = _compile(component, sizes, platforms, Path(work), **settings)
-            raise BuildError(
-                f"{component.name}: its kernels need more than the C library and cannot run without Python: "
-                + "; ".join(problems)
-                + ". Kernels keep to explicit loops, scalar arithmetic, slices and other "
-                f"kernels. No native FMU was built. {_PYTHON_REMAINS}"
-            )
+        _compile_or_refuse(component, sizes, platforms, Path(work))
         objects = {name: (Path(work) / f"{name}.o").read_bytes() for name in platforms}
-        for name, path in kept.items():
-            write_file(path, objects[name])
+    for name, path in files.items():
+        with suppress(OSError):  # then it is compiled again next time
+            keep(path, objects[name])
     return objects
+
+
+def _object_files(name: str, platforms: Sequence[str]) -> dict[str, Path]:
+    """Return the files in which object code is kept, by platform; none where nothing is kept."""
+    folder = cache_directory()
+    return {platform: folder / (name % platform) for platform in platforms} if folder else {}
+
+
+def _compile_or_refuse(
+    component: Component, sizes: Sizes, platforms: Sequence[str], work: Path
+) -> None:
+    """Write ``PLATFORM.o`` into a folder, or raise a BuildError with everything that is wrong."""
+    problems = _compile(component, sizes, platforms, work)
+    if not problems:
+        return
+    if any(UNKNOWN_PLACE in problem for problem in problems):
+        # once more from the sources, for the lines
+        settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
+        problems = _compile(component, sizes, platforms, work, **settings)
+    raise BuildError(
+        f"{component.name}: its kernels need more than the C library and cannot run without "
+        "Python: " + "; ".join(problems) + ". Kernels keep to explicit loops, scalar arithmetic, "
+        f"slices and other kernels. No native FMU was built. {_PYTHON_REMAINS}"
+    )
 
 
 def _compile(
@@ -268,14 +280,13 @@ def _compile(
         "cpu": CPU.name,
     }
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
-    folders = [os.path.abspath(folder) for folder in sys.path]
     settings = {
         "NUMBA_CPU_NAME": CPU.name,
         "NUMBA_CPU_FEATURES": "",
-        "PYTHONPATH": os.pathsep.join(folders),
+        "PYTHONPATH": os.pathsep.join(_import_folders()),
     }
     done = subprocess.run(
-        [sys.executable, "-m", f"{__package__}.kernels"],
+        [sys.executable, "-P", "-m", f"{__package__}.kernels"],
         input=json.dumps(order),
         cwd=work,
         text=True,
@@ -290,6 +301,19 @@ def _compile(
     problems = json.loads(done.stdout)
     assert isinstance(problems, list)
     return problems
+
+
+def _import_folders() -> list[str]:
+    """Return the folders from which another process imports what this one does.
+
+    The working folder is somebody's: what lies there is imported only if this library does.
+    """
+    here, ours = Path.cwd(), Path(_HERE.parents[1])
+    return [
+        folder
+        for folder in map(os.path.abspath, filter(None, sys.path))
+        if Path(folder) != here or ours.is_relative_to(here)
+    ]
 
 
 # --- the C compiler

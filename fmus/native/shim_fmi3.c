@@ -136,13 +136,19 @@ static void check_variable(Slave *m, Reference r, int type) {
   because(m, "value reference %u is %s: an array is read and set as a whole, by the reference %d", r, name_of(r).text, v->first);
 }
 
+static void add_counted(Slave *m, Text before, Reference r) { /* a name; of an array, with the number of its elements */
+  int length = r < NW ? VARIABLES[VARIABLE_OF[r]].length : 0;
+  add(m, "%s%s", before, r < NW ? VARIABLES[VARIABLE_OF[r]].name : READ_ONLY[r - NW]);
+  if (length) add(m, "[%d]", length);
+}
+
 static void check_number(Slave *m, const Reference r[], size_t n, size_t values) {
   size_t expected = 0;
   for (size_t i = 0; i < n; i++) expected += length_of(r[i]);
   if (expected == values) return;
   because(m, "%zu values are passed for the %zu of ", values, expected);
   for (size_t i = 0; i < n; i++)
-    add(m, "%s%s[%zu]", i ? ", " : "", r[i] < NW ? VARIABLES[VARIABLE_OF[r[i]]].name : READ_ONLY[r[i] - NW], length_of(r[i]));
+    add_counted(m, i ? ", " : "", r[i]);
   add(m, ": pass as many as these have elements");
 }
 

@@ -105,7 +105,8 @@ def main() -> None:
             stream.reconfigure(errors="replace")
     work = partial(app, prog_name="rockshed")
     if sys.argv[1:2] == ["run"]:  # the code of FMUs may crash
-        supervised(work, [sys.executable, "-m", f"{__package__}.app", *sys.argv[1:]], _report_crash)
+        again = [sys.executable, "-P", "-m", f"{__package__}.app", *sys.argv[1:]]
+        supervised(work, again, _report_crash)
     else:
         work()
 

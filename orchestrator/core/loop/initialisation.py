@@ -98,7 +98,7 @@ def initialise(
     """
     plan = buses.plan
     span = (plan.timing.seconds(0), plan.timing.seconds(plan.timing.exchanges))
-    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], *span), entering)
+    _phase(slaves, lambda slave: _begin(plan, slave, *span), entering)
     before = _settle(buses, slaves, entering)
     _phase(slaves, lambda slave: slave.exit_initialisation(), entering)
     unsettled = _settle(buses, slaves, entering) or before
@@ -136,9 +136,9 @@ def _refuse_lost(buses: Buses) -> None:
         raise InputRefused(problems)
 
 
-def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, stop: float) -> int:
+def _begin(plan: Plan, slave: Slave, start: float, stop: float) -> int:
     worst = 0
-    for port, value in starts:
+    for port, value in plan.starts[slave.name]:
         if isinstance(value, str):
             worst = max(worst, slave.set_text(port.reference, value))
         else:
@@ -146,7 +146,8 @@ def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, s
                 worst,
                 slave.set(np.array([port.reference], np.uint32), np.array([value]), port.kind),
             )
-    return max(worst, slave.setup_experiment(start, stop), slave.enter_initialisation())
+    told = slave.setup_experiment(start, stop, plan.tolerance(slave.name))
+    return max(worst, told, slave.enter_initialisation())
 
 
 def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: Entering) -> None:
