@@ -73,7 +73,7 @@ def _features() -> str:
 
 def _code(target: llvm.TargetMachine) -> bytes:
     """Return object code from the cache, or compile and keep it."""
-    file = _file()
+    file = kept_file()
     code = kept(file) if file else None
     if code is not None:
         return code
@@ -88,12 +88,18 @@ def _code(target: llvm.TargetMachine) -> bytes:
 
 def is_kept() -> bool:
     """Tell whether the loop has been compiled for this computer already."""
-    file = _file()
+    file = kept_file()
     return file is not None and is_sound(file)
 
 
-def _file() -> Path | None:
-    """Return the file of the machine code; None where nothing is kept."""
+def kept_file() -> Path | None:
+    """Return the file of the machine code.
+
+    Returns
+    -------
+    Path or None
+        None where nothing is kept.
+    """
     folder = cache_directory()
     return folder and folder / f"loop-{_stamp()}.o"
 
