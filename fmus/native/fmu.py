@@ -320,32 +320,39 @@ def _import_folders() -> list[str]:
 
 
 def compiler(platform: str) -> list[str]:
-    """Command of a compiler for a platform.
+    """Return the command of a compiler for a platform.
 
-    Raises:
-        BuildError: there is none.
+    For Linux, zig comes before the compilers of this machine: its libraries run with a C library as
+    old as :data:`PLATFORMS` says, theirs with one as old as this machine's.
+
+    Parameters
+    ----------
+    platform : str
+        Key of :data:`PLATFORMS`.
+
+    Returns
+    -------
+    list of str
+        Words of the command.
+
+    Raises
+    ------
+    BuildError
+        There is none.
     """
-    zig = [
-        sys.executable,
-        "-m",
-        "ziglang",
-        "cc",
-        "-target",
-        PLATFORMS[platform].zig,
-        "-mcpu=x86_64",
-    ]
-    if platform == "linux64" and machine.system() == "Linux":
-        found = os.environ.get("CC") or next(
-            filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None
-        )
-        if found:
-            return [*shlex.split(found), "-march=x86-64"]
+    is_own = platform == "linux64" and machine.system() == "Linux"
+    if is_own and (chosen := os.environ.get("CC")):
+        return [*shlex.split(chosen), "-march=x86-64"]
     if find_spec("ziglang"):
-        return zig
+        target = ("-target", PLATFORMS[platform].zig, "-mcpu=x86_64")
+        return [sys.executable, "-m", "ziglang", "cc", *target]
+    found = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+    if is_own and found:
+        return [found, "-march=x86-64"]
     others = "environment variable CC, cc, gcc, clang, " if platform == "linux64" else ""
     raise BuildError(
-        f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip install ziglang`. "
-        f"{_PYTHON_REMAINS}"
+        f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip "
+        f"install ziglang`. {_PYTHON_REMAINS}"
     )
 
 

@@ -86,7 +86,7 @@ static int event_is_known(const Slave *m) { /* what the component tells of its n
 
 static double stop_at(const Slave *m, double time, double end) { /* the next event if the importer may be told of it, or the end */
   if (!m->host.takes_early_return || !event_is_known(m)) return end;
-  double event = m->s.w[EVENT_TIME] + (m->s.time == m->s.start ? m->s.start : 0.0); /* kernels do not know the start */
+  double event = m->s.w[EVENT_TIME < 0 ? 0 : EVENT_TIME] + (m->s.time == m->s.start ? m->s.start : 0.0); /* kernels do not know the start */
   double rounding = 4.0 * (nextafter(fabs(end), INFINITY) - fabs(end));
   return event > time && event < end - rounding ? event : end;
 }

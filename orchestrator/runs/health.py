@@ -1,4 +1,4 @@
-"""The health of this installation: kept code, compilers, leftovers of killed runs, and what is slow."""
+"""The health of an installation: kept code, compilers, leftovers of runs, and what is slow."""
 
 import os
 import re
@@ -70,7 +70,7 @@ def _current_stamps() -> set[str]:
 
 
 def _kept(entry: Path, current: set[str]) -> Iterator[Kept]:
-    """Return the kept files of an entry of the folder: a file, or those of the kernels of a stamp."""
+    """Return the kept files of an entry: the file itself, or those of the kernels of a stamp."""
     if entry.is_symlink():
         return
     if entry.is_dir() and _STAMP.fullmatch(entry.name):

@@ -51,11 +51,18 @@ static Slave *instance(size_t letters) {
   return m;
 }
 
-static void hang(int signal) { (void)signal; (void)!write(2, "hangs\n", 6); _exit(4); }
+static char hostile[200]; /* where and what the present state's hostile field is */
+
+static void hang(int signal) {
+  (void)signal;
+  (void)!write(2, "hangs: ", 7);
+  (void)!write(2, hostile, strlen(hostile));
+  _exit(4);
+}
 
 /* --- calls */
 
-enum { MOST = 40 };
+enum { MOST = 40, PATIENCE = 300 }; /* values in a call; seconds for a call, on a machine with much else to do */
 
 static void one_call(Slave *m, void **state) {
   Reference r[MOST];
@@ -110,7 +117,7 @@ static void call(uint64_t count) {
       m = instance(below(4) ? 5 : below(70000));
       if (below(2)) { fmi2SetupExperiment(m, 0, 0.0, 0.0, 0, 0.0); fmi2EnterInitializationMode(m); if (below(2)) fmi2ExitInitializationMode(m); }
     }
-    alarm(60);
+    alarm(PATIENCE);
     one_call(m, &state);
   }
   if (state) fmi2FreeFMUstate(m, &state);
@@ -119,7 +126,7 @@ static void call(uint64_t count) {
 
 /* --- states */
 
-static char *state_after(Slave *m, int steps, double step, double drive) {
+static char *state_after(Slave *m, int steps, double step) {
   void *state = NULL;
   char *bytes = malloc(SERIALIZED);
   fmi2Reset(m);
@@ -128,7 +135,6 @@ static char *state_after(Slave *m, int steps, double step, double drive) {
     fmi2EnterInitializationMode(m);
   }
   if (steps > 0 && fmi2ExitInitializationMode(m) > WARNING) exit(6);
-  (void)drive;
   for (int i = 0; i < steps; i++) if (fmi2DoStep(m, i * step, step, 1) != OK) exit(6);
   if (fmi2GetFMUstate(m, &state) || fmi2SerializeFMUstate(m, state, bytes, SERIALIZED)) exit(7);
   fmi2FreeFMUstate(m, &state);
@@ -151,11 +157,13 @@ static void make_hostile(char *bytes) {
     memcpy(&value, at, 8);
     value = any_number(value);
     memcpy(at, &value, 8);
+    snprintf(hostile, sizeof hostile, "number %zu = %g\n", (size_t)(at - begin) / 8, value);
   } else {
     int64_t value;
     memcpy(&value, at, 8);
     value = any_integer(value);
     memcpy(at, &value, 8);
+    snprintf(hostile, sizeof hostile, "integer %zu = %lld\n", (size_t)(at - begin) / 8, (long long)value);
   }
 }
 
@@ -188,12 +196,12 @@ static void restore(uint64_t count, double step) {
   char *good[KINDS], *bytes = malloc(SERIALIZED);
   uint64_t accepted = 0;
   for (size_t i = 0; i < KINDS; i++) {
-    good[i] = state_after(m, after[i], step, 0.0);
+    good[i] = state_after(m, after[i], step);
     memcpy(bytes, good[i], SERIALIZED);
     if (!is_accepted(m, bytes, step)) { fprintf(stderr, "a good state is refused\n"); exit(5); }
   }
   for (uint64_t i = 0; i < count; i++) {
-    alarm(60);
+    alarm(PATIENCE);
     memcpy(bytes, good[below(below(4) ? 3 : KINDS)], SERIALIZED);
     make_hostile(bytes);
     accepted += (uint64_t)is_accepted(m, bytes, step);
