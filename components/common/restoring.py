@@ -14,12 +14,13 @@ NUMBER_NOT_FINITE = "a number in it is not finite"
 INDEX_WRONG = "an index in %s is out of its range"
 """Reasons, which a native FMU gives too; the last as a format of printf: of an array's name."""
 
-Buffer = NDArray[np.float64]
-Integers = NDArray[np.int64]
-
 
 def state_problem(
-    layout: Layout, sizes: Sizes, values: Buffer, integers: Integers, computed: bool
+    layout: Layout,
+    sizes: Sizes,
+    values: NDArray[np.float64],
+    integers: NDArray[np.int64],
+    computed: bool,
 ) -> str:
     """Return why numbers cannot be a state.
 
@@ -53,7 +54,7 @@ def state_problem(
     return ""
 
 
-def _in_range(indices: IndexRange, buffer: Buffer | Integers) -> bool:
+def _in_range(indices: IndexRange, buffer: NDArray[np.float64] | NDArray[np.int64]) -> bool:
     """Tell whether all indices are whole numbers in their range."""
     numbers, declared = buffer[indices.places], indices.declared
     lowest, width = declared.bits
