@@ -226,6 +226,18 @@ def test_zig_builds_what_runs_here(monkeypatch, probe, tmp_path):
         assert not host.messages
 
 
+@needs_zig
+@linux
+def test_a_library_for_linux_runs_with_the_c_library_of_2012(monkeypatch, probe, tmp_path):
+    monkeypatch.delenv("CC", raising=False)
+    file = build_component(probe, destination=tmp_path, runtime=Runtime.NATIVE)
+    with zipfile.ZipFile(file) as archive:
+        library = archive.read("binaries/linux64/Probe.so")
+    needed = {tuple(map(int, v.split(b"."))) for v in re.findall(rb"GLIBC_([0-9.]+)\0", library)}
+    assert needed
+    assert max(needed) <= (2, 17)
+
+
 # ------------------------------------------------------------------ the shim
 
 
