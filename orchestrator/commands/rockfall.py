@@ -15,7 +15,7 @@ from ..runs.building import is_cold
 from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site
-from .screen import COLD_START, RUN_FAILED, opened
+from .screen import COLD_START, RUN_FAILED, Screen, opened
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
@@ -85,10 +85,7 @@ def command(
     with opened(quiet, as_json) as screen:
         count = _count(trials, preset)
         folder = output_dir or folder_of_site(site, "rockfall", screen)
-        if is_cold(["SlopeRockfall"]):
-            screen.note(COLD_START)
-        if replay and animation is None and not can_write_mp4():
-            screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
+        _note(screen, bool(replay) and animation is None)
         try:
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = rockfall(
@@ -108,6 +105,14 @@ def command(
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
         show(screen, result)
+
+
+def _note(screen: Screen, is_animated: bool) -> None:
+    """Say what takes time, and in which form animations are written if none is asked for."""
+    if is_cold(["SlopeRockfall"]):
+        screen.note(COLD_START)
+    if is_animated and not can_write_mp4():
+        screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
 
 
 def _certificates(
