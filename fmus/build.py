@@ -1,7 +1,9 @@
-"""Build FMUs. Those with Python: frozen sources, pythonfmu's binaries, model description and documentation in one file.
+"""Build FMUs.
 
-The sources go in under names that contain a hash of their content, so that FMUs which share a Python interpreter cannot confuse
-their modules (see :mod:`rockshed.fmus.python.isolation`). The same content gives the same file, byte for byte. Native ones: :mod:`rockshed.fmus.native.fmu`.
+Those with Python hold frozen sources, pythonfmu's binaries, model description and documentation.
+The sources go in under names that contain a hash of their content, so that FMUs which share a
+Python interpreter cannot confuse their modules (see :mod:`rockshed.fmus.python.isolation`). The
+same content gives the same file, byte for byte. Native ones: :mod:`rockshed.fmus.native.fmu`.
 """
 
 import uuid
@@ -51,7 +53,10 @@ __all__ = [
     "store",
 ]
 
-ONLY_NATIVE = "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes them; for FMI 3.0 there are native ones"
+ONLY_NATIVE = (
+    "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes them; for FMI 3.0 there are "
+    "native ones"
+)
 
 _HERE = Path(__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
@@ -73,15 +78,35 @@ def build(
     runtime: Runtime = Runtime.PYTHON,
     fmi: Fmi = Fmi.TWO,
 ) -> Path:
-    """Build the FMU of a component of the catalogue; return its file.
+    """Build the FMU of a component of the catalogue.
 
-    sizes: numbers that differ from the defaults, ``{"elements": 48}``; they then are part of the file's name.
-    destination: folder, by default that of :func:`fmu_folder`.
+    Parameters
+    ----------
+    name : str
+        Name of the component.
+    sizes : mapping of str to int, optional
+        Numbers that differ from the defaults, ``{"elements": 48}``; they then are part of the
+        file's name.
+    destination : Path, optional
+        Folder; by default that of :func:`fmu_folder`.
+    runtime : Runtime
+        With Python or native.
+    fmi : Fmi
+        Version of FMI.
 
-    Raises:
-        KeyError: no component has this name.
-        ComponentError: a size that the component has not, or that is out of range.
-        BuildError: the folder cannot be written, or a native FMU cannot be compiled.
+    Returns
+    -------
+    Path
+        Its file.
+
+    Raises
+    ------
+    KeyError
+        No component has this name.
+    ComponentError
+        A size that the component has not, or that is out of range.
+    BuildError
+        The folder cannot be written, or a native FMU cannot be compiled.
     """
     return build_component(catalogued(name), sizes, destination, runtime=runtime, fmi=fmi)
 
@@ -93,7 +118,10 @@ def build_if_needed(
     runtime: Runtime = Runtime.PYTHON,
     fmi: Fmi = Fmi.TWO,
 ) -> Path:
-    """Like :func:`build`, but leave a file alone that is what would be built."""
+    """Build as :func:`build` does, but leave a file alone that is what would be built.
+
+    Parameters, result and errors are those of :func:`build`.
+    """
     return build_component(
         catalogued(name), sizes, destination, keep=True, runtime=runtime, fmi=fmi
     )
@@ -107,7 +135,35 @@ def build_component(
     runtime: Runtime = Runtime.PYTHON,
     fmi: Fmi = Fmi.TWO,
 ) -> Path:
-    """Build the FMU of any component; ``keep`` leaves a file alone that is what would be built."""
+    """Build the FMU of any component.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int, optional
+        Numbers that differ from the defaults.
+    destination : Path, optional
+        Folder; by default that of :func:`fmu_folder`.
+    keep : bool
+        Whether to leave a file alone that is what would be built.
+    runtime : Runtime
+        With Python or native.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    Path
+        Its file.
+
+    Raises
+    ------
+    ComponentError
+        A size that the component has not, or that is out of range.
+    BuildError
+        The folder cannot be written, or a native FMU cannot be compiled.
+    """
     chosen = component.with_sizes(sizes)
     if keep and runtime is Runtime.NATIVE and native_is_fresh(component, chosen, destination, fmi):
         return fmu_file(component, chosen, runtime, destination, fmi)
@@ -129,10 +185,30 @@ def fmu_content(
     platforms: Sequence[str] = (),
     fmi: Fmi = Fmi.TWO,
 ) -> bytes:
-    """The FMU as bytes. platforms: of a native one, by default this machine's.
+    """Return the FMU as bytes.
 
-    Raises:
-        BuildError: a native FMU cannot be compiled, or FMI 3 is asked for with Python.
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    runtime : Runtime
+        With Python or native.
+    platforms : sequence of str
+        Of a native one; by default this machine's.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    bytes
+        Content of the file.
+
+    Raises
+    ------
+    BuildError
+        A native FMU cannot be compiled, or FMI 3 is asked for with Python.
     """
     if runtime is Runtime.NATIVE:
         return archive(native_files(component, sizes, platforms, fmi))
@@ -150,10 +226,34 @@ def store(
     keep: bool = False,
     fmi: Fmi = Fmi.TWO,
 ) -> Path:
-    """Write an FMU to its place, as a whole or not at all; ``keep`` leaves a file alone that has this content.
+    """Write an FMU to its place, as a whole or not at all.
 
-    Raises:
-        BuildError: the folder cannot be written.
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    content : bytes
+        Content of the file.
+    destination : Path, optional
+        Folder; by default that of :func:`fmu_folder`.
+    runtime : Runtime
+        With Python or native.
+    keep : bool
+        Whether to leave a file alone that has this content.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    Path
+        Its file.
+
+    Raises
+    ------
+    BuildError
+        The folder cannot be written.
     """
     file = fmu_file(component, sizes, runtime, destination, fmi)
     try:
@@ -174,7 +274,27 @@ def store(
 
 
 def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
-    """Everything that goes into an FMU with Python. Its GUID and the name of its script are a hash over all the rest."""
+    """Return everything that goes into an FMU with Python.
+
+    Its GUID and the name of its script are a hash over all the rest.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+
+    Returns
+    -------
+    dict of str to bytes
+        Files by their path in the FMU.
+
+    Raises
+    ------
+    BuildError
+        A source imports what an FMU does not hold.
+    """
     library = _library_files(component)
     library_name = f"rockshed_{digest(library)[:16]}_lib"
     files = {f"resources/{library_name}/{path}": content for path, content in library.items()}
@@ -203,7 +323,10 @@ def _stamped_files(
 
 
 def _library_files(component: Component) -> Files:
-    """The package that runs inside the FMU: slave, component with what the components share, and parts of pythonfmu."""
+    """Return the package that runs inside the FMU.
+
+    It has the slave, the component with what the components share, and parts of pythonfmu.
+    """
     paths = {f"pythonfmu/{name}": _PYTHONFMU / name for name in _PYTHONFMU_PARTS} | {
         name: _HERE / "python" / name for name in _SLAVE_PARTS
     }
@@ -221,9 +344,9 @@ def _library_files(component: Component) -> Files:
 def _import_problems(sources: Files) -> list[str]:
     """Return in words why a component's sources cannot run inside an FMU."""
     return [
-        f"{path.removeprefix('components/')}, line {found.line}, imports {found.module}, which an FMU "
-        "with Python does not hold: a component imports rockshed.components.common and, relatively, "
-        "the modules of its own folder"
+        f"{path.removeprefix('components/')}, line {found.line}, imports {found.module}, which "
+        "an FMU with Python does not hold: a component imports rockshed.components.common and, "
+        "relatively, the modules of its own folder"
         for path, content in sources.items()
         if path.endswith(".py") and not path.startswith("components/common/")
         for found in foreign_imports(content, path)
@@ -236,7 +359,7 @@ def _binaries(component: Component) -> Iterator[tuple[str, bytes]]:
 
 
 def _pythonfmu_license() -> bytes:
-    """Its text has to accompany every copy."""
+    """Return the text of pythonfmu's license, which has to accompany every copy."""
     texts = [
         file.read_binary()
         for file in distribution("pythonfmu").files or ()

@@ -1,7 +1,7 @@
-"""Components without FMI: the slave of an FMU, called directly in this process, for tests and debugging.
+"""Components without FMI: the slave of an FMU, called directly in this process.
 
-Behaves like the FMU file of the same component behind the orchestrator's slave interface (same description, same states, same
-messages), and breakpoints and coverage reach its code.
+It behaves like the FMU file of the same component behind the orchestrator's slave interface (same
+description, same states, same messages); breakpoints and coverage reach its code.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,8 +22,17 @@ OK, DISCARD, ERROR = int(Fmi2Status.ok), int(Fmi2Status.discard), int(Fmi2Status
 class InProcess:
     """A component in this process, where an FMU file is expected.
 
-    Raises:
-        ComponentError: a size that the component has not, or that is out of range.
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int, optional
+        Numbers that differ from the defaults.
+
+    Raises
+    ------
+    ComponentError
+        A size that the component has not, or that is out of range.
     """
 
     def __init__(self, component: Component, sizes: Mapping[str, int] | None = None) -> None:
@@ -35,23 +44,53 @@ class InProcess:
         }
 
     def model_description(self) -> bytes:
-        """The ``modelDescription.xml`` of the component's FMU."""
+        """Return the ``modelDescription.xml`` of the component's FMU."""
         return fmu_files(self.component, self.sizes)["modelDescription.xml"]
 
     def instantiate(self, name: str) -> "InProcessSlave":
-        """Return a new instance of the component."""
+        """Return a new instance of the component.
+
+        Parameters
+        ----------
+        name : str
+            Name of the instance.
+
+        Returns
+        -------
+        InProcessSlave
+        """
         return InProcessSlave(slave_class(self.component, self.sizes), name)
 
 
 def slave_class(component: Component, sizes: Mapping[str, int]) -> type[ComponentSlave]:
-    """The class that the FMU of this component holds, over the component of this process."""
+    """Return the class that the FMU of a component holds, over the component of this process.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+
+    Returns
+    -------
+    type of ComponentSlave
+    """
     return type(component.name, (ComponentSlave,), {"component": component, "sizes": dict(sizes)})
 
 
 class InProcessSlave:
-    """An instance of a component with the calls of FMI 2.0. Unlike pythonfmu's binary, every call returns its true status.
+    """An instance of a component with the calls of FMI 2.0.
 
-    messages: (status, text) of everything logged, oldest first.
+    Unlike with pythonfmu's binary, every call returns its true status. ``messages`` holds status
+    and text of everything logged, oldest first.
+
+    Parameters
+    ----------
+    kind : type of ComponentSlave
+        Class of the slave.
+    name : str
+        Name of the instance.
     """
 
     addresses: Any = None
@@ -65,7 +104,17 @@ class InProcessSlave:
     def set(
         self, references: NDArray[np.uint32], values: NDArray[np.float64], kind: str = "Real"
     ) -> int:
-        """Set variables of one kind: Real, Integer (also enumerations) or Boolean."""
+        """Set variables of one kind, and return the status.
+
+        Parameters
+        ----------
+        references : ndarray of uint32, shape (n,)
+            Value references.
+        values : ndarray of float64, shape (n,)
+            Values, each in the unit of its variable.
+        kind : str
+            Real, Integer (also enumerations) or Boolean.
+        """
         convert = {"Real": float, "Integer": int, "Boolean": bool}[kind]
         setter = {
             "Real": self._slave.set_real,
@@ -79,7 +128,17 @@ class InProcessSlave:
     def get(
         self, references: NDArray[np.uint32], out: NDArray[np.float64], kind: str = "Real"
     ) -> int:
-        """Read variables of one kind into ``out``."""
+        """Read variables of one kind, and return the status.
+
+        Parameters
+        ----------
+        references : ndarray of uint32, shape (n,)
+            Value references.
+        out : ndarray of float64, shape (n,)
+            Gets the values, each in the unit of its variable.
+        kind : str
+            Real, Integer (also enumerations) or Boolean.
+        """
         getter = {
             "Real": self._slave.get_real,
             "Integer": self._slave.get_integer,
@@ -89,11 +148,37 @@ class InProcessSlave:
         return status
 
     def set_text(self, reference: int, text: str) -> int:
-        """Refused: no component has a string."""
+        """Refuse a string, as no component has one, and return the status.
+
+        Parameters
+        ----------
+        reference : int
+            Value reference.
+        text : str
+            The string.
+
+        Returns
+        -------
+        int
+            Status of FMI 2.0.
+        """
         return self._call(self._slave.set_string, [reference], [text])[1]
 
     def setup_experiment(self, start: float, stop: float) -> int:
-        """Tell start and end of the run (s)."""
+        """Tell start and end of the run (s), and return the status.
+
+        Parameters
+        ----------
+        start : float
+            Start of the run (s).
+        stop : float
+            End of the run (s).
+
+        Returns
+        -------
+        int
+            Status of FMI 2.0.
+        """
         return self._call(self._slave.setup_experiment, start, stop, None)[1]
 
     def enter_initialisation(self) -> int:
@@ -105,25 +190,49 @@ class InProcessSlave:
         return self._call(self._slave.exit_initialization_mode)[1]
 
     def step(self, time: float, step: float) -> int:
-        """Advance from ``time`` by ``step`` (s)."""
+        """Advance from ``time`` by ``step`` (s), and return the status.
+
+        Parameters
+        ----------
+        time : float
+            Start of the step (s).
+        step : float
+            Length of the step (s).
+
+        Returns
+        -------
+        int
+            Status of FMI 2.0.
+        """
         done, _ = self._call(self._slave.do_step, time, step)
         return OK if done else DISCARD
 
+    def terminated_at(self) -> float | None:
+        """No component of this house ends a run."""
+        return None
+
     def state(self) -> bytes:
-        """The complete state, serialized; equal to that of the FMU."""
+        """Return the complete state, serialized; equal to that of the FMU."""
         return bytes(self._call(self._slave._get_fmu_state)[0])
 
     def restore(self, content: bytes) -> None:
         """Take over a state of :meth:`state`.
 
-        Raises:
-            RuntimeError: it is damaged, or of another component or size.
+        Parameters
+        ----------
+        content : bytes
+            The serialized state.
+
+        Raises
+        ------
+        RuntimeError
+            It is damaged, or of another component or size.
         """
         if self._call(self._slave._set_fmu_state, content)[1] == ERROR:
             raise RuntimeError(self.messages[-1][1])
 
     def reset(self) -> int:
-        """Back to where the slave was when it was made, with start values everywhere."""
+        """Go back to the start values of a new slave, and return the status."""
         self._slave = self._kind(instance_name=self.name)
         return OK
 
@@ -132,10 +241,10 @@ class InProcessSlave:
         return self._call(self._slave.terminate)[1]
 
     def free(self) -> None:
-        """Nothing is held that Python does not give back by itself."""
+        """Do nothing: Python gives back by itself what is held."""
 
     def _call(self, function: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
-        """Result of a call, and the worst status it has logged."""
+        """Return the result of a call, and the worst status it has logged."""
         result = function(*arguments)
         logged = [(int(entry.status), entry.msg) for entry in self._slave.log_queue]
         self._slave.log_queue.clear()

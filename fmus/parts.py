@@ -37,11 +37,29 @@ class BuildError(Exception):
 
 
 def component_sources(component: Component) -> Files:
-    """The component with what the components share: everything that its kernels and declarations follow from."""
+    """Return the sources of a component and those that all components share.
+
+    Kernels and declarations follow from them.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+
+    Returns
+    -------
+    dict of str to bytes
+        Content by path.
+
+    Raises
+    ------
+    BuildError
+        The component's folder has the name of the shared one.
+    """
     if component.folder.name == SHARED.name:
         raise BuildError(
-            f"{component.name}: its folder has the name {SHARED.name}, which is taken by the modules "
-            "that all components share: give it another one"
+            f"{component.name}: its folder has the name {SHARED.name}, which is taken by the "
+            "modules that all components share: give it another one"
         )
     paths = {
         f"components/{path.relative_to(COMPONENTS).as_posix()}": path
@@ -56,13 +74,37 @@ def component_sources(component: Component) -> Files:
 
 
 def picture(component: Component, name: str) -> Files:
-    """The component's icon under a name, if it has one."""
+    """Return the component's icon under a name, if it has one.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    name : str
+        Path that the icon gets.
+
+    Returns
+    -------
+    dict of str to bytes
+        Content by path; empty without an icon.
+    """
     icon = component.folder / "icon.png"
     return {name: icon.read_bytes()} if icon.is_file() else {}
 
 
 def digest(files: Files) -> str:
-    """Hash of files with their names."""
+    """Return a hash of files with their names, as 64 hexadecimal digits.
+
+    Parameters
+    ----------
+    files : dict of str to bytes
+        Content by path.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits.
+    """
     found = hashlib.sha256()
     for path, content in sorted(files.items()):
         found.update(f"{path}\0{len(content)}\0".encode() + content)
@@ -70,9 +112,19 @@ def digest(files: Files) -> str:
 
 
 def archive(files: Files) -> bytes:
-    """A zip archive that depends on nothing but the files: fixed order, dates and permissions.
+    """Return a zip archive that follows from the files alone: fixed order, dates and permissions.
 
     Nothing is compressed, because the result would depend on the version of zlib.
+
+    Parameters
+    ----------
+    files : dict of str to bytes
+        Content by path.
+
+    Returns
+    -------
+    bytes
+        Content of the archive.
     """
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as target:

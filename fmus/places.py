@@ -1,4 +1,7 @@
-"""Where built FMUs lie, and whether a native one is what would be built now. Nothing is imported for it that builds or compiles."""
+"""Where built FMUs lie, and whether a native one is what would be built now.
+
+Nothing is imported for it that builds or compiles.
+"""
 
 import os
 import re
@@ -50,12 +53,40 @@ def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
 
 
 def folder_name(runtime: Runtime, fmi: Fmi = Fmi.TWO) -> str:
-    """Return the folder's name: ``python``, ``native`` or ``native-fmi3``."""
+    """Return the folder's name: ``python``, ``native`` or ``native-fmi3``.
+
+    Parameters
+    ----------
+    runtime : Runtime
+        With Python or native.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    str
+    """
     return runtime if fmi is Fmi.TWO else f"{runtime}-fmi{fmi}"
 
 
 def file_name(component: Component, sizes: Mapping[str, int]) -> str:
-    """``Name.fmu`` with default sizes, otherwise all sizes are named: ``SandCushion-discs360-elements24.fmu``."""
+    """Return the name of an FMU's file.
+
+    It is ``Name.fmu`` with default sizes; otherwise all sizes are named:
+    ``SandCushion-discs360-elements24.fmu``.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+
+    Returns
+    -------
+    str
+        The name.
+    """
     suffix = (
         ""
         if dict(sizes) == component.with_sizes()
@@ -71,7 +102,26 @@ def fmu_file(
     destination: Path | None = None,
     fmi: Fmi = Fmi.TWO,
 ) -> Path:
-    """The file that the FMU of a component has, built or not; ``destination``: another folder than that of built FMUs."""
+    """Return the file that the FMU of a component has, built or not.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    runtime : Runtime
+        With Python or native.
+    destination : Path, optional
+        Folder; by default that of :func:`fmu_folder`.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
     return (fmu_folder(runtime, fmi) if destination is None else Path(destination)) / file_name(
         component, sizes
     )
@@ -83,7 +133,24 @@ def native_is_fresh(
     destination: Path | None = None,
     fmi: Fmi = Fmi.TWO,
 ) -> bool:
-    """Whether the native FMU of a component is there, is what would be built now, and has a binary for this machine."""
+    """Tell whether the native FMU of a component is there and is what would be built now.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    destination : Path, optional
+        Folder; by default that of :func:`fmu_folder`.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    bool
+        False too if it has no binary for this machine.
+    """
     try:
         with zipfile.ZipFile(fmu_file(component, sizes, Runtime.NATIVE, destination, fmi)) as found:
             return own_binary(component, fmi) in found.namelist() and _guid(

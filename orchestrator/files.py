@@ -2,11 +2,42 @@
 
 import json
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+
+@contextmanager
+def naming(file: Path) -> Iterator[None]:
+    """Name the file in an error of the system that names none: that of a full disk, for instance.
+
+    Parameters
+    ----------
+    file : Path
+        That is written.
+
+    Raises
+    ------
+    OSError
+        With a file name.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        number = error.errno or _number_in(str(error))
+        reason = os.strerror(number) if number else str(error)
+        raise OSError(number, reason, str(file)) from error
+
+
+def _number_in(text: str) -> int:
+    """Return the number of the error in a text, as libraries put it there; 0 if there is none."""
+    found = re.search(r"errno[ =]+(\d+)", text, re.IGNORECASE)
+    return int(found[1]) if found else 0
 
 
 @contextmanager
@@ -26,8 +57,9 @@ def whole_file(file: Path) -> Iterator[Path]:
     """
     temporary = file.with_name(f".{file.stem}.{secrets.token_hex(4)}{file.suffix}")
     try:
-        yield temporary
-        os.replace(temporary, file)
+        with naming(file):
+            yield temporary
+            os.replace(temporary, file)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise

@@ -1,7 +1,8 @@
 """A component: its declarations and kernels, and an instance of it that holds the buffers.
 
-The life of an instance is that of an FMI slave: set parameters and inputs, :meth:`Instance.initialise`, then
-:meth:`Instance.step` as often as wanted. Between two steps inputs may change; outputs change only in a step.
+The life of an instance is that of an FMI slave: set parameters and inputs,
+:meth:`Instance.initialise`, then :meth:`Instance.step` as often as wanted. Between two steps inputs
+may change; outputs change only in a step.
 """
 
 import hashlib
@@ -40,7 +41,15 @@ range and description; of a status; of a state."""
 
 
 class ComponentError(Exception):
-    """A component refuses what it was given, or cannot go on. ``problems`` lists every reason found."""
+    """A component refuses its values, or cannot go on.
+
+    Parameters
+    ----------
+    component : str
+        Its name.
+    problems : list of str
+        Every reason, in words.
+    """
 
     def __init__(self, component: str, problems: list[str]) -> None:
         self.component, self.problems = component, problems
@@ -49,7 +58,17 @@ class ComponentError(Exception):
 
 @dataclass(frozen=True)
 class Size:
-    """A number fixed when the component is built: its default, its allowed range and what it counts."""
+    """A number fixed when the component is built.
+
+    Parameters
+    ----------
+    default : int
+        Its value if none is chosen.
+    minimum, maximum : int
+        Its allowed range.
+    description : str
+        What it counts.
+    """
 
     default: int
     minimum: int
@@ -115,7 +134,8 @@ class Component:
         for bond in self.bonds:
             if len({v.causality for v in bond.members(self.layout.variables).values()}) < 2:
                 raise ValueError(
-                    f"{self.name}: bond {bond.name!r} needs motion and force, one of them an input, one an output"
+                    f"{self.name}: bond {bond.name!r} needs motion and force, one of them an "
+                    f"input, one an output"
                 )
 
     @cached_property
@@ -158,10 +178,22 @@ class Component:
         return [] if problems is None else list(problems(instance))
 
     def with_sizes(self, sizes: Mapping[str, int] | None = None) -> dict[str, int]:
-        """The sizes to build with: the defaults, overridden by ``sizes``.
+        """Return the sizes to build with: the defaults, overridden by ``sizes``.
 
-        Raises:
-            ComponentError: a size that the component has not, or that is out of its range.
+        Parameters
+        ----------
+        sizes : mapping of str to int, optional
+            Those that differ from the defaults.
+
+        Returns
+        -------
+        dict of str to int
+            All sizes.
+
+        Raises
+        ------
+        ComponentError
+            A size that the component has not, or that is out of its range.
         """
         given = dict(sizes or {})
         problems = [
@@ -171,8 +203,8 @@ class Component:
         ]
         chosen = {name: given.get(name, size.default) for name, size in self.sizes.items()}
         problems += [
-            f"{name} = {value}: allowed is {self.sizes[name].minimum} to {self.sizes[name].maximum} "
-            f"({self.sizes[name].description})"
+            f"{name} = {value}: allowed is {self.sizes[name].minimum} to "
+            f"{self.sizes[name].maximum} ({self.sizes[name].description})"
             for name, value in chosen.items()
             if not self.sizes[name].minimum <= value <= self.sizes[name].maximum
         ]
@@ -181,19 +213,44 @@ class Component:
         return chosen
 
     def instance(self, **sizes: int) -> "Instance":
-        """A new instance with start values everywhere, not yet initialised."""
+        """Return a new instance with start values everywhere, not yet initialised.
+
+        Parameters
+        ----------
+        **sizes : int
+            Those that differ from the defaults.
+
+        Returns
+        -------
+        Instance
+            The instance.
+
+        Raises
+        ------
+        ComponentError
+            A size that the component has not, or that is out of its range.
+        """
         return Instance(self, self.with_sizes(sizes))
 
     def documentation(self) -> str:
-        """The component's README: equations, frames, signs, sources (Markdown)."""
+        """Return the component's README: equations, frames, signs, sources (Markdown)."""
         return (self.folder / "README.md").read_text(encoding="utf-8")
 
 
 class Instance:
-    """The buffers of one component, reached by name. Value reference = index in ``w``."""
+    """The buffers of one component, reached by name. Value reference = index in ``w``.
+
+    Parameters
+    ----------
+    component : Component
+        Its declarations and kernels.
+    sizes : mapping of str to int
+        All its sizes, as :meth:`Component.with_sizes` returns them.
+    """
 
     def __init__(self, component: Component, sizes: Mapping[str, int]) -> None:
-        self.component, self.sizes = component, dict(sizes)
+        self.component = component
+        self.sizes = dict(sizes)
         entries, n_w, n_x, n_k = component.layout.table(sizes)
         self.w: Buffer = np.zeros(n_w)
         self.x: Buffer = _on_cache_lines(n_x)
@@ -216,7 +273,8 @@ class Instance:
 
     @cached_property
     def _slices(self) -> dict[str, slice]:
-        slices, start = {}, 0
+        slices = {}
+        start = 0
         for variable in self.component.layout.ordered:
             length = 1 if variable.size is None else self.sizes[variable.size]
             slices[variable.name] = slice(start, start + length)
@@ -224,7 +282,7 @@ class Instance:
         return slices
 
     def __getitem__(self, name: str) -> Any:
-        """Value of a scalar or array element (float), or a view of a whole array."""
+        """Return the value of a scalar or array element (float), or a view of a whole array."""
         name = self._present(name)
         if name in self.references:
             return float(self.w[self.references[name]])
@@ -260,13 +318,30 @@ class Instance:
         return float(variable.choices.index(word) + 1)
 
     def state(self, name: str) -> NDArray[Any]:
-        """View of a hidden array."""
+        """Return a view of a hidden array.
+
+        Parameters
+        ----------
+        name : str
+            Name of its declaration.
+
+        Returns
+        -------
+        ndarray of float64 or int64
+            The array, in one dimension.
+        """
         entry = getattr(self.component.layout.array, name.replace(".", "_"))
         integer = next(s.integer for s in self.component.layout.states if s.name == name)
         return (self.k if integer else self.x)[self.k[entry] : self.k[entry] + self.k[entry + 1]]
 
     def problems(self) -> list[str]:
-        """Everything that is wrong with the present parameters and inputs: not a number, out of range, or refused together."""
+        """Return everything that is wrong with the present parameters and inputs.
+
+        Returns
+        -------
+        list of str
+            Values that are not finite or out of range; if there are none, those refused together.
+        """
         found = []
         names = list(self.references)
         for index, (variable, _) in enumerate(self._elements()):
@@ -277,8 +352,10 @@ class Instance:
     def initialise(self) -> None:
         """Check the parameters, compute the state and the outputs at the start.
 
-        Raises:
-            ComponentError: parameters or inputs that are refused, all reasons at once.
+        Raises
+        ------
+        ComponentError
+            Parameters or inputs that are refused, all reasons at once.
         """
         if found := self.problems():
             raise ComponentError(self.component.name, found)
@@ -288,16 +365,25 @@ class Instance:
     def evaluate(self) -> None:
         """Compute the outputs at the start anew, after an input was set.
 
-        Raises:
-            ComponentError: the inputs do not fit the state.
+        Raises
+        ------
+        ComponentError
+            The inputs do not fit the state.
         """
         self._check(self.component.evaluate(self.w, self.x, self.k))
 
     def step(self, time: float, step: float) -> None:
-        """Advance by ``step`` (s) from ``time`` (s).
+        """Advance in time.
 
-        Raises:
-            ComponentError: the component cannot go on.
+        Parameters
+        ----------
+        time, step : float
+            Time at the start and length of the step (s).
+
+        Raises
+        ------
+        ComponentError
+            The component cannot go on.
         """
         self._check(self.component.step(time, step, self.w, self.x, self.k), time)
 
@@ -307,7 +393,18 @@ class Instance:
             raise ComponentError(self.component.name, [at + self.message(status)])
 
     def message(self, status: int) -> str:
-        """Return the message of a kernel's status, with the present values in it."""
+        """Return the message of a kernel's status, with the present values in it.
+
+        Parameters
+        ----------
+        status : int
+            Status other than OK.
+
+        Returns
+        -------
+        str
+            In words.
+        """
         template = self.component.faults.get(status, UNKNOWN_STATUS % status)
         return re.sub(r"\{([^}]+)\}", lambda match: f"{self[match.group(1)]:.6g}", template)
 
@@ -326,15 +423,22 @@ class Instance:
         return hashlib.sha256(content.encode()).digest()[:16]
 
     def to_bytes(self) -> bytes:
-        """The complete state, exact to the bit."""
+        """Return the complete state, exact to the bit."""
         header = HEADER.pack(MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         return header + self.w.tobytes() + self.x.tobytes() + self.k.tobytes()
 
     def from_bytes(self, content: bytes) -> None:
         """Take over a state that :meth:`to_bytes` wrote, in this process or another.
 
-        Raises:
-            ComponentError: not such a state, of another component or size, or cut short.
+        Parameters
+        ----------
+        content : bytes
+            The serialized state.
+
+        Raises
+        ------
+        ComponentError
+            Not such a state, of another component or size, or cut short.
         """
         expected = HEADER.pack(MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         if content[: HEADER.size] != expected or len(content) != len(expected) + 8 * (
@@ -350,14 +454,32 @@ class Instance:
 
 
 def _on_cache_lines(length: int) -> Buffer:
-    """Zeros that begin where a cache line begins: states whose rows are cache lines are read faster so."""
+    """Return zeros that begin where a cache line begins.
+
+    States whose rows are cache lines are read faster so.
+    """
     room = np.zeros(length + 8)
     begin = -room.ctypes.data // 8 % 8
     return room[begin : begin + length]
 
 
 def value_problems(variable: Variable, name: str, value: float) -> list[str]:
-    """Return what is wrong with a value: not finite, out of range, not whole; or nothing."""
+    """Return what is wrong with a value: not finite, out of range, not whole; or nothing.
+
+    Parameters
+    ----------
+    variable : Variable
+        Its declaration.
+    name : str
+        Name of the variable or of the element of an array.
+    value : float
+        The value, in the unit of the variable.
+
+    Returns
+    -------
+    list of str
+        The reason in words, if there is one.
+    """
     low = -np.inf if variable.minimum is None else variable.minimum
     high = np.inf if variable.maximum is None else variable.maximum
     if not np.isfinite(value):
@@ -373,7 +495,18 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
 
 
 def allowed_range(variable: Variable) -> str:
-    """The allowed range in words, with the unit; empty where there is no bound."""
+    """Return the allowed range in words, with the unit; empty where there is no bound.
+
+    Parameters
+    ----------
+    variable : Variable
+        Its declaration.
+
+    Returns
+    -------
+    str
+        In words.
+    """
     unit = _suffix(variable)
     if variable.minimum is None:
         return "" if variable.maximum is None else f"{variable.maximum:g}{unit} or less"

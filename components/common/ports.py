@@ -121,13 +121,34 @@ class Variable:
             raise ValueError(f"{self.name}: an enumeration has choices, and nothing else has")
 
     def start_at(self, number: int, sizes: Sizes) -> float:
-        """Start value of element ``number`` (from 0; a scalar has the element 0)."""
+        """Return the start value of an element.
+
+        Parameters
+        ----------
+        number : int
+            Number of the element, from 0; a scalar has the element 0.
+        sizes : mapping of str to int
+            All sizes.
+
+        Returns
+        -------
+        float
+            Start value, in the unit of the variable.
+        """
         return float(self.start(number, sizes) if callable(self.start) else self.start)
 
     def element_names(self, sizes: Sizes) -> list[str]:
-        """Names as the outside sees them: the name itself, or ``name[1]``, ``name[2]``, ...
+        """Return the names as the outside sees them.
 
-        for an array.
+        Parameters
+        ----------
+        sizes : mapping of str to int
+            All sizes.
+
+        Returns
+        -------
+        list of str
+            The name itself, or ``name[1]``, ``name[2]``, ... for an array.
         """
         if self.size is None:
             return [self.name]
@@ -135,7 +156,24 @@ class Variable:
 
 
 def param(name: str, description: str, start: Start, unit: str = "1", **rest: Any) -> Variable:
-    """Declare a real parameter: set before the initialisation, fixed afterwards."""
+    """Declare a real parameter: set before the initialisation, fixed afterwards.
+
+    Parameters
+    ----------
+    name, description : str
+        As in :class:`Variable`.
+    start : float or callable
+        Start value, in ``unit``.
+    unit : str
+        Key of :data:`rockshed.components.common.units.UNITS`.
+    **rest
+        Other attributes of :class:`Variable`.
+
+    Returns
+    -------
+    Variable
+        The parameter.
+    """
     return Variable(name, Causality.PARAMETER, description, unit, start, **rest)
 
 
@@ -145,6 +183,22 @@ def choice(
     """Declare a parameter that selects one of ``choices``.
 
     Kernels see its number, counted from 1.
+
+    Parameters
+    ----------
+    name, description : str
+        As in :class:`Variable`.
+    choices : sequence of str
+        The words.
+    start : str
+        The word at the start.
+    **rest
+        Other attributes of :class:`Variable`.
+
+    Returns
+    -------
+    Variable
+        The parameter.
     """
     number = float(choices.index(start) + 1)
     return Variable(
@@ -162,28 +216,89 @@ def choice(
 
 
 def switch(name: str, description: str, start: bool, **rest: Any) -> Variable:
-    """Declare a parameter that is on or off."""
+    """Declare a parameter that is on or off.
+
+    Parameters
+    ----------
+    name, description : str
+        As in :class:`Variable`.
+    start : bool
+        Whether it is on at the start.
+    **rest
+        Other attributes of :class:`Variable`.
+
+    Returns
+    -------
+    Variable
+        The parameter.
+    """
     return Variable(
         name, Causality.PARAMETER, description, "1", float(start), kind=Kind.BOOLEAN, **rest
     )
 
 
 def count(name: str, description: str, start: int, **rest: Any) -> Variable:
-    """Declare an integer parameter."""
+    """Declare a parameter that is a whole number.
+
+    Parameters
+    ----------
+    name, description : str
+        As in :class:`Variable`.
+    start : int
+        Start value.
+    **rest
+        Other attributes of :class:`Variable`.
+
+    Returns
+    -------
+    Variable
+        The parameter.
+    """
     return Variable(
         name, Causality.PARAMETER, description, "1", float(start), kind=Kind.INTEGER, **rest
     )
 
 
 def inp(name: str, description: str, unit: str = "1", start: Start = 0.0, **rest: Any) -> Variable:
-    """Declare a real input."""
+    """Declare an input that is a real number.
+
+    Parameters
+    ----------
+    name, description : str
+        As in :class:`Variable`.
+    unit : str
+        Key of :data:`rockshed.components.common.units.UNITS`.
+    start : float or callable
+        Start value, in ``unit``.
+    **rest
+        Other attributes of :class:`Variable`.
+
+    Returns
+    -------
+    Variable
+        The input.
+    """
     return Variable(name, Causality.INPUT, description, unit, start, **rest)
 
 
 def out(name: str, description: str, unit: str = "1", **rest: Any) -> Variable:
-    """Declare a real output.
+    """Declare an output that is a real number.
 
     It has no start value: the component computes it when it is initialised.
+
+    Parameters
+    ----------
+    name, description : str
+        As in :class:`Variable`.
+    unit : str
+        Key of :data:`rockshed.components.common.units.UNITS`.
+    **rest
+        Other attributes of :class:`Variable`.
+
+    Returns
+    -------
+    Variable
+        The output.
     """
     return Variable(name, Causality.OUTPUT, description, unit, **rest)
 

@@ -8,10 +8,11 @@ The law stands here in the two forms that its users need, with one set of words;
 them:
 
 * of a **node** that goes some way in a step (:class:`Soil`): the state is the stretch, the elastic
-  displacement R Q/R_u, negative where a toe has left the ground. The resistance is its mean over the
-  way, so that elastic soil keeps its energy.
+  displacement R Q/R_u, negative where a toe has left the ground. The resistance is its mean over
+  the way, so that elastic soil keeps its energy.
 * of a **toe** that moves piece by piece (:class:`Spring`): the state is the resistance itself and
-  the slack, the way until the toe touches the ground. Pieces end where the law changes and are exact.
+  the slack, the way until the toe touches the ground. Pieces end where the law changes and are
+  exact.
 """
 
 import math
@@ -39,7 +40,20 @@ _ENDLESS = 1e30
 
 @kernel
 def static(soil, stretch):
-    """Return the static resistance (N) at a stretch (m)."""
+    """Return the static resistance (N) at a stretch (m).
+
+    Parameters
+    ----------
+    soil : Soil
+        State and constants at the start of the step.
+    stretch : float
+        Elastic displacement (m).
+
+    Returns
+    -------
+    float
+        Resistance (N).
+    """
     low = -soil.ultimate if soil.tension else 0.0
     return min(max(soil.ultimate / soil.quake * stretch, low), soil.ultimate)
 
@@ -49,8 +63,21 @@ def mean_static(soil, way):
     """Return the mean static resistance (N) while the node moves evenly by a way (m).
 
     It is the work on the soil divided by the way.
+
+    Parameters
+    ----------
+    soil : Soil
+        State and constants at the start of the step.
+    way : float
+        Way of the node (m).
+
+    Returns
+    -------
+    float
+        Resistance (N).
     """
-    end, low = soil.stretch + way, -soil.quake if soil.tension else 0.0
+    end = soil.stretch + way
+    low = -soil.quake if soil.tension else 0.0
     begun, held = min(max(soil.stretch, low), soil.quake), min(max(end, low), soil.quake)
     elastic = 0.5 * soil.ultimate / soil.quake * (begun + held)
     if way == 0.0 or held - begun == way:
@@ -63,20 +90,60 @@ def drag(soil, resistance):
     """Return the damping (N s/m) at a static resistance (N).
 
     The amount of the resistance counts, so that damping never creates energy.
+
+    Parameters
+    ----------
+    soil : Soil
+        State and constants at the start of the step.
+    resistance : float
+        Static resistance (N).
+
+    Returns
+    -------
+    float
+        Damping (N s/m).
     """
     return soil.damping * abs(resistance)
 
 
 @kernel
 def stretched(soil, way):
-    """Return the stretch (m) after the node has moved by a way (m)."""
+    """Return the stretch (m) after the node has moved by a way (m).
+
+    Parameters
+    ----------
+    soil : Soil
+        State and constants at the start of the step.
+    way : float
+        Way of the node (m).
+
+    Returns
+    -------
+    float
+        Stretch (m).
+    """
     after = min(soil.stretch + way, soil.quake)
     return max(after, -soil.quake) if soil.tension else after
 
 
 @kernel
 def stored(soil, stretch, after):
-    """Return the elastic energy (J) between two stretches (m): one twice, or two a step apart."""
+    """Return the elastic energy (J) between two stretches (m): one twice, or two a step apart.
+
+    Parameters
+    ----------
+    soil : Soil
+        State and constants at the start of the step.
+    stretch : float
+        Elastic displacement (m).
+    after : float
+        The same at another time (m).
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     if not soil.tension and (stretch < 0.0 or after < 0.0):
         return 0.0
     return 0.5 * soil.ultimate / soil.quake * stretch * after
@@ -144,7 +211,8 @@ def _balanced(total, drive, shaft, toe, velocity, dt):
 @kernel
 def _slope(soil, way, mean):
     """Return the change of the mean resistance with the way (N/m)."""
-    end, low = soil.stretch + way, -soil.quake if soil.tension else 0.0
+    end = soil.stretch + way
+    low = -soil.quake if soil.tension else 0.0
     if low <= soil.stretch and low <= end <= soil.quake:
         return 0.5 * soil.ultimate / soil.quake
     return 0.0 if way == 0.0 else (static(soil, end) - mean) / way
@@ -192,7 +260,20 @@ def press(way, spring):
 
 @kernel
 def mean_resistance(way, spring):
-    """Return the mean resistance (N) over a way (m). It never falls as the way grows."""
+    """Return the mean resistance (N) over a way (m). It never falls as the way grows.
+
+    Parameters
+    ----------
+    way : float
+        Into the ground (m).
+    spring : Spring
+        At the start of the way.
+
+    Returns
+    -------
+    float
+        Resistance (N).
+    """
     if way == 0.0:
         return spring.resistance
     _, _, _, area = press(way, spring)

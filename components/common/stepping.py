@@ -19,8 +19,8 @@ def internal_step(start: float) -> Variable:
     """
     return param(
         "internal_step",
-        "largest time step inside the component; a communication step is divided into equal parts not "
-        "longer than it",
+        "largest time step inside the component; a communication step is divided into equal parts "
+        "not longer than it",
         start,
         "s",
         minimum=1e-12,

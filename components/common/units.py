@@ -1,6 +1,7 @@
 """Units: conversion factors to SI for the edges of the program, and the units that ports may carry.
 
-Inside, every quantity is a plain float in SI. ``120 * kgf / cm`` reads as it is written in the papers.
+Inside, every quantity is a plain float in SI. ``120 * kgf / cm`` reads as it is written in the
+papers.
 """
 
 import math

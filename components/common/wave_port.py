@@ -17,7 +17,7 @@ Ram = namedtuple("Ram", "position velocity touching separation")
 """A rigid mass at the end of a rod: position and velocity into the rod (m, m/s), 1.0 while it
 touches and 0.0 otherwise, and the time at which it last left the rod (s; -1 before)."""
 Stroke = namedtuple("Stroke", "force mass_velocity end_velocity")
-"""Means over a step: force between mass and rod (N), velocities of the mass and of the end (m/s)."""
+"""Means over a step: force between mass and rod (N), velocities of mass and rod's end (m/s)."""
 Contact = namedtuple("Contact", "velocity mean_force separation")
 """Velocity of the mass at the end of the step (m/s), mean force between mass and rod (N), and the
 part of the step, 0 to 1, after which they separated; 2 if they did not."""

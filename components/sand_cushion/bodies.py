@@ -33,19 +33,49 @@ body."""
 
 @kernel
 def disc_count(k):
-    """Return the number N of sand discs."""
+    """Return the number N of sand discs.
+
+    Parameters
+    ----------
+    k : ndarray of int64
+        Integers of the instance.
+
+    Returns
+    -------
+    int
+    """
     return k[A.angle + 1]
 
 
 @kernel
 def beam_count(k):
-    """Return the number M of beam discs."""
+    """Return the number M of beam discs.
+
+    Parameters
+    ----------
+    k : ndarray of int64
+        Integers of the instance.
+
+    Returns
+    -------
+    int
+    """
     return k[A.beam_position_x + 1]
 
 
 @inlined
 def bodies_of(x, k):
-    """Return the :class:`Bodies` of a state, views of its buffer."""
+    """Return the :class:`Bodies` of a state, views of its buffer.
+
+    Parameters
+    ----------
+    x, k : ndarray
+        State and integers of the instance.
+
+    Returns
+    -------
+    Bodies
+    """
     rows, loads = view(x, k, A.body), view(x, k, A.load)
     rock = disc_count(k)
     return Bodies(

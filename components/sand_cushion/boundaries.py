@@ -72,7 +72,21 @@ what slid and what yielded (J)."""
 
 @inlined
 def boundary_of(b, rock, table):
-    """Return the row of boundary b in the table."""
+    """Return the row of boundary b in the table.
+
+    Parameters
+    ----------
+    b : int
+        Number of the boundary.
+    rock : int
+        Number of the rock.
+    table : ndarray of int64
+        Rows of the boundaries.
+
+    Returns
+    -------
+    Boundary
+    """
     at = BOUNDARY_ROW * (b - rock) & INDEX
     return Boundary(
         table[at],
@@ -87,7 +101,19 @@ def boundary_of(b, rock, table):
 
 @inlined
 def set_boundary(row, kind, side, table):
-    """Write a row of the table, with the wall's side: -1 left, 1 right."""
+    """Write a row of the table, with the wall's side: -1 left, 1 right.
+
+    Parameters
+    ----------
+    row : int
+        Number of the row.
+    kind : Boundary
+        The row without the side.
+    side : int
+        -1 left, 1 right, 0 for what is no wall.
+    table : ndarray of int64
+        Rows of the boundaries.
+    """
     at = BOUNDARY_ROW * row
     table[at] = kind.geometry
     table[at + 1] = kind.sand_contact
@@ -100,7 +126,13 @@ def set_boundary(row, kind, side, table):
 
 @kernel
 def describe_boundaries(w, k):
-    """Write the table of boundaries, from the parameters."""
+    """Write the table of boundaries, from the parameters.
+
+    Parameters
+    ----------
+    w, k : ndarray
+        Variables and integers of the instance.
+    """
     m, table = beam_count(k), view(k, k, A.boundary)
     set_boundary(0, ROCK, 0, table)
     for row in range(1, m + 1):
@@ -121,7 +153,19 @@ def describe_boundaries(w, k):
 
 @inlined
 def lever_at(x, bodies):
-    """Return the :class:`Lever` of a place ``x`` (m) on the beam."""
+    """Return the :class:`Lever` of a place ``x`` (m) on the beam.
+
+    Parameters
+    ----------
+    x : float
+        Place (m).
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Lever
+    """
     first, last = bodies.rock + 1, bodies.end - 1
     if first == last:
         return Lever(first, first, 0.0)
@@ -133,7 +177,20 @@ def lever_at(x, bodies):
 
 @inlined
 def beam_top(lever, bodies):
-    """Return the height (m) of the beam's top at a place."""
+    """Return the height (m) of the beam's top at a place.
+
+    Parameters
+    ----------
+    lever : Lever
+        Place on the beam.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     return (
         (1.0 - lever.share) * bodies.y[lever.left]
         + lever.share * bodies.y[lever.right]
@@ -143,7 +200,20 @@ def beam_top(lever, bodies):
 
 @inlined
 def beam_velocity(lever, bodies):
-    """Return the velocity (m/s) of the beam's top at a place, to the right and upwards."""
+    """Return the velocity (m/s) of the beam's top at a place, to the right and upwards.
+
+    Parameters
+    ----------
+    lever : Lever
+        Place on the beam.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    tuple of float
+        Velocity (m/s).
+    """
     left, right, share = lever.left, lever.right, lever.share
     vx = (1.0 - share) * (bodies.vx[left] - bodies.spin[left]) + share * (
         bodies.vx[right] - bodies.spin[right]
@@ -153,7 +223,20 @@ def beam_velocity(lever, bodies):
 
 @inlined
 def face_of(boundary, w):
-    """Return the x (m) of a wall's inner face."""
+    """Return the x (m) of a wall's inner face.
+
+    Parameters
+    ----------
+    boundary : Boundary
+        Row of the table of boundaries.
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Place (m).
+    """
     if boundary.side < 0:
         return w[V.box_left]
     return w[V.box_left] + w[V.box_width]
@@ -161,7 +244,21 @@ def face_of(boundary, w):
 
 @inlined
 def touch_disc(i, b, bodies):
-    """Return the :class:`Surface` of the round boundary b near body i."""
+    """Return the :class:`Surface` of the round boundary b near body i.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    b : int
+        Number of the boundary.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Surface
+    """
     dx, dy = bodies.x[b] - bodies.x[i], bodies.y[b] - bodies.y[i]
     distance = math.sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
@@ -180,6 +277,21 @@ def touch_base(i, boundary, w, bodies):
     """Return the :class:`Surface` of floor or beam near body i.
 
     There is no base for a rock on or beyond the walls; walls without end let none out.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    boundary : Boundary
+        Row of the table of boundaries.
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Surface
     """
     xi, yi, ri = bodies.x[i], bodies.y[i], bodies.radius[i]
     inside = w[V.box_left] <= xi <= w[V.box_left] + w[V.box_width]
@@ -194,7 +306,23 @@ def touch_base(i, boundary, w, bodies):
 
 @inlined
 def touch_wall(i, boundary, w, bodies):
-    """Return the :class:`Surface` of a wall near body i: a plane for sand, a block for the rock."""
+    """Return the :class:`Surface` of a wall near body i: a plane for sand, a block for the rock.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    boundary : Boundary
+        Row of the table of boundaries.
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Surface
+    """
     xi, ri = bodies.x[i], bodies.radius[i]
     face = face_of(boundary, w)
     nx = float(boundary.side)
@@ -247,7 +375,21 @@ def touch(i, b, boundary, w, bodies):
 
 @inlined
 def load_beam(a, share, fx, fy, bodies):
-    """Give beam disc a its share of a force (N) at the beam's top."""
+    """Give beam disc a its share of a force (N) at the beam's top.
+
+    Parameters
+    ----------
+    a : int
+        Number of the beam disc.
+    share : float
+        From 0 to 1.
+    fx : float
+        Force to the right (N).
+    fy : float
+        Force upwards (N).
+    bodies : Bodies
+        Columns of all bodies.
+    """
     bodies.force_x[a] += share * fx
     bodies.force_y[a] += share * fy
     bodies.turn[a] -= share * fx
@@ -255,7 +397,19 @@ def load_beam(a, share, fx, fy, bodies):
 
 @inlined
 def load_beam_at(x, fx, fy, bodies):
-    """Hand a force (N) at the place ``x`` (m) of the beam's top to the two discs beside it."""
+    """Hand a force (N) at the place ``x`` (m) of the beam's top to the two discs beside it.
+
+    Parameters
+    ----------
+    x : float
+        Place (m).
+    fx : float
+        Force to the right (N).
+    fy : float
+        Force upwards (N).
+    bodies : Bodies
+        Columns of all bodies.
+    """
     lever = lever_at(x, bodies)
     load_beam(lever.left, 1.0 - lever.share, fx, fy, bodies)
     if lever.right != lever.left:
@@ -295,7 +449,21 @@ def carry(b, boundary, foot, force, surface, bodies):
 
 @inlined
 def contact_kind(i, boundary, bodies):
-    """Return the kind of the contact of disc or rock i with a boundary, one of :data:`KIND`."""
+    """Return the kind of the contact of disc or rock i with a boundary, one of :data:`KIND`.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    boundary : Boundary
+        Row of the table of boundaries.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    int
+    """
     return boundary.rock_contact if i == bodies.rock else boundary.sand_contact
 
 
@@ -304,6 +472,22 @@ def dashpot_root(i, boundary, w, bodies):
     """Return the root of the mass m in c_n = 2 h sqrt(m k_n) (kg^0.5, eq. 1).
 
     That of the disc or the rock, but the beam disc's where sand lies on a beam.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    boundary : Boundary
+        Row of the table of boundaries.
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    float
+        Root of mass (kg^0.5).
     """
     on_beam = boundary.beam_mass == 1 and i < bodies.rock
     if on_beam and w[V.beam_disc_mass] > 0.0:
@@ -313,7 +497,25 @@ def dashpot_root(i, boundary, w, bodies):
 
 @inlined
 def roll_on(p, is_round, normal, law, dt, bodies, edges):
-    """Let rolling resistance act in the contact p with a boundary. Planes take no moment."""
+    """Let rolling resistance act in the contact p with a boundary. Planes take no moment.
+
+    Parameters
+    ----------
+    p : int
+        Number of the contact.
+    is_round : bool
+        Whether the boundary is a round body.
+    normal : float
+        Normal force (N).
+    law : Law
+        Constants of the contact.
+    dt : float
+        Time step (s).
+    bodies : Bodies
+        Columns of all bodies.
+    edges : Edges
+        Contacts with boundaries.
+    """
     i, b = edges.owner[p] & INDEX, edges.partner[p] & INDEX
     radius = bodies.radius[i]
     speed, reduced = -bodies.spin[i] / radius, radius
@@ -331,7 +533,23 @@ def roll_on(p, is_round, normal, law, dt, bodies, edges):
 
 @inlined
 def let_go(p, lost, kind, edges):
-    """Forget the spring of a contact that is open: its energy counts as slid, as :class:`Work`."""
+    """Forget the spring of a contact that is open: its energy counts as slid, as :class:`Work`.
+
+    Parameters
+    ----------
+    p : int
+        Number of the contact.
+    lost : float
+        Energy that has yielded (J).
+    kind : int
+        Kind of the contact, one of :data:`KIND`.
+    edges : Edges
+        Contacts with boundaries.
+
+    Returns
+    -------
+    Work
+    """
     before, compliance = edges.spring[p], edges.law[kind * len(LAW) + LAW.compliance & INDEX]
     edges.spring[p] = 0.0
     edges.roll[p] = 0.0
@@ -340,7 +558,23 @@ def let_go(p, lost, kind, edges):
 
 @inlined
 def approach_of(i, overlap, surface, bodies):
-    """Return how body i meets a surface, with the elastic overlap (m); no root of mass in it."""
+    """Return how body i meets a surface, with the elastic overlap (m); no root of mass in it.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    overlap : float
+        Elastic overlap (m).
+    surface : Surface
+        Geometry and velocity at the contact.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Approach
+    """
     nx, ny = surface.nx, surface.ny
     vx, vy = surface.vx - bodies.vx[i], surface.vy - bodies.vy[i]
     return Approach(overlap, vx * nx + vy * ny, vy * nx - vx * ny - bodies.spin[i], 1.0)
@@ -348,7 +582,30 @@ def approach_of(i, overlap, surface, bodies):
 
 @inlined
 def hand_on(i, b, boundary, response, surface, w, bodies):
-    """Give the contact force to body i and boundary b; returns what counts as transmitted (N)."""
+    """Give the contact force to body i and boundary b; returns what counts as transmitted (N).
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    b : int
+        Number of the boundary.
+    boundary : Boundary
+        Row of the table of boundaries.
+    response : Response
+        Forces of the contact law (N).
+    surface : Surface
+        Geometry and velocity at the contact.
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    float
+        Force (N).
+    """
     normal, tangential = response.normal, response.tangential
     fx = normal * surface.nx + tangential * surface.ny  # of i on b
     fy = normal * surface.ny - tangential * surface.nx
@@ -362,7 +619,27 @@ def hand_on(i, b, boundary, response, surface, w, bodies):
 
 @inlined
 def press_on(p, dt, rolls, w, bodies, edges):
-    """Compute the contact p of a disc or the rock with a boundary; returns its :class:`Work`."""
+    """Compute the contact p of a disc or the rock with a boundary; returns its :class:`Work`.
+
+    Parameters
+    ----------
+    p : int
+        Number of the contact.
+    dt : float
+        Time step (s).
+    rolls : bool
+        Whether there is rolling resistance.
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+    edges : Edges
+        Contacts with boundaries.
+
+    Returns
+    -------
+    Work
+    """
     i, b = edges.owner[p] & INDEX, edges.partner[p] & INDEX
     boundary = boundary_of(b, bodies.rock, edges.boundary)
     surface = touch(i, b, boundary, w, bodies)

@@ -31,25 +31,66 @@ def pair_of(i, j):
     """Return a pair as one number.
 
     The begin of the second disc's row in ``body`` above that of the first, 32 bits each.
+
+    Parameters
+    ----------
+    i : int
+        Disc with the lower number.
+    j : int
+        Disc with the higher number.
+
+    Returns
+    -------
+    int
     """
     return ROW * i | ROW * j << 32
 
 
 @inlined
 def first_of(pair):
-    """Return the disc of a pair that has the lower number."""
+    """Return the disc of a pair that has the lower number.
+
+    Parameters
+    ----------
+    pair : int
+        The pair.
+
+    Returns
+    -------
+    int
+    """
     return (pair & 0xFFFFFFFF) // ROW
 
 
 @inlined
 def second_of(pair):
-    """Return the disc of a pair that has the higher number."""
+    """Return the disc of a pair that has the higher number.
+
+    Parameters
+    ----------
+    pair : int
+        The pair.
+
+    Returns
+    -------
+    int
+    """
     return (pair >> 32) // ROW
 
 
 @kernel
 def part_count(k):
-    """Return the number of parts in use; behind them the room is empty."""
+    """Return the number of parts in use; behind them the room is empty.
+
+    Parameters
+    ----------
+    k : ndarray of int64
+        Integers of the instance.
+
+    Returns
+    -------
+    int
+    """
     part = view(k, k, A.part)
     parts = 1
     while part[parts] < disc_count(k):
@@ -59,7 +100,13 @@ def part_count(k):
 
 @kernel
 def divide(k):
-    """Divide the discs into parts of equal size; small cushions have one, and room stays empty."""
+    """Divide the discs into parts of equal size; small cushions have one, and room stays empty.
+
+    Parameters
+    ----------
+    k : ndarray of int64
+        Integers of the instance.
+    """
     n, part = disc_count(k), view(k, k, A.part)
     parts = max(1, n // PART)
     for c in range(part.size):
@@ -68,7 +115,18 @@ def divide(k):
 
 @kernel
 def listed_gap(w):
-    """Return the largest gap (m) of a listed pair of discs."""
+    """Return the largest gap (m) of a listed pair of discs.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Gap (m).
+    """
     skin = SKIN * w[V.disc_radius]
     if w[V.cohesion] > 0.0:
         skin += w[V.cohesion_range] * 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread])
@@ -77,7 +135,18 @@ def listed_gap(w):
 
 @kernel
 def boundary_travel(x, k):
-    """Return the longest way (m) that the rock or a beam disc has gone since the list was made."""
+    """Return the longest way (m) that the rock or a beam disc has gone since the list was made.
+
+    Parameters
+    ----------
+    x, k : ndarray
+        State and integers of the instance.
+
+    Returns
+    -------
+    float
+        Way (m).
+    """
     bodies, reference = bodies_of(x, k), view(x, k, A.boundary_reference)
     longest = 0.0
     for b in range(bodies.rock, bodies.end):
@@ -89,14 +158,35 @@ def boundary_travel(x, k):
 
 @kernel
 def is_stale(w, x, k):
-    """Return whether two bodies may have closed a gap of one skin since the list was made."""
+    """Return whether two bodies may have closed a gap of one skin since the list was made.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    bool
+    """
     travel = view(x, k, A.sums)[SUM.travelled]
     return 2.0 * max(travel, boundary_travel(x, k)) > SKIN * w[V.disc_radius]
 
 
 @kernel
 def base_top(w, x, k):
-    """Return the highest point (m) of what the sand lies on."""
+    """Return the highest point (m) of what the sand lies on.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     if w[V.base] != BEAM_SURFACE and w[V.base] != BEAM_DISCS:
         return w[V.base_y]
     bodies = bodies_of(x, k)
@@ -108,7 +198,17 @@ def base_top(w, x, k):
 
 @kernel
 def grid_over(w, x, k):
-    """Return the empty :class:`Grid` over the box, with cells as wide as listed pairs reach."""
+    """Return the empty :class:`Grid` over the box, with cells as wide as listed pairs reach.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    Grid
+    """
     cell_start, bodies = view(k, k, A.cell_start), bodies_of(x, k)
     size = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread]) + listed_gap(w)
     bottom = bodies.y[bodies.rock + 1]
@@ -130,7 +230,15 @@ def grid_over(w, x, k):
 
 @kernel
 def sort_into_cells(bodies, grid):
-    """Sort the discs into cells by counting; discs outside the grid count to its rim."""
+    """Sort the discs into cells by counting; discs outside the grid count to its rim.
+
+    Parameters
+    ----------
+    bodies : Bodies
+        Columns of all bodies.
+    grid : Grid
+        Cells with the discs in them.
+    """
     start, cells = grid.cell_start, grid.columns * grid.rows
     for c in range(cells + 1):
         start[c] = 0
@@ -199,7 +307,23 @@ def disc_partners(i, within, skin, bodies, grid, pair, at):
 
 @kernel
 def fill_up(at, first, far, pair):
-    """Fill up the last block with pairs that cannot touch; returns the end of the list."""
+    """Fill up the last block with pairs that cannot touch; returns the end of the list.
+
+    Parameters
+    ----------
+    at : int
+        End of the list.
+    first : int
+        Any disc.
+    far : int
+        Body far away.
+    pair : ndarray of int64
+        List of pairs.
+
+    Returns
+    -------
+    int
+    """
     while at % BLOCK:
         pair[at] = pair_of(first, far)
         at += 1
@@ -208,7 +332,23 @@ def fill_up(at, first, far, pair):
 
 @kernel
 def list_within(skin, bodies, grid, k):
-    """List the pairs within the parts; returns the end of the list, or -1 where room is lacking."""
+    """List the pairs within the parts; returns the end of the list, or -1 where room is lacking.
+
+    Parameters
+    ----------
+    skin : float
+        Largest gap of a listed pair (m).
+    bodies : Bodies
+        Columns of all bodies.
+    grid : Grid
+        Cells with the discs in them.
+    k : ndarray of int64
+        Integers of the instance.
+
+    Returns
+    -------
+    int
+    """
     pair, part, row = view(k, k, A.pair), view(k, k, A.part), view(k, k, A.row)
     at = 0
     for c in range(part.size - 1):
@@ -225,7 +365,25 @@ def list_within(skin, bodies, grid, k):
 
 @kernel
 def list_across(begin, skin, bodies, grid, k):
-    """List the pairs between two parts from ``begin`` on; returns the end of the list, or -1."""
+    """List the pairs between two parts from ``begin`` on; returns the end of the list, or -1.
+
+    Parameters
+    ----------
+    begin : int
+        Where the list begins.
+    skin : float
+        Largest gap of a listed pair (m).
+    bodies : Bodies
+        Columns of all bodies.
+    grid : Grid
+        Cells with the discs in them.
+    k : ndarray of int64
+        Integers of the instance.
+
+    Returns
+    -------
+    int
+    """
     pair, part, across = view(k, k, A.pair), view(k, k, A.part), view(k, k, A.across)
     n, at = bodies.rock, begin
     for c in range(part.size - 1):
@@ -242,7 +400,17 @@ def list_across(begin, skin, bodies, grid, k):
 
 @kernel
 def list_discs(w, x, k):
-    """Make the list of pairs of discs anew; returns False where the room does not suffice."""
+    """Make the list of pairs of discs anew; returns False where the room does not suffice.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    bool
+    """
     bodies, grid, skin = bodies_of(x, k), grid_over(w, x, k), listed_gap(w)
     sort_into_cells(bodies, grid)
     at = list_within(skin, bodies, grid, k)
@@ -254,6 +422,25 @@ def boundary_partners(i, top, w, bodies, partner, at):
     """List the boundaries near disc i, or near the rock; returns the end of the list.
 
     ``top`` is the highest point (m) of the base.
+
+    Parameters
+    ----------
+    i : int
+        Number of the disc, or of the rock.
+    top : float
+        Highest point of the base (m).
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+    partner : ndarray of int64
+        List of boundaries.
+    at : int
+        End of the list.
+
+    Returns
+    -------
+    int
     """
     xi, yi, reach = bodies.x[i], bodies.y[i], bodies.radius[i] + SKIN * w[V.disc_radius]
     last = bodies.end if w[V.base] == BEAM_DISCS else bodies.rock + 1
@@ -277,7 +464,17 @@ def boundary_partners(i, top, w, bodies, partner, at):
 
 @kernel
 def list_edges(w, x, k):
-    """Make the list of boundaries anew; returns False where the room does not suffice."""
+    """Make the list of boundaries anew; returns False where the room does not suffice.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    bool
+    """
     bodies, row, top = bodies_of(x, k), view(k, k, A.edge_row), base_top(w, x, k)
     owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
     most = bodies.end - bodies.rock + PLANES
@@ -296,7 +493,23 @@ def list_edges(w, x, k):
 
 @kernel
 def inherit(row, partner, spring, row_before, partner_before, spring_before):
-    """Give the pairs of a list the springs that they had in the list before."""
+    """Give the pairs of a list the springs that they had in the list before.
+
+    Parameters
+    ----------
+    row : ndarray of int64
+        Where the partners of each body begin.
+    partner : ndarray of int64
+        List of partners.
+    spring : ndarray of float64
+        Springs, which are set.
+    row_before : ndarray of int64
+        The same of the list before.
+    partner_before : ndarray of int64
+        The same of the list before.
+    spring_before : ndarray of float64
+        The same of the list before.
+    """
     for i in range(row.size - 1):
         for p in range(row[i], row[i + 1]):
             spring[p] = 0.0
@@ -308,7 +521,17 @@ def inherit(row, partner, spring, row_before, partner_before, spring_before):
 
 @kernel
 def inherit_pairs(spring, before, k):
-    """Do :func:`inherit` for the pairs of discs."""
+    """Do :func:`inherit` for the pairs of discs.
+
+    Parameters
+    ----------
+    spring : ndarray of float64
+        Springs, which are set.
+    before : ndarray of float64
+        Springs of the list before.
+    k : ndarray of int64
+        Integers of the instance.
+    """
     pair, pair_before = view(k, k, A.pair), view(k, k, A.pair_before)
     row, row_before = view(k, k, A.row), view(k, k, A.row_before)
     across, across_before = view(k, k, A.across), view(k, k, A.across_before)
@@ -318,7 +541,17 @@ def inherit_pairs(spring, before, k):
 
 @kernel
 def inherit_edges(spring, before, k):
-    """Do :func:`inherit` for the contacts with boundaries."""
+    """Do :func:`inherit` for the contacts with boundaries.
+
+    Parameters
+    ----------
+    spring : ndarray of float64
+        Springs, which are set.
+    before : ndarray of float64
+        Springs of the list before.
+    k : ndarray of int64
+        Integers of the instance.
+    """
     row, row_before = view(k, k, A.edge_row), view(k, k, A.edge_row_before)
     partner, partner_before = view(k, k, A.edge_partner), view(k, k, A.edge_partner_before)
     inherit(row, partner, spring, row_before, partner_before, before)
@@ -326,7 +559,13 @@ def inherit_edges(spring, before, k):
 
 @kernel
 def forget(x, k):
-    """Empty the lists, and with them all contact springs."""
+    """Empty the lists, and with them all contact springs.
+
+    Parameters
+    ----------
+    x, k : ndarray
+        State and integers of the instance.
+    """
     row, across, edge_row = view(k, k, A.row), view(k, k, A.across), view(k, k, A.edge_row)
     for i in range(row.size):
         row[i] = 0
@@ -337,14 +576,30 @@ def forget(x, k):
 
 @kernel
 def set_aside(count, source, target):
-    """Copy the first ``count`` numbers."""
+    """Copy the first ``count`` numbers.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    source : ndarray
+        Read from.
+    target : ndarray
+        Written to.
+    """
     for q in range(count):
         target[q] = source[q]
 
 
 @kernel
 def keep_for_inheritance(x, k):
-    """Set the present lists aside."""
+    """Set the present lists aside.
+
+    Parameters
+    ----------
+    x, k : ndarray
+        State and integers of the instance.
+    """
     n = disc_count(k)
     pairs, edges = view(k, k, A.across)[n], view(k, k, A.edge_row)[n + 1]
     for now, before in ((A.row, A.row_before), (A.across, A.across_before)):

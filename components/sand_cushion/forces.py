@@ -11,7 +11,17 @@ A = LAYOUT.array
 
 @kernel
 def clear(begin, load, sums):
-    """Forget the forces on the bodies from ``begin`` on, and sums that refer to the step before."""
+    """Forget the forces on the bodies from ``begin`` on, and sums that refer to the step before.
+
+    Parameters
+    ----------
+    begin : int
+        First body.
+    load : ndarray of float64
+        Rows of the loads (N).
+    sums : ndarray of float64
+        Running sums, :data:`SUM`.
+    """
     set_to_zero(load[FORCE_ROW * begin :])
     sums[SUM.elastic] = 0.0
     sums[SUM.transmitted] = 0.0

@@ -38,6 +38,16 @@ def surface_under_rock(w, x, k):
     """Return the highest point (m) of the sand near the rock, or anywhere if there is none near.
 
     Near are centres less than a rock's radius to the left or right of the rock's.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    float
+        Height (m).
     """
     bodies = bodies_of(x, k)
     near, anywhere = -math.inf, -math.inf
@@ -51,7 +61,18 @@ def surface_under_rock(w, x, k):
 
 @kernel
 def beam_fault(w, k):
-    """Return the fault of a beam that does not carry the whole cushion, or 0."""
+    """Return the fault of a beam that does not carry the whole cushion, or 0.
+
+    Parameters
+    ----------
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     px = view(w, k, A.beam_position_x)
     widest = 0.0
     for b in range(px.size - 1):
@@ -68,7 +89,18 @@ def beam_fault(w, k):
 
 @kernel
 def rock_fault(w, x, k):
-    """Return the fault of a rock inside the sand or in a side wall, or 0."""
+    """Return the fault of a rock inside the sand or in a side wall, or 0.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     bodies, table = bodies_of(x, k), view(k, k, A.boundary)
     rock = bodies.rock
     for wall in (bodies.end, bodies.end + 1):
@@ -125,7 +157,13 @@ def evaluate(w, x, k):
 
 @kernel
 def start_balance(w, x, k):
-    """Begin the balance of energy: nothing dissipated, no work done, all that is stored at hand."""
+    """Begin the balance of energy: nothing dissipated, no work done, all that is stored at hand.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     sums = view(x, k, A.sums)
     for q in (
         SUM.normal_dashpot,
@@ -145,7 +183,18 @@ def start_balance(w, x, k):
 
 @kernel
 def kinetic_energy(x, k):
-    """Return the kinetic energy of all discs (J)."""
+    """Return the kinetic energy of all discs (J).
+
+    Parameters
+    ----------
+    x, k : ndarray
+        State and integers of the instance.
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     bodies = bodies_of(x, k)
     total = 0.0
     for i in range(bodies.rock):
@@ -156,7 +205,18 @@ def kinetic_energy(x, k):
 
 @kernel
 def potential_energy(w, x, k):
-    """Return the energy of all discs in gravity (J)."""
+    """Return the energy of all discs in gravity (J).
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    float
+        Energy (J), zero at y = 0.
+    """
     bodies = bodies_of(x, k)
     total = 0.0
     for i in range(bodies.rock):
@@ -166,14 +226,24 @@ def potential_energy(w, x, k):
 
 @kernel
 def stored_energy(w):
-    """Return the energy (J) that discs and contacts hold, from the outputs."""
+    """Return the energy (J) that discs and contacts hold, from the outputs.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     return w[V.energy_kinetic] + w[V.energy_elastic] + w[V.energy_capillary] + w[V.energy_gravity]
 
 
 @kernel
 def publish_energies(kinetic, potential, w, sums):
-    """Write the energies at the beginning of the last internal step, and the error of their
-    balance.
+    """Write the energies at the start of the last internal step, and the error of their balance.
 
     Parameters
     ----------
@@ -215,6 +285,18 @@ def penetration(ahead, w):
     """Return the depth (m) of the rock's lowest point under the surface at the start.
 
     The rock goes on for the time ``ahead`` (s) from where the inputs have it.
+
+    Parameters
+    ----------
+    ahead : float
+        Time after that of the variables (s).
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Depth (m).
     """
     y = w[V.rock_position_y] + w[V.rock_velocity_y] * ahead
     return w[V.surface_height] - (y - w[V.rock_radius])

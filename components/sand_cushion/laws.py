@@ -23,7 +23,22 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 @inlined
 def law_of(kind, root, table):
-    """Return the constants of a kind of contact, its dashpots times a root of mass (kg^0.5)."""
+    """Return the constants of a kind of contact, its dashpots times a root of mass (kg^0.5).
+
+    Parameters
+    ----------
+    kind : int
+        Kind of the contact, one of :data:`KIND`.
+    root : float
+        Root of mass (kg^0.5).
+    table : ndarray of float64
+        Laws of all kinds.
+
+    Returns
+    -------
+    Law
+        Constants of the contact.
+    """
     at = kind * len(LAW) & INDEX
     return Law(
         table[at],
@@ -83,6 +98,16 @@ def capillary_strength(w):
     Rumpf (1970): discs of diameter D that fill the part sf of the layer and pull each other with F
     at z contacts have the tensile strength sf z F / (pi D dL); with z = 4 and c = strength tan(phi)
     F = pi c D dL / (4 sf tan(phi)).
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Strength (N/m).
     """
     if w[V.cohesion] == 0.0:
         return 0.0  # also without friction, where the cohesion has no strength to follow from
@@ -95,6 +120,16 @@ def sand_stiffness(w):
     """Return k_n = E_bar dD dL / R_ij0 (N/m) between two sand discs, eq. (1).
 
     dD is R_ij0, the distance of centres: k_n = E_bar dL.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        k_n (N/m).
     """
     return w[V.stiffness_factor] * w[V.modulus] * w[V.thickness]
 
@@ -104,6 +139,18 @@ def stiffness_against(radius, w):
     """Return k_n (N/m) between a sand disc and a body of another radius (m), eq. (1).
 
     dD is the sand disc's diameter, R_ij0 the sum of radii.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the body (m).
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        k_n (N/m).
     """
     return sand_stiffness(w) * 2.0 * w[V.disc_radius] / (w[V.disc_radius] + radius)
 
@@ -113,6 +160,18 @@ def boundary_stiffness(kind, w):
     """Return k_n (N/m) of a kind of contact with rock, base or wall.
 
     A plane counts as the disc's mirror image.
+
+    Parameters
+    ----------
+    kind : int
+        Kind of the contact, one of :data:`KIND`.
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        k_n (N/m).
     """
     if kind == KIND.rock:
         return w[V.rock_stiffness_ratio] * stiffness_against(w[V.rock_radius], w)

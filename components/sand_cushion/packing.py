@@ -18,14 +18,43 @@ _LOOSE = 1.05
 
 @kernel
 def disc_mass(radius, w):
-    """Return the mass (kg) of a disc, a cylinder as long as the cushion is thick."""
+    """Return the mass (kg) of a disc, a cylinder as long as the cushion is thick.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the body (m).
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Mass (kg).
+    """
     density = w[V.density] / (w[V.solid_fraction] if w[V.density_of] == LAYER else 1.0)
     return density * math.pi * radius * radius * w[V.thickness]
 
 
 @kernel
 def set_disc(bodies, i, x, y, radius, w):
-    """Place disc i at rest, with centre and radius in m."""
+    """Place disc i at rest, with centre and radius in m.
+
+    Parameters
+    ----------
+    bodies : Bodies
+        Columns of all bodies.
+    i : int
+        Number of the disc, or of the rock.
+    x : float
+        To the right (m).
+    y : float
+        Upwards (m).
+    radius : float
+        Radius of the body (m).
+    w : ndarray of float64
+        Variables of the instance.
+    """
     mass = disc_mass(radius, w)
     bodies.x[i], bodies.y[i] = x, y
     bodies.vx[i], bodies.vy[i], bodies.spin[i] = 0.0, 0.0, 0.0
@@ -36,13 +65,36 @@ def set_disc(bodies, i, x, y, radius, w):
 
 @kernel
 def columns_of(width, diameter):
-    """Return the number of discs side by side in a row of ``width`` (m); at least 1."""
+    """Return the number of discs side by side in a row of ``width`` (m); at least 1.
+
+    Parameters
+    ----------
+    width : float
+        Width (m).
+    diameter : float
+        Of a disc (m).
+
+    Returns
+    -------
+    int
+    """
     return max(1, int(width / diameter * (1.0 + _FIT)))
 
 
 @kernel
 def mean_base(w, x, k):
-    """Return the mean height (m) of the base; between beam discs it lies deeper than their tops."""
+    """Return the mean height (m) of the base; between beam discs it lies deeper than their tops.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     valleys = 0.0
     if w[V.base] == BEAM_DISCS:
         valleys = (1.0 - 0.25 * math.pi) * w[V.beam_radius]
@@ -79,7 +131,17 @@ def square_lattice(w, bodies, bottom, stiffness, base_stiffness):
 
 @kernel
 def hexagonal_lattice(w, bodies, bottom):
-    """Place rows of c and c - 1 discs in turn on the height ``bottom`` (m)."""
+    """Place rows of c and c - 1 discs in turn on the height ``bottom`` (m).
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+    bottom : float
+        Height of the base (m).
+    """
     radius = w[V.disc_radius]
     columns = columns_of(w[V.box_width], 2.0 * radius)
     margin = 0.5 * (w[V.box_width] - columns * 2.0 * radius)
@@ -96,7 +158,17 @@ def hexagonal_lattice(w, bodies, bottom):
 
 @kernel
 def random_heap(w, bodies, bottom):
-    """Spread discs of random size loosely over a grid wide enough for the largest."""
+    """Spread discs of random size loosely over a grid wide enough for the largest.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+    bottom : float
+        Height of the base (m).
+    """
     largest = w[V.disc_radius] * (1.0 + w[V.disc_spread])
     cell, seed = 2.0 * largest * _LOOSE, w[V.seed]
     columns = columns_of(w[V.box_width], cell)
@@ -112,7 +184,15 @@ def random_heap(w, bodies, bottom):
 
 @kernel
 def shift(w, bodies):
-    """Move each disc of a lattice by up to ``lattice_shift`` diameters in both directions."""
+    """Move each disc of a lattice by up to ``lattice_shift`` diameters in both directions.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+    """
     reach = 2.0 * w[V.disc_radius] * w[V.lattice_shift]
     for i in range(bodies.rock):
         bodies.x[i] += reach * (2.0 * uniform(w[V.seed], 2 * i) - 1.0)

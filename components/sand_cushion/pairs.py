@@ -47,21 +47,58 @@ columns, energies in lanes, energies of rolling, sums over the motion."""
 
 @inlined
 def set_to_zero(numbers):
-    """Set all numbers to zero."""
+    """Set all numbers to zero.
+
+    Parameters
+    ----------
+    numbers : ndarray
+        They are set.
+    """
     for q in range(numbers.size):
         numbers[q] = 0.0
 
 
 @inlined
 def part_of(buffer, k, entry, c, length):
-    """Return the room of part c in an array that holds ``length`` numbers for each part."""
+    """Return the room of part c in an array that holds ``length`` numbers for each part.
+
+    Parameters
+    ----------
+    buffer : ndarray
+        ``x`` or ``k``.
+    k : ndarray of int64
+        Integers of the instance.
+    entry : int
+        Entry of the array in ``k``.
+    c : int
+        Number of the part.
+    length : int
+        Numbers for each part.
+
+    Returns
+    -------
+    ndarray, shape (length,)
+        A view.
+    """
     begin = k[entry] + c * length
     return buffer[begin : begin + length]
 
 
 @inlined
 def pairs_of(c, x, k):
-    """Return the :class:`Pairs` for part c, views of the state."""
+    """Return the :class:`Pairs` for part c, views of the state.
+
+    Parameters
+    ----------
+    c : int
+        Number of the part.
+    x, k : ndarray
+        State and integers of the instance.
+
+    Returns
+    -------
+    Pairs
+    """
     return Pairs(
         view(k, k, A.pair),
         view(x, k, A.spring),
@@ -78,7 +115,19 @@ def pairs_of(c, x, k):
 
 @inlined
 def model_of(dt, w):
-    """Return the :class:`Model` that the parameters ask for, with the time step ``dt`` (s)."""
+    """Return the :class:`Model` that the parameters ask for, with the time step ``dt`` (s).
+
+    Parameters
+    ----------
+    dt : float
+        Time step (s).
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    Model
+    """
     turns = w[V.rotation] == FREE
     lasts = w[V.unloading_ratio] > 1.0 or w[V.cohesion] > 0.0
     return Model(turns, turns and w[V.rolling_resistance] > 0.0, lasts, dt, w[V.gravity])
@@ -86,7 +135,19 @@ def model_of(dt, w):
 
 @inlined
 def press_block(p, model, bodies, pairs):
-    """Compute the forces of a block of pairs, those from ``p`` on."""
+    """Compute the forces of a block of pairs, those from ``p`` on.
+
+    Parameters
+    ----------
+    p : int
+        First pair.
+    model : Model
+        Choices and constants of the step.
+    bodies : Bodies
+        Columns of all bodies.
+    pairs : Pairs
+        Pairs of a part, with their contacts.
+    """
     block, dt = pairs.block, model.dt
     pairs_to_columns(bodies.rows, pairs.pair, p, block)
     if model.lasts:
@@ -103,7 +164,19 @@ def press_block(p, model, bodies, pairs):
 
 @inlined
 def roll_block(begin, dt, bodies, pairs):
-    """Let rolling resistance act in a block of pairs, those from ``begin`` on."""
+    """Let rolling resistance act in a block of pairs, those from ``begin`` on.
+
+    Parameters
+    ----------
+    begin : int
+        First pair.
+    dt : float
+        Time step (s).
+    bodies : Bodies
+        Columns of all bodies.
+    pairs : Pairs
+        Pairs of a part, with their contacts.
+    """
     law = law_of(KIND.sand, 1.0, pairs.law)
     for q in range(BLOCK):
         normal = pairs.block[3 * BLOCK + q]
@@ -159,7 +232,21 @@ def press_pairs(span, c, moving, dt, w, x, k):
 
 @inlined
 def move_discs(begin, end, model, bodies, pairs):
-    """Move the discs from ``begin`` to before ``end`` on, and forget the forces on them."""
+    """Move the discs from ``begin`` to before ``end`` on, and forget the forces on them.
+
+    Parameters
+    ----------
+    begin : int
+        First disc.
+    end : int
+        The one behind the last.
+    model : Model
+        Choices and constants of the step.
+    bodies : Bodies
+        Columns of all bodies.
+    pairs : Pairs
+        Pairs of a part, with their contacts.
+    """
     turning = 2.0 if model.turns else 0.0
     rows, loads, dt = bodies.rows, bodies.loads, model.dt
     move_rows(rows, loads, begin, end, dt, model.gravity, turning, pairs.motion)
@@ -170,7 +257,19 @@ def move_discs(begin, end, model, bodies, pairs):
 
 @kernel
 def press_part(c, moving, dt, w, x, k):
-    """Do :func:`press_pairs` for the pairs within part c."""
+    """Do :func:`press_pairs` for the pairs within part c.
+
+    Parameters
+    ----------
+    c : int
+        Number of the part.
+    moving : bool
+        Whether the discs move too.
+    dt : float
+        Time step (s).
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     part, row = view(k, k, A.part), view(k, k, A.row)
     press_pairs((row[part[c]], row[part[c + 1]]), c, moving, dt, w, x, k)
 
@@ -213,7 +312,19 @@ def press_discs(dt, moving, w, x, k):
 
 @kernel
 def add_energies(dt, law, tally, sums):
-    """Add the energies of the parts to the sums (J), which gives them their scale."""
+    """Add the energies of the parts to the sums (J), which gives them their scale.
+
+    Parameters
+    ----------
+    dt : float
+        Time step (s).
+    law : ndarray of float64
+        Table of the laws of contact.
+    tally : ndarray of float64
+        Energies of the parts, lane by lane.
+    sums : ndarray of float64
+        Running sums, :data:`SUM`.
+    """
     compliance = law[LAW.compliance]
     sums[SUM.elastic] += 0.5 * (
         total(TALLY.elastic, tally) + total(TALLY.stretched, tally) * compliance
@@ -231,7 +342,15 @@ def add_energies(dt, law, tally, sums):
 
 @kernel
 def add_rolling(rolling, sums):
-    """Add the energies of rolling resistance of the parts to the sums (J)."""
+    """Add the energies of rolling resistance of the parts to the sums (J).
+
+    Parameters
+    ----------
+    rolling : ndarray of float64
+        Energies of the parts (J).
+    sums : ndarray of float64
+        Running sums, :data:`SUM`.
+    """
     for q in range(0, rolling.size, len(ROLL)):
         sums[SUM.elastic] += rolling[q + ROLL.elastic]
         sums[SUM.rolling] += rolling[q + ROLL.lost]
@@ -239,7 +358,20 @@ def add_rolling(rolling, sums):
 
 @kernel
 def total(energy, tally):
-    """Return one of the energies of TALLY over all parts: the sum of the lanes in four pairs."""
+    """Return one of the energies of TALLY over all parts: the sum of the lanes in four pairs.
+
+    Parameters
+    ----------
+    energy : int
+        One of TALLY.
+    tally : ndarray of float64
+        Energies of the parts, lane by lane.
+
+    Returns
+    -------
+    float
+        Its sum.
+    """
     result = 0.0
     for begin in range(LANES * energy, tally.size, LANES * len(TALLY)):
         lane = tally[begin : begin + LANES]
@@ -251,7 +383,24 @@ def total(energy, tally):
 
 @kernel
 def add_motion(dt, gravity, motion, sums):
-    """Add the way of the fastest disc (m) to the sums; return energies, see :func:`press_discs`."""
+    """Add the way of the fastest disc (m) to the sums; return energies, see :func:`press_discs`.
+
+    Parameters
+    ----------
+    dt : float
+        Time step (s).
+    gravity : float
+        Acceleration of gravity (m/s2).
+    motion : ndarray of float64
+        Sums over the discs of the parts.
+    sums : ndarray of float64
+        Running sums, :data:`SUM`.
+
+    Returns
+    -------
+    tuple of float
+        Kinetic and potential energy (J).
+    """
     kinetic, potential, fastest = 0.0, 0.0, 0.0
     for q in range(0, motion.size, MOTION):
         kinetic += motion[q + KINETIC] + motion[q + KINETIC + 1] + 0.5 * motion[q + KINETIC + 2]

@@ -198,6 +198,17 @@ def list_contacts(w, x, k, table):
     """Write a row of ``table`` for each contact that touches; returns their number.
 
     The lists of candidates have room for all.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    table : ndarray of float64, shape (n, columns)
+        Gets the contacts.
+
+    Returns
+    -------
+    int
     """
     bodies = bodies_of(x, k)
     pair, spring = view(k, k, A.pair), view(x, k, A.spring)

@@ -106,7 +106,15 @@ def unbalanced_force_ratio(w, x, k):
 
 @kernel
 def slow_down(factor, x, k):
-    """Multiply all velocities of the discs."""
+    """Multiply all velocities of the discs.
+
+    Parameters
+    ----------
+    factor : float
+        Without unit.
+    x, k : ndarray
+        State and integers of the instance.
+    """
     bodies = bodies_of(x, k)
     for i in range(bodies.rock):
         bodies.vx[i] *= factor
@@ -150,7 +158,18 @@ def come_to_rest(duration, dt, rate, rest, w, x, k):
 
 @kernel
 def settle(w, x, k):
-    """Let the discs come to rest and publish how far they are from it; returns the status."""
+    """Let the discs come to rest and publish how far they are from it; returns the status.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     dt = _SETTLING_STEP * w[V.stable_step]
     status = come_to_rest(w[V.settling_time], dt, _SETTLING_RATE, _AT_REST, w, x, k)
     w[V.unbalanced_force_ratio] = unbalanced_force_ratio(w, x, k)
@@ -201,6 +220,16 @@ def layer_height(w, x, k):
     """Return the height (m) of a layer of even density, above the mean level of the base.
 
     It has the centre of gravity of the discs, at half its height.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    float
+        Height (m).
     """
     bodies = bodies_of(x, k)
     mass, moment = 0.0, 0.0
@@ -213,7 +242,18 @@ def layer_height(w, x, k):
 
 @kernel
 def solid_fraction(w, x, k):
-    """Return the part of the layer that discs fill, with the height :func:`layer_height`."""
+    """Return the part of the layer that discs fill, with the height :func:`layer_height`.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    float
+        From 0 to 1.
+    """
     bodies = bodies_of(x, k)
     area = 0.0
     for i in range(bodies.rock):
@@ -223,7 +263,13 @@ def solid_fraction(w, x, k):
 
 @kernel
 def size_boundaries(w, x, k):
-    """Set radii of rock and beam discs, the roots of their masses, and the bodies far away."""
+    """Set radii of rock and beam discs, the roots of their masses, and the bodies far away.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     bodies = bodies_of(x, k)
     bodies.radius[bodies.rock] = w[V.rock_radius]
     bodies.half_root[bodies.rock] = 0.5 * math.sqrt(w[V.rock_mass])
@@ -236,7 +282,13 @@ def size_boundaries(w, x, k):
 
 @kernel
 def stand_still(x, k):
-    """Bring the rock far away, and rock and beam to rest."""
+    """Bring the rock far away, and rock and beam to rest.
+
+    Parameters
+    ----------
+    x, k : ndarray
+        State and integers of the instance.
+    """
     bodies = bodies_of(x, k)
     bodies.y[bodies.rock] = _FAR
     for b in range(bodies.rock, bodies.end):
@@ -294,7 +346,18 @@ def initialise(w, x, k):
 
 @kernel
 def preparation_fault(w):
-    """Return the fault of a layer that is not as dense as it was to be."""
+    """Return the fault of a layer that is not as dense as it was to be.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     if w[V.layer_solid_fraction] > w[V.solid_fraction] + _COLLAPSE:
         return TOO_LOOSE
     if w[V.layer_solid_fraction] < w[V.solid_fraction] - _DENSITY_TOLERANCE:
@@ -304,7 +367,17 @@ def preparation_fault(w):
 
 @kernel
 def beam_key(w, k):
-    """Return a number that changes with the beam's place, on which the sand has settled."""
+    """Return a number that changes with the beam's place, on which the sand has settled.
+
+    Parameters
+    ----------
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    float
+    """
     px, py = view(w, k, A.beam_position_x), view(w, k, A.beam_position_y)
     key = 0.0
     for b in range(px.size):

@@ -1,4 +1,7 @@
-"""Variables of the rock on its slope. Equations, frame, signs and sources: README.md beside this file."""
+"""Variables of the rock on its slope.
+
+Equations, frame, signs and sources are in README.md of this folder.
+"""
 
 from collections import namedtuple
 
@@ -22,37 +25,44 @@ SIZES = {"cells": Size(15, 1, 5000, "straight cells of the slope")}
 NEVER = 1e30
 """Time (s) of an event that does not come, and coordinate (m) that no rock reaches."""
 STEEPEST_JOINT = 0.5235987755982988
-"""Largest turn (rad, 30 degrees) at a joint of the path of the rock's centre round an outer corner; see geometry.py."""
+"""Largest turn (rad, 30 degrees) at a joint of the path of the rock's centre round an outer corner;
+see geometry.py."""
 JOINTS = 15
-"""Lines of the path per cell, at most: its facet and seven tangents at either end, as a corner turns by less than 180 degrees."""
+"""Lines of the path per cell, at most: its facet and seven tangents at either end, as a corner
+turns by less than 180 degrees."""
 
 Path = namedtuple("Path", "left right x y sin cos angle ahead_right ahead_left cell")
 PATH = Path(*range(10))
-"""Columns of a line of the path: bounds in x (m), a point on it (m), sine, cosine and angle (rad) of its inclination, angle of the
-next facet of the slope in either direction (its own if it belongs to a facet), number of the cell it takes its material from."""
+"""Columns of a line of the path: bounds in x (m), a point on it (m), sine, cosine and angle (rad)
+of its inclination, angle of the next facet of the slope in either direction (its own if it belongs
+to a facet), number of the cell it takes its material from."""
 
 Ground = namedtuple(
     "Ground",
-    "strength stiffness hardening friction resistance tilt tilt_deviation roughness roughness_deviation",
+    "strength stiffness hardening friction resistance tilt tilt_deviation roughness "
+    "roughness_deviation",
 )
 GROUND = Ground(*range(9))
-"""Columns of a cell's material: q_d, k, epsilon, mu, c_o, mean and deviation of K_s, mean and deviation of R_o."""
+"""Columns of a cell's material: q_d, k, epsilon, mu, c_o, mean and deviation of K_s, mean and
+deviation of R_o."""
 
 Body = namedtuple(
     "Body",
-    "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction roughness sin "
-    "cos normal_force shear_force drag limit_speed draws stalled impacts impact friction roughness_loss resistance work"
-    " handovers handover_time seed trial",
+    "time x y angle vx vy omega ax ay alpha mode line next_time next_event next_line direction "
+    "roughness sin cos normal_force shear_force drag limit_speed draws stalled impacts impact "
+    "friction roughness_loss resistance work handovers handover_time seed trial",
 )
 BODY = Body(*range(35))
-"""The rock at its last event: time (s), state of motion, constant accelerations until the next event, mode, line of the path; the
-next event; direction of motion, R_o, sine and cosine of phi, and the forces P, S, C (N) of the line motion; limit speed V_lim;
-number of random numbers drawn, of events in a row without progress, and of impacts; dissipated energies and work of the
-inputs (J); number of hand-overs and time of the last; which trial it is."""
+"""The rock at its last event: time (s), state of motion, constant accelerations until the next
+event, mode, line of the path; the next event; direction of motion, R_o, sine and cosine of phi, and
+the forces P, S, C (N) of the line motion; limit speed V_lim; number of random numbers drawn, of
+events in a row without progress, and of impacts; dissipated energies and work of the inputs (J);
+number of hand-overs and time of the last; which trial it is."""
 
 Clock = namedtuple("Clock", "origin begun")
 CLOCK = Clock(*range(2))
-"""The tool's time at the start of the trial, and the time of the trial at which the FMU has begun (s); see lead_time."""
+"""The tool's time at the start of the trial, and the time of the trial at which the FMU has begun
+(s); see lead_time."""
 
 EXAMPLE = (
     (0, 100),
@@ -79,7 +89,7 @@ _TABLE_1 = "Ushiro, table 1"
 
 
 def _node(number: int, sizes: Sizes, axis: int) -> float:
-    """Coordinate of node ``number`` of the example slope, divided into the cells of the component."""
+    """Return a coordinate (m) of a node of the example slope, divided into the present cells."""
     place = number * (len(EXAMPLE) - 1) / sizes["cells"]
     first = min(int(place), len(EXAMPLE) - 2)
     low, high = EXAMPLE[first][axis], EXAMPLE[first + 1][axis]
@@ -121,8 +131,8 @@ LAYOUT = Layout(
         param("radius", "radius of the rock", _RADIUS, "m", minimum=1e-6, source=_TABLE_1),
         choice(
             "shape",
-            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the parameter "
-            "moment_of_inertia",
+            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the "
+            "parameter moment_of_inertia",
             ("sphere", "disc", "given"),
             "sphere",
         ),
@@ -181,8 +191,8 @@ LAYOUT = Layout(
         count("trial", "number of the trial in the sample", 0, minimum=0, maximum=2**31 - 1),
         count(
             "hypercube",
-            "Latin hypercube: so many trials in a row share out the range of each of their random numbers; 0: "
-            "independent trials",
+            "Latin hypercube: so many trials in a row share out the range of each of their random "
+            "numbers; 0: independent trials",
             0,
             minimum=0,
             maximum=2**31 - 1,
@@ -235,21 +245,21 @@ LAYOUT = Layout(
         # model options
         choice(
             "restitution.gravity",
-            "gravity while the rock penetrates: printed takes its work out of the rebound only, eq. "
-            "(27); none leaves it out; consistent counts it on the way in and out",
+            "gravity while the rock penetrates: printed takes its work out of the rebound only, "
+            "eq. (27); none leaves it out; consistent counts it on the way in and out",
             ("printed", "none", "consistent"),
             "consistent",
         ),
         switch(
             "tilt_cap",
-            "limit the angle phi of an impact so that the penetrated ground cannot throw the rock back; off as "
-            "printed, and energy may then be gained",
+            "limit the angle phi of an impact so that the penetrated ground cannot throw the rock "
+            "back; off as printed, and energy may then be gained",
             True,
         ),
         choice(
             "tilt.meaning",
-            "K_s: relative = change of the slope angle / slope angle, as printed; absolute = that change "
-            "itself in rad",
+            "K_s: relative = change of the slope angle / slope angle, as printed; absolute = that "
+            "change itself in rad",
             ("relative", "absolute"),
             "relative",
         ),
@@ -271,8 +281,8 @@ LAYOUT = Layout(
         param("receiver.top", "upper side of the receiver", 0.0, "m"),
         param(
             "lead_time",
-            "begin so long before the rock enters the receiver for the first time, or at the start of the trial if "
-            "that is later; 1e30: at the start of the trial",
+            "begin so long before the rock enters the receiver for the first time, or at the "
+            "start of the trial if that is later; 1e30: at the start of the trial",
             NEVER,
             "s",
             minimum=0.0,
@@ -357,7 +367,8 @@ LAYOUT = Layout(
         out("height", "distance of the rock from the cell below it, along the cell's normal", "m"),
         out(
             "next_event.time",
-            "time at which the motion changes next if no force acts, rounded up to a picosecond; 1e30 if never",
+            "time at which the motion changes next if no force acts, rounded up to a picosecond; "
+            "1e30 if never",
             "s",
         ),
         out("impacts", "number of impacts so far", kind=Kind.INTEGER),

@@ -1,7 +1,8 @@
-"""From event to event: what the rock does until the next one, and what happens there. Equations (29)-(31).
+"""From event to event: what the rock does until the next one, and what happens there.
 
-The state at an event decides everything up to the next; nothing is accumulated in between. So a trial is the same whoever asks
-for it, and however often outputs are read on the way.
+Equations (29)-(31) of Ushiro. The state at an event decides everything up to the next; nothing is
+accumulated in between. So a trial is the same whoever asks for it, and however often outputs are
+read on the way.
 """
 
 import math
@@ -44,32 +45,47 @@ from .sliding_rolling import Loads, Touch, law, slip_of, start
 V, A = LAYOUT.scalar, LAYOUT.array
 
 SMALLEST_JUMP = 1e-9
-"""Height of a jump (m) below which even a rock without roughness stays in line motion: bouncing ends after a finite time."""
+"""Height of a jump (m) below which even a rock without roughness stays in line motion: bouncing
+ends after a finite time."""
 REST_SPEED = 1e-6
 """A rock that comes slower (m/s) than this to a node from which it can only climb rests there."""
 STALLED = 100
-"""A rock with this many events in a row within rounding of one time (wedged in an inner corner) rests there."""
+"""A rock with this many events in a row within rounding of one time (wedged in an inner corner)
+rests there."""
 _INSTANT = 1e-12
 """Time (s) between two events that counts as none."""
 _STEEPEST = 0.5 * math.pi - 1e-3
 """Inclination (rad) up to which K_s may tilt a cell."""
 _ORDERS = 1 << 32
-"""Streams of random numbers from here on, beyond those of all trials, are orders of the strata of Latin hypercubes."""
+"""Streams of random numbers from here on, beyond those of all trials, are orders of the strata of
+Latin hypercubes."""
 _SAME = 1e-12
 """Turn (rad) at a node that is none."""
 
 World = namedtuple(
     "World",
-    "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean limit_deviation "
-    "limit_kind roughness_kind tilt_kind tail hypercube receiver left right bottom top",
+    "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean "
+    "limit_deviation limit_kind roughness_kind tilt_kind tail hypercube receiver left right "
+    "bottom top",
 )
-"""Constants of a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the truncated
-normal. hypercube: trials of a Latin hypercube, or 0."""
+"""Constants of a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the
+truncated normal. hypercube: trials of a Latin hypercube, or 0."""
 
 
 @kernel
 def inertia(w):
-    """Moment of inertia in use (kg m2)."""
+    """Return the moment of inertia in use (kg m2).
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+        Moment of inertia (kg m2).
+    """
     if w[V.shape] == SPHERE:
         return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]
     return (
@@ -81,7 +97,17 @@ def inertia(w):
 
 @kernel
 def world(w, x, k):
-    """The constants that follow from the parameters and the path."""
+    """Return the :class:`World`: constants that follow from the parameters and the path.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    World
+    """
     ratio = inertia(w) / (w[V.mass] * w[V.radius] * w[V.radius])
     return World(
         view(k, k, A.lines)[0],
@@ -115,7 +141,26 @@ def world(w, x, k):
 
 @kernel
 def sample(world, kind, mean, deviation, source, b):
-    """The trial's next variate. source: its stream of random numbers."""
+    """Return the trial's next variate of a distribution, and count it.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    kind : int
+        NORMAL, UNIFORM, LOGNORMAL or TRIANGULAR.
+    mean, deviation : float
+        Mean and standard deviation, in the unit of the variate.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock; ``draws`` grows by one.
+
+    Returns
+    -------
+    float
+        The variate.
+    """
     number = b[BODY.draws]
     b[BODY.draws] = number + 1.0
     return variate(
@@ -125,9 +170,26 @@ def sample(world, kind, mean, deviation, source, b):
 
 @kernel
 def stratified(world, number, u, b):
-    """The trial's uniform number ``number`` from u in [0, 1): u itself, or moved into the trial's stratum of the Latin hypercube.
+    """Return u, or u moved into the trial's stratum of the Latin hypercube.
 
-    Of the ``hypercube`` trials of one hypercube each has a stratum of its own, in an order of its own for every number.
+    Of the ``hypercube`` trials of one hypercube each has a stratum of its own, in an order of its
+    own for every number.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    number : float
+        Which of the trial's random numbers it is, from 0.
+    u : float
+        Uniform number in [0, 1).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock.
+
+    Returns
+    -------
+    float
+        Uniform number in [0, 1).
     """
     if world.hypercube == 0:
         return u
@@ -138,7 +200,19 @@ def stratified(world, number, u, b):
 
 @kernel
 def sample_roughness(world, j, source, b):
-    """R_o for the arrival on line j, between 0 and 2; it holds until the next arrival."""
+    """Draw R_o for the arrival on line j, between 0 and 2; it holds until the next arrival.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     at = ground_of(world, j)
     rough = sample(
         world,
@@ -153,7 +227,24 @@ def sample_roughness(world, j, source, b):
 
 @kernel
 def sample_tilt(world, j, source, b):
-    """Change (rad) of the inclination of line j for an impact."""
+    """Return the change (rad) of the inclination of line j for an impact.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Change of the inclination (rad).
+    """
     at = ground_of(world, j)
     tilt = sample(
         world,
@@ -170,7 +261,19 @@ def sample_tilt(world, j, source, b):
 
 @kernel
 def ground_of(world, j):
-    """Where the material of line j begins in ``ground``."""
+    """Return where the material of line j begins in ``ground``.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+
+    Returns
+    -------
+    int
+    """
     return int(world.path[j * len(PATH) + PATH.cell]) * len(GROUND)
 
 
@@ -179,16 +282,31 @@ def ground_of(world, j):
 
 @kernel
 def begin(world, seed, trial, w, b):
-    """The rock at its start; returns whether it starts clear of the slope (or on it)."""
+    """Put the rock to its start and plan its first event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    seed, trial : int
+        Number of the sample, and of the trial in it.
+    w : ndarray of float64
+        Parameters.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock; overwritten.
+
+    Returns
+    -------
+    bool
+        Whether it starts clear of the slope or on it.
+    """
     for i in range(b.size):
         b[i] = 0.0
     b[BODY.x], b[BODY.y], b[BODY.angle] = w[V.position0_x], w[V.position0_y], w[V.angle0]
-    b[BODY.vx], b[BODY.vy], b[BODY.omega] = (
-        w[V.velocity0_x],
-        w[V.velocity0_y],
-        w[V.angular_velocity0],
-    )
-    b[BODY.handover_time], b[BODY.seed], b[BODY.trial] = NEVER, seed, trial
+    b[BODY.vx], b[BODY.vy] = w[V.velocity0_x], w[V.velocity0_y]
+    b[BODY.omega] = w[V.angular_velocity0]
+    b[BODY.handover_time] = NEVER
+    b[BODY.seed], b[BODY.trial] = seed, trial
     source = stream(seed, trial)
     limit = sample(world, world.limit_kind, world.limit_mean, world.limit_deviation, source, b)
     b[BODY.limit_speed] = max(limit, 0.0)
@@ -209,7 +327,21 @@ def begin(world, seed, trial, w, b):
 
 @kernel
 def settle_on_slope(world, j, source, b):
-    """A rock that starts in contact: line motion if it moves along the cell, an impact if into it, else flight."""
+    """Start a rock that touches line j.
+
+    It begins line motion if it moves along the line, strikes if it moves into it, and else flies.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     at = j * len(PATH)
     u, v = components(world, j, b)
     if v < -1e-12 * abs(u):
@@ -222,7 +354,13 @@ def settle_on_slope(world, j, source, b):
 
 @kernel
 def receive(b):
-    """The rock is handed over now."""
+    """Hand the rock over at its last event.
+
+    Parameters
+    ----------
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     b[BODY.mode] = RECEIVED
     b[BODY.handovers] += 1.0
     b[BODY.handover_time] = b[BODY.time]
@@ -233,27 +371,84 @@ def receive(b):
 
 @kernel
 def components(world, j, b):
-    """Velocity (m/s) along line j, to the right, and along its outward normal."""
+    """Return the velocity (m/s) along line j, to the right, and along its outward normal.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float
+        Along the line and along its normal (m/s).
+    """
     s, c = world.path[j * len(PATH) + PATH.sin], world.path[j * len(PATH) + PATH.cos]
     return b[BODY.vx] * c - b[BODY.vy] * s, b[BODY.vx] * s + b[BODY.vy] * c
 
 
 @kernel
 def set_velocity(world, j, u, v, b):
-    """The velocity (m/s) with these components along line j and its normal."""
+    """Set the velocity (m/s) from its components u along line j and v along its normal.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    u : float
+        Velocity along the line, to the right (m/s).
+    v : float
+        Velocity along its outward normal (m/s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     s, c = world.path[j * len(PATH) + PATH.sin], world.path[j * len(PATH) + PATH.cos]
     b[BODY.vx], b[BODY.vy] = u * c + v * s, v * c - u * s
 
 
 @kernel
 def jump_floor(world, b):
-    """Height (m) of a jump up to which the motion stays one along the line: R_o r, eqs (30) and (31)."""
+    """Return the height (m) of a jump up to which the motion stays one along the line.
+
+    It is R_o r, equations (30) and (31).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     return max(b[BODY.roughness] * world.radius, SMALLEST_JUMP)
 
 
 @kernel
 def kinetic(world, b):
-    """Kinetic energy (J) at the last event."""
+    """Return the kinetic energy (J) at the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     spin = world.radius * b[BODY.omega]
     return (
         0.5
@@ -267,8 +462,21 @@ def kinetic(world, b):
 
 @kernel
 def run_along(world, j, u, b):
-    """Line motion begins or goes on along line j with speed u (m/s, to the right), eqs (1)-(14); the mode may also be rest."""
-    at, on = j * len(PATH), ground_of(world, j)
+    """Begin line motion along line j, or go on with it, equations (1)-(14).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    u : float
+        Speed along it, to the right (m/s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock; its mode becomes rolling, sliding, spinning or rest.
+    """
+    at = j * len(PATH)
+    on = ground_of(world, j)
     weight = world.mass * world.gravity
     along, normal = weight * world.path[at + PATH.sin], weight * world.path[at + PATH.cos]
     drag = math.pi * world.radius * world.radius * world.ground[on + GROUND.resistance]
@@ -280,26 +488,29 @@ def run_along(world, j, u, b):
     else:
         d = 1.0 if u > 0.0 else -1.0
         motion = law(abs(u), d * b[BODY.omega], Loads(d * along, normal, drag), touch)
-    b[BODY.line], b[BODY.mode], b[BODY.direction], b[BODY.sin], b[BODY.cos] = (
-        j,
-        motion.mode,
-        d,
-        s,
-        c,
-    )
+    b[BODY.line] = j
+    b[BODY.mode] = motion.mode
+    b[BODY.direction] = d
+    b[BODY.sin], b[BODY.cos] = s, c
     b[BODY.normal_force], b[BODY.shear_force] = motion.normal_force, motion.shear_force
     b[BODY.drag] = drag
     set_velocity(world, j, u, 0.0, b)
-    b[BODY.ax], b[BODY.ay] = (
-        d * motion.acceleration * world.path[at + PATH.cos],
-        -d * motion.acceleration * world.path[at + PATH.sin],
-    )
+    b[BODY.ax] = d * motion.acceleration * world.path[at + PATH.cos]
+    b[BODY.ay] = -d * motion.acceleration * world.path[at + PATH.sin]
     b[BODY.alpha] = -d * motion.shear_force / (world.ratio * world.mass * world.radius)
 
 
 @kernel
 def plan(world, b):
-    """Accelerations of free motion, and kind and time of the next event."""
+    """Set the accelerations of free motion, and kind and time of the next event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     mode = b[BODY.mode]
     b[BODY.next_line] = b[BODY.line]
     if mode in (FLIGHT, RECEIVED):
@@ -315,37 +526,59 @@ def plan(world, b):
             world.lines,
             world.path,
         )
-        event, b[BODY.next_line] = IMPACT, j
+        event = IMPACT
+        b[BODY.next_line] = j
     elif mode == RECEIVED:
-        event, wait = LEAVE, departure(world, b)
+        event = LEAVE
+        wait = departure(world, b)
     elif mode == REST:
-        event, wait = 0, NEVER
+        event = 0
+        wait = NEVER
     else:
         event, wait = end_of_line_motion(world, b)
     if mode != RECEIVED:
         enters = entrance(world, b)
         if enters <= wait and enters < NEVER:
-            event, wait = ENTER, enters
-    b[BODY.next_event], b[BODY.next_time] = event, min(NEVER, b[BODY.time] + wait)
+            event = ENTER
+            wait = enters
+    b[BODY.next_event] = event
+    b[BODY.next_time] = min(NEVER, b[BODY.time] + wait)
 
 
 @kernel
 def end_of_line_motion(world, b):
-    """Kind of the event that ends a line motion, and the time (s) until then."""
-    j, d = int(b[BODY.line]), b[BODY.direction]
-    at = j * len(PATH)
+    """Return the kind of the event that ends a line motion, and the time (s) until then.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of int and float
+        Event, and time from the last one (s).
+    """
+    d = b[BODY.direction]
+    at = int(b[BODY.line]) * len(PATH)
     s, c = world.path[at + PATH.sin], world.path[at + PATH.cos]
     u, acceleration = d * (b[BODY.vx] * c - b[BODY.vy] * s), d * (b[BODY.ax] * c - b[BODY.ay] * s)
     turning, spin = d * world.radius * b[BODY.alpha], d * world.radius * b[BODY.omega]
     if b[BODY.mode] == SPINNING:
         return HALT, (-spin / turning if spin * turning < 0.0 else NEVER)
     bound = world.path[at + (PATH.right if d > 0.0 else PATH.left)]
-    event, wait = NODE, travel(d * (bound - b[BODY.x]) / c, u, acceleration)
+    event = NODE
+    wait = travel(d * (bound - b[BODY.x]) / c, u, acceleration)
     if acceleration < 0.0 and -u / acceleration < wait:
-        event, wait = HALT, -u / acceleration
-    slip, rate = slip_of(u, spin), acceleration + turning
+        event = HALT
+        wait = -u / acceleration
+    slip = slip_of(u, spin)
+    rate = acceleration + turning
     if b[BODY.mode] == SLIDING and slip * rate < 0.0 and -slip / rate < wait:
-        event, wait = GRIP, -slip / rate
+        event = GRIP
+        wait = -slip / rate
     limit = take_off_speed(world, c, b)
     reaches = NEVER
     if u >= limit:
@@ -353,13 +586,30 @@ def end_of_line_motion(world, b):
     elif acceleration > 0.0:
         reaches = (limit - u) / acceleration
     if reaches < wait:
-        event, wait = TAKE_OFF, reaches
+        return TAKE_OFF, reaches
     return event, wait
 
 
 @kernel
 def take_off_speed(world, c, b):
-    """Speed (m/s) at which line motion ends in a jump: V_lim, eq. (29), but at least that whose jump is none after eq. (31)."""
+    """Return the speed (m/s) at which line motion ends in a jump.
+
+    It is V_lim, equation (29), but at least that whose jump is none after equation (31).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    c : float
+        Cosine of the line's inclination.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock.
+
+    Returns
+    -------
+    float
+        Speed (m/s); NEVER on ground without roughness.
+    """
     rough = b[BODY.roughness]
     if rough * world.radius <= SMALLEST_JUMP:
         return NEVER
@@ -375,16 +625,29 @@ def take_off_speed(world, c, b):
 
 @kernel
 def happen(world, source, b):
-    """Bring the rock to its next event, let that happen, and plan what follows."""
+    """Bring the rock to its next event, let that happen, and plan what follows.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     waited = b[BODY.next_time] - b[BODY.time]
     b[BODY.stalled] = b[BODY.stalled] + 1.0 if waited < _INSTANT else 0.0
     dissipate(world, waited, b)
     move(b, b[BODY.next_time])
-    event, j, before = b[BODY.next_event], int(b[BODY.next_line]), kinetic(world, b)
+    event = b[BODY.next_event]
+    j = int(b[BODY.next_line])
+    before = kinetic(world, b)
     if event == ENTER:
         receive(b)
     elif event == LEAVE:
-        b[BODY.mode], b[BODY.line] = FLIGHT, line_below(b[BODY.x], world.lines, world.path)
+        b[BODY.mode] = FLIGHT
+        b[BODY.line] = line_below(b[BODY.x], world.lines, world.path)
     elif b[BODY.stalled] > STALLED:
         stop(world, b)
         b[BODY.impact] += before
@@ -402,14 +665,33 @@ def happen(world, source, b):
 
 @kernel
 def stop(world, b):
-    """The rock rests where it is."""
-    b[BODY.mode], b[BODY.vx], b[BODY.vy], b[BODY.omega] = REST, 0.0, 0.0, 0.0
+    """Let the rock rest where it is.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
+    b[BODY.mode] = REST
+    b[BODY.vx], b[BODY.vy], b[BODY.omega] = 0.0, 0.0, 0.0
     b[BODY.ax], b[BODY.ay], b[BODY.alpha] = 0.0, 0.0, 0.0
 
 
 @kernel
 def touch(world, j, b):
-    """Take the rounding out of the place of an impact: the rock touches line j."""
+    """Take the rounding out of the place of an impact: the rock touches line j.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     height = height_above(j, b[BODY.x], b[BODY.y], world.path)
     b[BODY.x] -= height * world.path[j * len(PATH) + PATH.sin]
     b[BODY.y] -= height * world.path[j * len(PATH) + PATH.cos]
@@ -417,12 +699,25 @@ def touch(world, j, b):
 
 @kernel
 def strike(world, j, source, b):
-    """Impact on line j, eqs (19)-(28), tilted by K_s; then line motion if the jump is lower than the roughness, eq. (31).
+    """Let the rock strike line j, tilted by K_s, equations (19)-(28).
 
-    The rock must leave the true cell: a velocity into it after the impact on the tilted one is turned along it. A tilt by which
-    the rock would not even approach the tilted cell is left out.
+    Line motion follows if the jump is lower than the roughness, equation (31). The rock must leave
+    the true cell: a velocity into it after the impact on the tilted one is turned along it. A tilt
+    by which the rock would not even approach the tilted cell is left out.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock.
     """
-    before, at = kinetic(world, b), j * len(PATH)
+    before = kinetic(world, b)
+    at = j * len(PATH)
     tilt = sample_tilt(world, j, source, b)
     sample_roughness(world, j, source, b)
     u, v = components(world, j, b)
@@ -433,8 +728,11 @@ def strike(world, j, source, b):
     tilted_u, tilted_v, omega = bounce(
         world, j, u * c - v * s, min(0.0, u * s + v * c), b[BODY.omega], world.gravity * normal
     )
-    u, v = tilted_u * c + tilted_v * s, max(0.0, tilted_v * c - tilted_u * s)
-    b[BODY.omega], b[BODY.mode], b[BODY.line] = omega, FLIGHT, j
+    u = tilted_u * c + tilted_v * s
+    v = max(0.0, tilted_v * c - tilted_u * s)
+    b[BODY.omega] = omega
+    b[BODY.mode] = FLIGHT
+    b[BODY.line] = j
     b[BODY.impacts] += 1.0
     if v * v <= 2.0 * world.gravity * world.path[at + PATH.cos] * jump_floor(world, b):
         run_along(world, j, u, b)
@@ -445,9 +743,29 @@ def strike(world, j, source, b):
 
 @kernel
 def bounce(world, j, u, v, omega, gravity):
-    """Velocities after an impact in the frame of the (tilted) line; gravity: its component along the normal (m/s2)."""
+    """Return the velocities after an impact, in the frame of the (tilted) line.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    u, v : float
+        Velocity along the line and along its normal, v <= 0 (m/s).
+    omega : float
+        Angular velocity (rad/s).
+    gravity : float
+        Its component along the normal (m/s2).
+
+    Returns
+    -------
+    tuple of float
+        u, v (m/s) and omega (rad/s) after it.
+    """
     at = ground_of(world, j)
-    g, d = world.ground, (1.0 if u >= 0.0 else -1.0)
+    g = world.ground
+    d = 1.0 if u >= 0.0 else -1.0
     e, delta = restitution(
         -v,
         world.mass,
@@ -475,12 +793,23 @@ def bounce(world, j, u, v, omega, gravity):
 
 @kernel
 def pass_node(world, source, b):
-    """From a line to the next: a jump where it is steeper, eq. (30), an impact where it is less steep, else on along it.
+    """Pass from a line to the next.
 
-    Round a corner the rock is guided and keeps its speed. Of the tangents that stand for a corner each is compared with the facet
-    that follows.
+    The rock jumps where the next one is steeper, equation (30), strikes where it is less steep, and
+    else goes on along it. Round a corner the rock is guided and keeps its speed. Of the tangents
+    that stand for a corner each is compared with the facet that follows.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
     """
-    old, d = int(b[BODY.line]), b[BODY.direction]
+    old = int(b[BODY.line])
+    d = b[BODY.direction]
     new = old + int(d)
     u, _ = components(world, old, b)
     b[BODY.x] = world.path[old * len(PATH) + (PATH.right if d > 0.0 else PATH.left)]
@@ -498,15 +827,25 @@ def pass_node(world, source, b):
     ahead = d * world.path[at + (PATH.ahead_right if d > 0.0 else PATH.ahead_left)]
     away = u * math.sin(ahead - d * world.path[old * len(PATH) + PATH.angle])
     if turn > _SAME and away * away >= 2.0 * world.gravity * math.cos(ahead) * jump_floor(world, b):
-        b[BODY.mode], b[BODY.line] = FLIGHT, new
+        b[BODY.mode] = FLIGHT
+        b[BODY.line] = new
     else:
         run_along(world, new, u, b)
 
 
 @kernel
 def take_off(world, b):
-    """Jump with the angle rho = arctan(R_o) from the line, eq. (29); the speed is kept."""
-    j, rough = int(b[BODY.line]), b[BODY.roughness]
+    """Jump with the angle rho = arctan(R_o) from the line, eq. (29); the speed is kept.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
+    j = int(b[BODY.line])
+    rough = b[BODY.roughness]
     u, _ = components(world, j, b)
     length = math.sqrt(1.0 + rough * rough)
     set_velocity(world, j, u / length, abs(u) * rough / length, b)
@@ -515,7 +854,17 @@ def take_off(world, b):
 
 @kernel
 def change_line_motion(world, event, b):
-    """Slip has come to its end (GRIP), or the motion, or the spin (HALT)."""
+    """Go on after the end of slip (GRIP), or of the motion or the spin (HALT).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    event : int
+        Event that ends the motion: GRIP or HALT.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     j = int(b[BODY.line])
     u, _ = components(world, j, b)
     if event == GRIP:
@@ -534,14 +883,27 @@ def change_line_motion(world, event, b):
 
 @kernel
 def losses(world, span, b):
-    """Energies (J) that friction, roughness and resistance take in ``span`` seconds from the last event on."""
+    """Return the energies (J) that line motion takes in ``span`` seconds from the last event on.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    span : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float
+        Those that friction, roughness and resistance take (J).
+    """
     if not ROLLING <= b[BODY.mode] <= SPINNING:
         return 0.0, 0.0, 0.0
     along = math.sqrt(b[BODY.vx] * b[BODY.vx] + b[BODY.vy] * b[BODY.vy])
-    s, c = (
-        world.path[int(b[BODY.line]) * len(PATH) + PATH.sin],
-        world.path[int(b[BODY.line]) * len(PATH) + PATH.cos],
-    )
+    at = int(b[BODY.line]) * len(PATH)
+    s, c = world.path[at + PATH.sin], world.path[at + PATH.cos]
     d = b[BODY.direction]
     way = span * (along + 0.5 * span * d * (b[BODY.ax] * c - b[BODY.ay] * s))
     turned = d * world.radius * span * (b[BODY.omega] + 0.5 * span * b[BODY.alpha])
@@ -554,7 +916,17 @@ def losses(world, span, b):
 
 @kernel
 def dissipate(world, span, b):
-    """Book the energies that line motion takes until ``span`` seconds after the last event."""
+    """Book the energies that line motion takes until ``span`` seconds after the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    span : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    """
     friction, roughness, resistance = losses(world, span, b)
     b[BODY.friction] += friction
     b[BODY.roughness_loss] += roughness

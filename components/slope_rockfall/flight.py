@@ -1,4 +1,7 @@
-"""Motion with constant accelerations between two events, and the exact times at which it meets something. Equations (15)-(18)."""
+"""Motion with constant accelerations, and the exact times at which it meets something.
+
+Equations (15)-(18) of Ushiro; between two events all accelerations are constant.
+"""
 
 import math
 
@@ -8,7 +11,15 @@ from .declarations import BODY, NEVER, PATH
 
 @kernel
 def move(b, time):
-    """Bring the rock to a time (s) before its next event; it keeps its accelerations."""
+    """Bring the rock to a time (s) before its next event; it keeps its accelerations.
+
+    Parameters
+    ----------
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    time : float
+        Time (s).
+    """
     span = time - b[BODY.time]
     b[BODY.x] += span * (b[BODY.vx] + 0.5 * span * b[BODY.ax])
     b[BODY.y] += span * (b[BODY.vy] + 0.5 * span * b[BODY.ay])
@@ -21,7 +32,22 @@ def move(b, time):
 
 @kernel
 def travel(distance, speed, acceleration):
-    """Time (s) in which a point with this speed >= 0 has gone ``distance`` >= 0 first; NEVER if it turns back before."""
+    """Return the time (s) in which a point first goes a distance; NEVER if it turns back before.
+
+    Parameters
+    ----------
+    distance : float
+        Not negative (m).
+    speed : float
+        At the start, not negative (m/s).
+    acceleration : float
+        Constant (m/s2).
+
+    Returns
+    -------
+    float
+        The time (s).
+    """
     if distance <= 0.0:
         return 0.0
     square = speed * speed + 2.0 * acceleration * distance
@@ -32,7 +58,22 @@ def travel(distance, speed, acceleration):
 
 @kernel
 def passing(place, speed, acceleration, bound, direction):
-    """Time (s) at which a coordinate passes ``bound`` in this direction (+1 or -1); NEVER if it does not."""
+    """Return the time (s) at which a coordinate passes a bound; NEVER if it does not.
+
+    Parameters
+    ----------
+    place, speed, acceleration : float
+        Coordinate now (m), its velocity (m/s) and constant acceleration (m/s2).
+    bound : float
+        Value that it passes (m).
+    direction : float
+        1 for passing upwards, -1 for passing downwards.
+
+    Returns
+    -------
+    float
+        The time (s) from now.
+    """
     distance, v, a = direction * (bound - place), direction * speed, direction * acceleration
     square = v * v + 2.0 * a * distance
     if square < 0.0:
@@ -45,10 +86,28 @@ def passing(place, speed, acceleration, bound, direction):
 
 @kernel
 def landing(j, x, y, vx, vy, gravity, lines, path):
-    """Time (s) from now at which a rock in flight meets the path, and the number of the line that it meets.
+    """Return when a rock in flight meets the path, and on which line.
 
-    (x, y): centre, above line j. On each line in its way the normal distance is a concave parabola of time: it has one root
-    after the entry, which counts if the rock is still over the line then.
+    On each line in its way the normal distance is a concave parabola of time: it has one root after
+    the entry, which counts if the rock is still over the line then.
+
+    Parameters
+    ----------
+    j : int
+        Line below the centre.
+    x, y, vx, vy : float
+        Position (m) and velocity (m/s) of the centre.
+    gravity : float
+        Acceleration of gravity (m/s2).
+    lines : int
+        Number of lines of the path.
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    tuple of float and int
+        Time (s) from now, and number of the line.
     """
     entered = 0.0
     while True:

@@ -1,9 +1,10 @@
 """The path of the rock's centre: the slope, moved outwards by the rock's radius.
 
-A rock touches a facet when its centre lies on the facet's line moved out by r, and a corner when it lies on the arc of radius r
-round it. The path is the upper envelope of these: a cell too narrow for the rock drops out. The arcs are replaced by tangents, so
-that no joint round a corner turns by more than 30 degrees: the path lies on or above the exact one, by less than 3.6 % of r. The
-rock never cuts into the slope, and all its motion is that of a point on straight lines.
+A rock touches a facet when its centre lies on the facet's line moved out by r, and a corner when it
+lies on the arc of radius r round it. The path is the upper envelope of these: a cell too narrow for
+the rock drops out. The arcs are replaced by tangents, so that no joint round a corner turns by more
+than 30 degrees: the path lies on or above the exact one, by less than 3.6 % of r. The rock never
+cuts into the slope, and all its motion is that of a point on straight lines.
 """
 
 import math
@@ -22,7 +23,20 @@ _UPRIGHT = 0.5 * math.pi - 1e-3
 
 @kernel
 def node(i, w, k):
-    """Coordinates (m) of node i of the slope."""
+    """Return the coordinates (m) of node i of the slope.
+
+    Parameters
+    ----------
+    i : int
+        Number of the node or cell.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    tuple of float
+        x and y (m).
+    """
     if i == 0:
         return w[V.profile_x], w[V.profile_y]
     return view(w, k, A.end_x)[i - 1], view(w, k, A.end_y)[i - 1]
@@ -30,7 +44,20 @@ def node(i, w, k):
 
 @kernel
 def inclination(i, w, k):
-    """Angle (rad) of cell i, positive if it descends to the right."""
+    """Return the angle (rad) of cell i, positive if it descends to the right.
+
+    Parameters
+    ----------
+    i : int
+        Number of the node or cell.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    float
+        Angle (rad).
+    """
     x0, y0 = node(i, w, k)
     x1, y1 = node(i + 1, w, k)
     return math.atan2(y0 - y1, x1 - x0)
@@ -38,14 +65,34 @@ def inclination(i, w, k):
 
 # --- which cells the rock can touch ---
 #
-# The centre of a rock that touches a cell with its corners lies on a line with an arc of radius r at either end. Of two cells the
-# left one's lies higher on the left and lower on the right, for it consists of arcs round points that are all farther left. So each
-# cell, from left to right, hides the newest ones altogether or from one place on.
+# The centre of a rock that touches a cell with its corners lies on a line with an arc of radius r
+# at either end. Of two cells the left one's lies higher on the left and lower on the right, for it
+# consists of arcs round points that are all farther left. So each cell, from left to right, hides
+# the newest ones altogether or from one place on.
 
 
 @kernel
 def facet_range(i, cells, radius, w, k):
-    """Range of x (m) of the centre of a rock that touches cell i between its corners. The end cells have no end."""
+    """Return the range of x (m) of the centre of a rock that touches cell i between its corners.
+
+    The end cells have no end.
+
+    Parameters
+    ----------
+    i : int
+        Number of the node or cell.
+    cells : int
+        Number of cells.
+    radius : float
+        Radius of the rock (m).
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    tuple of float
+        Smallest and largest x (m).
+    """
     s = math.sin(inclination(i, w, k))
     left, _ = node(i, w, k)
     right, _ = node(i + 1, w, k)
@@ -54,7 +101,26 @@ def facet_range(i, cells, radius, w, k):
 
 @kernel
 def centre_y(i, x, cells, radius, w, k):
-    """Height (m) of the centre of a rock that touches cell i or its corners with its centre at x, not beyond these."""
+    """Return the height (m) of the centre, at x, of a rock that touches cell i or its corners.
+
+    Parameters
+    ----------
+    i : int
+        Number of the cell.
+    x : float
+        Place of the centre (m), not beyond the arcs round the corners.
+    cells : int
+        Number of cells.
+    radius : float
+        Radius of the rock (m).
+    w, k : ndarray
+        Parameters and table of arrays.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     begin, end = facet_range(i, cells, radius, w, k)
     px, py = node(i + 1 if x > end else i, w, k)
     if begin <= x <= end:
@@ -65,7 +131,24 @@ def centre_y(i, x, cells, radius, w, k):
 
 @kernel
 def takeover(i, other, cells, radius, w, k):
-    """x (m) from which on cell ``other``, on the right, is the one that the rock touches, and not cell i."""
+    """Return the x (m) from which on a rock touches a cell farther right, and not cell i.
+
+    Parameters
+    ----------
+    i, other : int
+        Numbers of the two cells, ``other`` on the right.
+    cells : int
+        Number of cells.
+    radius : float
+        Radius of the rock (m).
+    w, k : ndarray
+        Parameters and table of arrays.
+
+    Returns
+    -------
+    float
+        Place of the rock's centre (m).
+    """
     if other == i + 1 and inclination(other, w, k) >= inclination(i, w, k):
         return facet_range(i, cells, radius, w, k)[1]
     low, high = node(other, w, k)[0] - radius, node(i + 1, w, k)[0] + radius
@@ -84,9 +167,23 @@ def takeover(i, other, cells, radius, w, k):
 
 @kernel
 def visible(w, x, k):
-    """Cells that the rock can touch, from left to right, with the x (m) from which on it does. Returns their number."""
+    """List the cells that the rock can touch, from left to right, and return their number.
+
+    ``order`` gets the cells, ``order_begin`` the x (m) from which on the rock touches each.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Number of these cells.
+    """
     begin, order = view(x, k, A.order_begin), view(k, k, A.order)
-    cells, count = k[A.end_x + 1], 0
+    cells = k[A.end_x + 1]
+    count = 0
     for i in range(cells):
         place = -NEVER
         while count > 0:
@@ -94,7 +191,8 @@ def visible(w, x, k):
             if place > begin[count - 1]:
                 break
             count -= 1
-        begin[count], order[count] = place if count > 0 else -NEVER, i
+        begin[count] = place if count > 0 else -NEVER
+        order[count] = i
         count += 1
     begin[count] = NEVER
     return count
@@ -105,10 +203,19 @@ def visible(w, x, k):
 
 @kernel
 def build_path(w, x, k):
-    """Lines of the path from left to right; their number goes to ``lines``. The first and the last have no end."""
+    """Lay the lines of the path from left to right; their number goes to ``lines``.
+
+    The first and the last have no end.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     begin, order, path = view(x, k, A.order_begin), view(k, k, A.order), view(x, k, A.path)
-    cells, visible_cells, count = k[A.end_x + 1], visible(w, x, k), 0
-    for q in range(visible_cells):
+    cells = k[A.end_x + 1]
+    count = 0
+    for q in range(visible(w, x, k)):
         i, start, end = order[q], begin[q], begin[q + 1]
         line_start, line_end = facet_range(i, cells, w[V.radius], w, k)
         if start < line_start:
@@ -133,7 +240,28 @@ def build_path(w, x, k):
 
 @kernel
 def round_corner(count, i, start, end, after_facet, before_facet, w, k, path):
-    """Append tangents of the arc round node i between two x (m); a facet beside it is its first or last one. Returns the number."""
+    """Append tangents of the arc round node i between two x (m), and return the number of lines.
+
+    Parameters
+    ----------
+    count : int
+        Number of lines so far.
+    i : int
+        Number of the node.
+    start, end : float
+        Range of the centre (m).
+    after_facet, before_facet : bool
+        Whether the first tangent is a facet's line, and whether the last one is.
+    w, k : ndarray
+        Parameters and table of arrays.
+    path : ndarray of float64
+        The path.
+
+    Returns
+    -------
+    int
+        Number of lines.
+    """
     px, py = node(i, w, k)
     first = math.asin(min(max((start - px) / w[V.radius], -1.0), 1.0))
     last = math.asin(min(max((end - px) / w[V.radius], -1.0), 1.0))
@@ -146,9 +274,29 @@ def round_corner(count, i, start, end, after_facet, before_facet, w, k, path):
 
 @kernel
 def append(count, angle, px, py, radius, cell, left, right, begin, path):
-    """Append the line of this angle at distance ``radius`` from node (px, py). Returns the new number of lines.
+    """Append a line at distance ``radius`` from a node, and return the new number of lines.
 
-    left, right: angles of the facets on either side; begin: where the line begins if it is parallel to the one before.
+    Parameters
+    ----------
+    count : int
+        Number of lines so far.
+    angle : float
+        Inclination of the line (rad).
+    px, py, radius : float
+        The node and the distance from it (m).
+    cell : int
+        Cell whose material the line has.
+    left, right : float
+        Angles of the facets on either side (rad).
+    begin : float
+        Where the line begins (m) if it is parallel to the one before.
+    path : ndarray of float64
+        The path.
+
+    Returns
+    -------
+    int
+        Number of lines.
     """
     s, c = math.sin(angle), math.cos(angle)
     x, y = px + radius * s, py + radius * c
@@ -158,24 +306,35 @@ def append(count, angle, px, py, radius, cell, left, right, begin, path):
         start = max(crossing(count - 1, s, c, x, y, begin, path), path[before + PATH.left])
         path[before + PATH.right] = start
     at = count * len(PATH)
-    path[at + PATH.left], path[at + PATH.right], path[at + PATH.x], path[at + PATH.y] = (
-        start,
-        NEVER,
-        x,
-        y,
-    )
-    path[at + PATH.sin], path[at + PATH.cos], path[at + PATH.angle] = s, c, angle
-    path[at + PATH.ahead_left], path[at + PATH.ahead_right], path[at + PATH.cell] = (
-        left,
-        right,
-        cell,
-    )
+    path[at + PATH.left], path[at + PATH.right] = start, NEVER
+    path[at + PATH.x], path[at + PATH.y] = x, y
+    path[at + PATH.sin], path[at + PATH.cos] = s, c
+    path[at + PATH.angle] = angle
+    path[at + PATH.ahead_left], path[at + PATH.ahead_right] = left, right
+    path[at + PATH.cell] = cell
     return count + 1
 
 
 @kernel
 def crossing(j, s, c, x, y, otherwise, path):
-    """x at which line j of the path meets the line through (x, y) with sine s and cosine c; ``otherwise`` if they are parallel."""
+    """Return the x (m) at which line j of the path meets another line.
+
+    Parameters
+    ----------
+    j : int
+        Number of the line.
+    s, c, x, y : float
+        Sine and cosine of the other line's inclination, and a point on it (m).
+    otherwise : float
+        Returned if they are parallel (m).
+    path : ndarray of float64
+        The path.
+
+    Returns
+    -------
+    float
+        x (m) of the crossing.
+    """
     at = j * len(PATH)
     s0, c0 = path[at + PATH.sin], path[at + PATH.cos]
     turn = s * c0 - c * s0
@@ -187,7 +346,22 @@ def crossing(j, s, c, x, y, otherwise, path):
 
 @kernel
 def line_below(x, lines, path):
-    """Number of the line of the path above or below x (m)."""
+    """Return the number of the line of the path above or below x (m).
+
+    Parameters
+    ----------
+    x : float
+        Place (m).
+    lines : int
+        Number of its lines.
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    int
+        Number of the line.
+    """
     low, high = 0, lines - 1
     while low < high:
         middle = (low + high) // 2
@@ -200,7 +374,26 @@ def line_below(x, lines, path):
 
 @kernel
 def height_above(j, x, y, path):
-    """Distance (m) of the centre from line j of the path, along its normal: that of the rock from the facet."""
+    """Return the distance (m) of the centre from line j of the path, along its normal.
+
+    It is that of the rock from the facet.
+
+    Parameters
+    ----------
+    j : int
+        Line of the path.
+    x : float
+        Place of the centre, to the right (m).
+    y : float
+        Height of the centre (m).
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    float
+        Distance (m), negative below the line.
+    """
     at = j * len(PATH)
     return (x - path[at + PATH.x]) * path[at + PATH.sin] + (y - path[at + PATH.y]) * path[
         at + PATH.cos
@@ -209,6 +402,21 @@ def height_above(j, x, y, path):
 
 @kernel
 def path_y(j, x, path):
-    """Height y (m) of line j of the path at x."""
+    """Return the height y (m) of line j of the path at x.
+
+    Parameters
+    ----------
+    j : int
+        Line of the path.
+    x : float
+        Place (m).
+    path : ndarray of float64, shape (lines * len(PATH),)
+        The path.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
     at = j * len(PATH)
     return path[at + PATH.y] - (x - path[at + PATH.x]) * path[at + PATH.sin] / path[at + PATH.cos]

@@ -1,4 +1,7 @@
-"""Life of the rock as an FMU: start, event-driven motion on the slope, motion under outside forces in the receiver."""
+"""Life of the rock as an FMU: start, motion from event to event, motion in the receiver.
+
+In the receiver outside forces move the rock.
+"""
 
 import math
 
@@ -26,26 +29,52 @@ __all__ = ["evaluate", "initialise", "problems", "step"]
 V, A = LAYOUT.scalar, LAYOUT.array
 
 UNBOUNDED_STEP = 1e6
-"""Published as stable step (s): without outside forces that depend on the motion, every step is stable."""
+"""Published as stable step (s): without outside forces that depend on the motion, every step is
+stable."""
 TOUCHING = 1e-9
 """Depth (m) below the path that is rounding."""
 MOST_EVENTS = 1_000_000
 """Events in one communication step after which something must be wrong."""
 _GRID = 1e12
-"""Times are taken in whole picoseconds, so that the rounding of a tool's clock does not reach the outputs."""
+"""Times are taken in whole picoseconds, so that the rounding of a tool's clock does not reach the
+outputs."""
 _COARSE = 2.0**52 / _GRID
 """Time (s) beyond which numbers are too far apart to tell picoseconds."""
 
 
 @kernel
 def on_grid(time):
-    """The time (s) in whole picoseconds."""
+    """Return a time (s) in whole picoseconds.
+
+    Parameters
+    ----------
+    time : float
+        Time (s).
+
+    Returns
+    -------
+    float
+        Time (s).
+    """
     return math.floor(time * _GRID + 0.5) / _GRID
 
 
 @kernel
 def grid_after(time):
-    """The first whole picosecond (s) that is not before the time (s): a step that ends there has what happens then behind it."""
+    """Return the first whole picosecond (s) that is not before a time (s).
+
+    A step that ends there has what happens then behind it.
+
+    Parameters
+    ----------
+    time : float
+        Time (s).
+
+    Returns
+    -------
+    float
+        Time (s).
+    """
     if time > _COARSE:
         return time
     number = math.floor(time * _GRID)
@@ -59,30 +88,41 @@ def grid_after(time):
 
 @kernel
 def lay_ground(w, x, k):
-    """The materials, cell by cell."""
+    """Copy the materials, cell by cell.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     ground = view(x, k, A.ground)
     for c in range(k[A.end_x + 1]):
         at = c * len(GROUND)
-        ground[at + GROUND.strength], ground[at + GROUND.stiffness] = (
-            view(w, k, A.strength)[c],
-            view(w, k, A.stiffness)[c],
-        )
-        ground[at + GROUND.hardening], ground[at + GROUND.friction] = (
-            view(w, k, A.hardening)[c],
-            view(w, k, A.friction)[c],
-        )
+        ground[at + GROUND.strength] = view(w, k, A.strength)[c]
+        ground[at + GROUND.stiffness] = view(w, k, A.stiffness)[c]
+        ground[at + GROUND.hardening] = view(w, k, A.hardening)[c]
+        ground[at + GROUND.friction] = view(w, k, A.friction)[c]
         ground[at + GROUND.resistance] = view(w, k, A.resistance)[c]
-        ground[at + GROUND.tilt], ground[at + GROUND.tilt_deviation] = (
-            view(w, k, A.tilt)[c],
-            view(w, k, A.tilt_deviation)[c],
-        )
+        ground[at + GROUND.tilt] = view(w, k, A.tilt)[c]
+        ground[at + GROUND.tilt_deviation] = view(w, k, A.tilt_deviation)[c]
         ground[at + GROUND.roughness] = view(w, k, A.roughness)[c]
         ground[at + GROUND.roughness_deviation] = view(w, k, A.roughness_deviation)[c]
 
 
 @kernel
 def prepare(w, x, k):
-    """Path and materials from the parameters. Returns the status: OK, or the first fault of the parameters."""
+    """Compute path and materials from the parameters.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        OK, or the first fault of the parameters.
+    """
     fault = first_fault(w, k)
     if fault != OK:
         return fault
@@ -93,7 +133,18 @@ def prepare(w, x, k):
 
 @kernel
 def initialise(w, x, k):
-    """The rock at its start, or ``lead_time`` before it is handed over, and what it will do first."""
+    """Put the rock to its start, or to ``lead_time`` before its first hand-over, and plan ahead.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     clock, b = view(x, k, A.clock), view(x, k, A.body)
     view(k, k, A.started)[0] = 0
     clock[CLOCK.origin], clock[CLOCK.begun] = 0.0, 0.0
@@ -114,7 +165,30 @@ def initialise(w, x, k):
 
 @kernel
 def skip(world, seed, trial, w, b, clock):
-    """Bring the trial to ``lead_time`` before its first hand-over: once to learn when that is, and once again up to there."""
+    """Bring the trial to ``lead_time`` before its first hand-over, and return the status.
+
+    The trial runs once to learn when that is, and once again up to there.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    seed : int
+        Number of the sample.
+    trial : int
+        Number of the trial in the sample.
+    w : ndarray of float64
+        Variables of the instance.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    clock : ndarray of float64, shape (len(CLOCK),)
+        Origin and beginning of the time (s).
+
+    Returns
+    -------
+    int
+        Status.
+    """
     entry = first_entry(world, stream(seed, trial), b)
     begin(world, seed, trial, w, b)
     if entry == NEVER:
@@ -126,7 +200,24 @@ def skip(world, seed, trial, w, b, clock):
 
 @kernel
 def first_entry(world, source, b):
-    """Time (s) at which the rock is handed over for the first time; NEVER if it is not. The rock is elsewhere then."""
+    """Return the time (s) at which the rock is handed over for the first time; NEVER if it is not.
+
+    The rock is moved to there.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Time (s).
+    """
     for _ in range(MOST_EVENTS):
         if b[BODY.handovers] > 0.0:
             return b[BODY.handover_time]
@@ -138,7 +229,18 @@ def first_entry(world, source, b):
 
 @kernel
 def evaluate(w, x, k):
-    """Outputs at the start: :func:`initialise` has set them, and they do not depend on the inputs."""
+    """Accept the inputs: :func:`initialise` has set the outputs, and they do not depend on them.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status: OK.
+    """
     return OK
 
 
@@ -147,7 +249,20 @@ def evaluate(w, x, k):
 
 @kernel
 def step(t, h, w, x, k):
-    """Advance by h (s): from event to event, or with constant force and torque where the rock is handed over."""
+    """Advance by h (s): from event to event, or under constant load where the rock is handed over.
+
+    Parameters
+    ----------
+    t, h : float
+        Start and length of the step (s).
+    w, x, k : ndarray
+        Variables, state and table of arrays.
+
+    Returns
+    -------
+    int
+        Status.
+    """
     started, clock, b = view(k, k, A.started), view(x, k, A.clock), view(x, k, A.body)
     if started[0] == 0:
         started[0], clock[CLOCK.origin] = 1, t - clock[CLOCK.begun]
@@ -165,7 +280,24 @@ def step(t, h, w, x, k):
 
 @kernel
 def advance(world, source, end, b):
-    """Let everything happen up to the time ``end`` (s). Returns the status."""
+    """Let everything happen up to the time ``end`` (s), and return the status.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    source : int
+        Stream of random numbers of the trial.
+    end : float
+        Time (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    int
+        Status: OK, LEFT_BELOW or RESTLESS.
+    """
     for _ in range(MOST_EVENTS):
         if not b[BODY.next_time] <= end:
             return OK
@@ -181,7 +313,28 @@ def advance(world, source, end, b):
 
 @kernel
 def push(world, now, end, h, w, b):
-    """Move the rock for h (s) in the receiver, as FallingRock does, and return the status."""
+    """Move the rock for h (s) in the receiver, as FallingRock does, and return the status.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    now : float
+        Time at the start of the step (s).
+    end : float
+        Time at the end of the step (s).
+    h : float
+        Length of the step (s).
+    w : ndarray of float64
+        Variables of the instance.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    int
+        Status: OK or DIVERGED.
+    """
     move(b, now)
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
@@ -203,7 +356,15 @@ def push(world, now, end, h, w, b):
 
 @kernel
 def publish(time, w, x, k):
-    """Outputs at a time (s) not after the next event, from the last event's state."""
+    """Publish the outputs at a time (s) not after the next event, from the last event's state.
+
+    Parameters
+    ----------
+    time : float
+        Time (s).
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     constants, b = world(w, x, k), view(x, k, A.body)
     span = max(0.0, time - b[BODY.time])
     w[V.position_x] = b[BODY.x] + span * (b[BODY.vx] + 0.5 * span * b[BODY.ax])
@@ -218,7 +379,17 @@ def publish(time, w, x, k):
 
 @kernel
 def publish_place(world, b, w, x, k):
-    """Mode, cell, height, next event and hand-over."""
+    """Publish mode, cell, height, next event and hand-over.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+    """
     origin = view(x, k, A.clock)[CLOCK.origin]
     j = line_below(w[V.position_x], world.lines, world.path)
     w[V.mode] = b[BODY.mode]
@@ -232,7 +403,19 @@ def publish_place(world, b, w, x, k):
 
 @kernel
 def publish_energies(world, span, b, w):
-    """Energies ``span`` seconds after the last event, and the residual."""
+    """Publish the energies ``span`` seconds after the last event, and the residual.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    span : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    w : ndarray of float64
+        Variables of the instance.
+    """
     spin = world.radius * w[V.angular_velocity]
     square = (
         w[V.velocity_x] * w[V.velocity_x]

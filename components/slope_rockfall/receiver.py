@@ -1,4 +1,7 @@
-"""The receiver: a box in which the rock is handed over, and moves under its weight and the forces given from outside."""
+"""The receiver: a box in which the rock is handed over.
+
+There it moves under its weight and the forces that come from outside.
+"""
 
 from ..common.kernels import kernel
 from .declarations import BODY, NEVER
@@ -7,13 +10,42 @@ from .flight import passing
 
 @kernel
 def inside(world, x, y):
-    """Whether a centre at (x, y) lies in the receiver, sides included."""
+    """Tell whether a centre at (x, y), in m, lies in the receiver, sides included.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    x : float
+        Place of the centre (m).
+    y : float
+        Height of the centre (m).
+
+    Returns
+    -------
+    bool
+    """
     return world.receiver and world.left <= x <= world.right and world.bottom <= y <= world.top
 
 
 @kernel
 def entrance(world, b):
-    """Time (s) from now at which the rock enters the receiver with its present accelerations; NEVER if it does not."""
+    """Return the time (s) from now at which the rock enters the receiver; NEVER if it does not.
+
+    Its present accelerations stay.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Time (s).
+    """
     if not world.receiver:
         return NEVER
     x, y, vx, vy, ax, ay = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy], b[BODY.ax], b[BODY.ay]
@@ -31,7 +63,22 @@ def entrance(world, b):
 
 @kernel
 def departure(world, b):
-    """Time (s) from now at which a rock that is handed over leaves the receiver under its weight alone; 0 if it is outside."""
+    """Return the time (s) from now at which a rock that is handed over leaves the receiver.
+
+    It moves under its weight alone; the time is 0 if it is outside.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Time (s).
+    """
     x, y, vx, vy, ax, ay = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy], b[BODY.ax], b[BODY.ay]
     if not inside(world, x, y) and not approaches(world, b):
         return 0.0
@@ -43,7 +90,19 @@ def departure(world, b):
 
 @kernel
 def approaches(world, b):
-    """Whether a rock that rounding has left outside the side that it just passed goes inwards there."""
+    """Tell whether a rock outside a side goes inwards: rounding may leave it there as it enters.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    bool
+    """
     x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
     return (
         (x >= world.left or vx > 0.0)

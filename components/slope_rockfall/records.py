@@ -7,7 +7,7 @@ RESTED, PASSED_RIGHT, PASSED_LEFT, UNFINISHED, BELOW, STOPPED = range(6)
 for it starts below, or stopped by a barrier."""
 Passage = namedtuple("Passage", "time x y height speed omega kinetic count")
 PASSAGE = Passage(*range(8))
-"""Columns of the first passage of a search line (s, m, m/s, rad/s, J) and the number of passages."""
+"""Columns of the first passage of a search line (s, m, m/s, rad/s, J), and number of passages."""
 Barrier = namedtuple("Barrier", "reach capacity")
 BARRIER = Barrier(*range(2))
 """Columns of a search line as a barrier: it stops a rock that passes it not farther than ``reach``

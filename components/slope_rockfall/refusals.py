@@ -32,7 +32,20 @@ _ROUGHEST = 1.999
 
 @kernel
 def widest_roughness(c, w, k):
-    """Largest R_o of cell c."""
+    """Return the largest R_o of cell c.
+
+    Parameters
+    ----------
+    c : int
+        Number of the cell, from 0.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    float
+        R_o, without unit.
+    """
     return widest(
         w[V.roughness_distribution],
         view(w, k, A.roughness)[c],
@@ -43,14 +56,41 @@ def widest_roughness(c, w, k):
 
 @kernel
 def locking(c, w, k):
-    """mu tan(phi) of cell c with its largest roughness."""
+    """Return mu tan(phi) of cell c with its largest roughness.
+
+    Parameters
+    ----------
+    c : int
+        Number of the cell, from 0.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    float
+        Without unit; 1 or more where the contact locks itself.
+    """
     rough = min(max(widest_roughness(c, w, k), 0.0), _ROUGHEST)
     return view(w, k, A.friction)[c] * math.sqrt(rough / (2.0 - rough))
 
 
 @kernel
 def has_fault(fault, c, w, k):
-    """Whether cell c has the fault of this number."""
+    """Tell whether cell c has the fault of this number.
+
+    Parameters
+    ----------
+    fault : int
+        Number of the fault.
+    c : int
+        Number of the cell, from 0.
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    bool
+    """
     x0, y0 = node(c, w, k)
     x1, y1 = node(c + 1, w, k)
     if fault == FOLDED:
@@ -68,13 +108,19 @@ def has_fault(fault, c, w, k):
 
 @kernel
 def tell_fault(fault, c, w, k):
-    """Publish what the message of this fault of cell c needs; a fault of no cell is told with c = -1."""
-    w[V.fault_cell], w[V.fault_value], w[V.fault_roughness], w[V.fault_locking] = (
-        c + 1.0,
-        0.0,
-        0.0,
-        0.0,
-    )
+    """Publish what the message of this fault of cell c needs; c = -1 stands for no cell.
+
+    Parameters
+    ----------
+    fault : int
+        Number of the fault.
+    c : int
+        Number of the cell, from 0.
+    w, k : ndarray
+        Variables and integers of the instance.
+    """
+    w[V.fault_cell] = c + 1.0
+    w[V.fault_value], w[V.fault_roughness], w[V.fault_locking] = 0.0, 0.0, 0.0
     if c < 0:
         return
     w[V.fault_roughness], w[V.fault_locking] = widest_roughness(c, w, k), locking(c, w, k)
@@ -90,7 +136,17 @@ def tell_fault(fault, c, w, k):
 
 @kernel
 def common_fault(w):
-    """Fault of the parameters that belong to no cell, or 0."""
+    """Return the fault of the parameters that belong to no cell, or 0.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    int
+    """
     if w[V.limit_speed_distribution] == LOGNORMAL and w[V.limit_speed_mean] <= 0.0:
         return LIMIT_SIGN
     empty = w[V.receiver_left] >= w[V.receiver_right] or w[V.receiver_bottom] >= w[V.receiver_top]
@@ -99,7 +155,17 @@ def common_fault(w):
 
 @kernel
 def first_fault(w, k):
-    """Number of the first fault, or 0; the outputs fault.* describe its cell."""
+    """Return the number of the first fault, or 0; the outputs fault.* describe its cell.
+
+    Parameters
+    ----------
+    w, k : ndarray
+        Variables and integers of the instance.
+
+    Returns
+    -------
+    int
+    """
     tell_fault(0, -1, w, k)
     for c in range(k[A.end_x + 1]):
         for fault in range(FOLDED, LIMIT_SIGN):
@@ -110,7 +176,18 @@ def first_fault(w, k):
 
 
 def cell_problems(instance: "Instance") -> "Iterator[tuple[int, int, str]]":
-    """Every fault of every cell: number of the cell, from 0, the fault, and what is wrong in words."""
+    """Yield every fault of every cell.
+
+    Parameters
+    ----------
+    instance : Instance
+        With the parameters set.
+
+    Yields
+    ------
+    tuple of int, int and str
+        Number of the cell, from 0, the fault, and the message in words.
+    """
     w, k = instance.w, instance.k
     for c in range(instance.sizes["cells"]):
         for fault in RULES:
@@ -121,7 +198,18 @@ def cell_problems(instance: "Instance") -> "Iterator[tuple[int, int, str]]":
 
 
 def problems(instance: "Instance") -> list[str]:
-    """Every fault of every cell, in words, and those of the other parameters."""
+    """Return every fault of every cell, and those of the other parameters.
+
+    Parameters
+    ----------
+    instance : Instance
+        With the parameters set.
+
+    Returns
+    -------
+    list of str
+        The faults in words.
+    """
     found = [text for _, _, text in cell_problems(instance)]
     if common := common_fault(instance.w):
         found.append(instance.message(common))

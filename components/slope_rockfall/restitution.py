@@ -1,7 +1,8 @@
-"""Impact on the ground: penetration, restitution, tilt of the contact, and the velocities after it. Equations (19)-(28).
+"""Impact on the ground: penetration, restitution, tilt of the contact, velocities after it.
 
-All in the frame of the cell, mirrored for a rock that moves up-slope so that u >= 0: u along the cell, v along its outward normal,
-omega positive against the direction of rolling.
+Equations (19)-(28) of Ushiro, all in the frame of the cell, mirrored for a rock that moves up-slope
+so that u >= 0: u along the cell, v along its outward normal, omega positive against the direction
+of rolling.
 """
 
 import math
@@ -15,7 +16,18 @@ _LONGEST = 60
 
 @kernel
 def strain_work(a):
-    """a - 1 + exp(-a): work that the ground takes up to the penetration a = k delta / q_d, in units of q_d^2 A / k."""
+    """Return a - 1 + exp(-a): the work that the ground takes up to a penetration.
+
+    Parameters
+    ----------
+    a : float
+        Penetration k delta / q_d, without unit.
+
+    Returns
+    -------
+    float
+        Work in units of q_d^2 A / k.
+    """
     if a < _SERIES_BELOW:
         return (
             a
@@ -34,10 +46,22 @@ def strain_work(a):
 
 @kernel
 def penetration(energy, weight):
-    """Root a = k delta / q_d of a - 1 + exp(-a) - weight a = energy: equation (26), with gravity if weight > 0.
+    """Return the penetration a = k delta / q_d: root of a - 1 + exp(-a) - weight a = energy.
 
-    energy: kinetic energy k / (q_d^2 A); weight: m g cos(theta) / (q_d A), below 1. The left side is convex; from a start to the
+    This is equation (26), with gravity if weight > 0. The left side is convex; from a start to the
     right of its minimum Newton's method comes down to the root from above.
+
+    Parameters
+    ----------
+    energy : float
+        Kinetic energy k / (q_d^2 A).
+    weight : float
+        m g cos(theta) / (q_d A), below 1.
+
+    Returns
+    -------
+    float
+        Penetration, without unit.
     """
     if energy <= 0.0 and weight <= 0.0:
         return 0.0
@@ -54,10 +78,30 @@ def penetration(energy, weight):
 
 @kernel
 def restitution(speed, mass, radius, gravity, strength, stiffness, hardening, area, treatment):
-    """Equations (26)-(28): coefficient of restitution e and penetration delta (m) of a rock with this normal speed (m/s).
+    """Return coefficient of restitution and penetration of an impact, equations (26)-(28).
 
-    gravity: its component along the normal, m/s2; treatment: PRINTED, NONE or CONSISTENT. The penetration ends at 2 r, where
-    the rock is all in the ground; then, and where the radicand is negative, e = 0: the rock stays embedded.
+    The penetration ends at 2 r, where the rock is all in the ground; then, and where the radicand
+    is negative, e = 0: the rock stays embedded.
+
+    Parameters
+    ----------
+    speed : float
+        Normal speed (m/s), towards the ground.
+    mass, radius : float
+        Of the rock (kg, m).
+    gravity : float
+        Its component along the normal (m/s2).
+    strength, stiffness, hardening : float
+        q_d (Pa), k (N/m3) and epsilon of the ground.
+    area : float
+        Loaded area A (m2).
+    treatment : int
+        Of gravity: PRINTED, NONE or CONSISTENT.
+
+    Returns
+    -------
+    tuple of float
+        e and delta (m).
     """
     if speed <= 0.0:
         return 0.0, 0.0
@@ -77,9 +121,26 @@ def restitution(speed, mass, radius, gravity, strength, stiffness, hardening, ar
 
 @kernel
 def contact_tilt(delta, radius, u, v, e, capped):
-    """Equation (20): sine and cosine of the angle phi of the contact force; phi = arccos(1 - delta / r) / 2.
+    """Return sine and cosine of the angle phi of the contact force, equation (20).
 
-    capped: phi <= arctan(|u| / ((1 + e) |v|)), beyond which the normal force would throw the rock back and may add energy.
+    phi = arccos(1 - delta / r) / 2.
+
+    Parameters
+    ----------
+    delta, radius : float
+        Penetration and radius (m).
+    u, v : float
+        Velocity along the cell and along its normal (m/s).
+    e : float
+        Coefficient of restitution.
+    capped : bool
+        Whether phi <= arctan(abs(u) / ((1 + e) abs(v))), beyond which the normal force would throw
+        the rock back and may add energy.
+
+    Returns
+    -------
+    tuple of float
+        Sine and cosine.
     """
     half = 0.5 * delta / radius
     s, c = math.sqrt(half), math.sqrt(max(0.0, 1.0 - half))
@@ -92,10 +153,27 @@ def contact_tilt(delta, radius, u, v, e, capped):
 
 @kernel
 def rebound(u, v, omega, e, s, c, friction, radius, ratio):
-    """Equations (21)-(23): u, v, omega after the impact of a rock with v < 0. ratio: I / (m r^2); s, c: of :func:`contact_tilt`.
+    """Return u, v and omega after the impact of a rock with v < 0, equations (21)-(23).
 
-    Slip stops if the impulse that it takes, |Int S|, is at most mu Int P. Otherwise slip goes on, against the sign of that
-    impulse. Where mu tan(phi) >= 1 the contact locks itself: no slip can go on, and it stops.
+    Slip stops if the impulse that it takes, the absolute value of Int S, is at most mu Int P.
+    Otherwise slip goes on, against the sign of that impulse. Where mu tan(phi) >= 1 the contact
+    locks itself: no slip can go on, and it stops.
+
+    Parameters
+    ----------
+    u, v, omega : float
+        Velocity along the cell and along its normal (m/s), angular velocity (rad/s).
+    e : float
+        Coefficient of restitution.
+    s, c : float
+        Sine and cosine of phi, of :func:`contact_tilt`.
+    friction, radius, ratio : float
+        mu, radius of the rock (m), I / (m r^2).
+
+    Returns
+    -------
+    tuple of float
+        u, v (m/s) and omega (rad/s).
     """
     pushed = (1.0 + e) * v
     stuck = (pushed * s + u * c - ratio * radius * omega) / (ratio + c)
@@ -111,10 +189,25 @@ def rebound(u, v, omega, e, s, c, friction, radius, ratio):
 
 @kernel
 def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
-    """u, v, omega after an impact with u >= 0 and v < 0.
+    """Return u, v and omega after an impact with u >= 0 and v < 0.
 
-    capped: no impact adds energy. What the cap of phi leaves is a rock with strong back-spin on ground too soft to carry it, which
-    would wedge itself upwards; it meets the ground without tilt, and then friction and restitution can only take energy.
+    Parameters
+    ----------
+    u, v, omega : float
+        Velocity along the cell and along its normal (m/s), angular velocity (rad/s).
+    e, delta : float
+        Coefficient of restitution, and penetration (m).
+    capped : bool
+        Whether no impact may add energy. What the cap of phi leaves is a rock with strong back-spin
+        on ground too soft to carry it, which would wedge itself upwards; it meets the ground
+        without tilt, and then friction and restitution can only take energy.
+    friction, radius, ratio : float
+        mu, radius of the rock (m), I / (m r^2).
+
+    Returns
+    -------
+    tuple of float
+        u, v (m/s) and omega (rad/s).
     """
     s, c = contact_tilt(delta, radius, u, v, e, capped)
     after = rebound(u, v, omega, e, s, c, friction, radius, ratio)
@@ -127,5 +220,24 @@ def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
 
 @kernel
 def motion(u, v, omega, radius, ratio):
-    """Kinetic energy per half mass (m2/s2)."""
+    """Return the kinetic energy per half mass (m2/s2).
+
+    Parameters
+    ----------
+    u : float
+        Velocity along the line, to the right (m/s).
+    v : float
+        Velocity along its outward normal (m/s).
+    omega : float
+        Angular velocity (rad/s).
+    radius : float
+        Radius of the rock (m).
+    ratio : float
+        I / (m r^2).
+
+    Returns
+    -------
+    float
+        Energy / (m / 2) (m2/s2).
+    """
     return u * u + v * v + ratio * radius * radius * omega * omega

@@ -25,7 +25,19 @@ _SLIP = 1e-10
 
 @kernel
 def rolling(loads, touch):
-    """Return the motion of a rock that rolls, equations (5) and (6)."""
+    """Return the motion of a rock that rolls, equations (5) and (6).
+
+    Parameters
+    ----------
+    loads : Loads
+        Forces on the rock (N).
+    touch : Touch
+        The rock on its cell.
+
+    Returns
+    -------
+    LineMotion
+    """
     s, c, ratio = touch.sin, touch.cos, touch.ratio
     k1 = (loads.along - loads.normal * s / c - loads.drag) / touch.mass
     k2 = s * s / c + c
@@ -39,6 +51,19 @@ def sliding(loads, touch, across):
     """Return the motion of a rock that slides with S = across P, equation (11).
 
     P follows from m g cos(theta) = P (cos(phi) - across sin(phi)).
+
+    Parameters
+    ----------
+    loads : Loads
+        Forces on the rock (N).
+    touch : Touch
+        The rock on its cell.
+    across : float
+        S / P: mu, with the sign of the slip.
+
+    Returns
+    -------
+    LineMotion
     """
     normal_force = loads.normal / (touch.cos - across * touch.sin)
     net = loads.along - normal_force * (touch.sin + across * touch.cos) - loads.drag
@@ -47,7 +72,20 @@ def sliding(loads, touch, across):
 
 @kernel
 def slip_of(u, spin):
-    """Return the speed (m/s) of the contact point, zero if it is rounding. spin: omega r."""
+    """Return the speed (m/s) of the contact point, zero if it is rounding.
+
+    Parameters
+    ----------
+    u : float
+        Speed along the cell (m/s).
+    spin : float
+        omega r (m/s).
+
+    Returns
+    -------
+    float
+        Slip (m/s).
+    """
     slip = u + spin
     return slip if abs(slip) > _SLIP * (abs(u) + abs(spin)) else 0.0
 

@@ -1,7 +1,7 @@
-"""Whole trials without FMI: from the start to rest or to the end of the profile, with what a campaign keeps of each.
+"""Whole trials without FMI, from the start to rest or to the profile's end, with their records.
 
-A trial is a function of the prepared buffers, the seed and its number alone, so trials may be computed in any order, on any number
-of threads; each needs its own ``body``.
+A trial is a function of the prepared buffers, the seed and its number alone, so trials may be
+computed in any order, on any number of threads; each needs its own ``body``.
 """
 
 import math
@@ -48,13 +48,33 @@ def trial(
     peaks,
     outcome,
 ):
-    """One trial, from the buffers of a prepared instance (:func:`.kernel.prepare`), none of which it changes.
+    """Compute one trial from the buffers of a prepared instance (:func:`.kernel.prepare`).
 
-    left, right: x (m) at which it ends. lines: (n, 4), search lines x1, y1, x2, y2 (m); barriers: (n, len(BARRIER)).
-    Stations are vertical lines at x = first_station + i * station_distance. body: (len(BODY),) scratch. passages: (n,
-    len(PASSAGE)), peaks: (m, len(PEAK)) and outcome: (len(OUTCOME),) are overwritten.
+    Parameters
+    ----------
+    seed, number : int
+        Number of the sample, and of the trial in it.
+    left, right : float
+        x (m) at which the trial ends.
+    lines : ndarray of float64, shape (n, 4)
+        Search lines x1, y1, x2, y2 (m).
+    barriers : ndarray of float64, shape (n, len(BARRIER))
+        The search lines as barriers.
+    first_station, station_distance : float
+        Stations are vertical lines at x = first_station + i * station_distance (m).
+    w, x, k : ndarray
+        Buffers of the instance, which are not changed.
+    body : ndarray of float64, shape (len(BODY),)
+        Scratch.
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines; overwritten.
+    peaks : ndarray of float64, shape (m, len(PEAK))
+        Largest values at the stations; overwritten.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial; overwritten.
     """
-    constants, source = world(w, x, k), stream(seed, number)
+    constants = world(w, x, k)
+    source = stream(seed, number)
     clear_records(passages, peaks, outcome)
     outcome[OUTCOME.end] = BELOW
     if not begin(constants, seed, number, w, body):
@@ -75,16 +95,42 @@ def trial(
             happen(constants, source, body)
         else:
             place(wait, body, outcome)
-    outcome[OUTCOME.end], outcome[OUTCOME.events], outcome[OUTCOME.impacts] = (
-        end,
-        events,
-        body[BODY.impacts],
-    )
+    note_end(end, events, body, outcome)
+
+
+@kernel
+def note_end(end, events, b, outcome):
+    """Note how the trial ends, after how many events and impacts.
+
+    Parameters
+    ----------
+    end : int
+        One of the ends of a trial, as RESTED.
+    events : int
+        Number of events.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
+    outcome[OUTCOME.end] = end
+    outcome[OUTCOME.events] = events
+    outcome[OUTCOME.impacts] = b[BODY.impacts]
 
 
 @kernel
 def clear_records(passages, peaks, outcome):
-    """Set all records to those of a rock that has not moved."""
+    """Set all records to those of a rock that has not moved.
+
+    Parameters
+    ----------
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines.
+    peaks : ndarray of float64, shape (m, len(PEAK))
+        Largest values at the stations.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
     for i in range(passages.shape[0]):
         for q in range(passages.shape[1]):
             passages[i, q] = 0.0
@@ -98,7 +144,22 @@ def clear_records(passages, peaks, outcome):
 
 @kernel
 def stretch(left, right, b):
-    """Time (s) from the last event to the next or to the end of the trial, and how it ends."""
+    """Return the time (s) from the last event to the next or to the trial's end, and its end.
+
+    Parameters
+    ----------
+    left : float
+        x (m) at which the trial ends on the left.
+    right : float
+        x (m) at which it ends on the right.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float and int
+        Time (s) and end; UNFINISHED if an event comes first.
+    """
     if b[BODY.mode] == REST:
         return 0.0, RESTED
     wait, end = b[BODY.next_time] - b[BODY.time], UNFINISHED
@@ -113,7 +174,20 @@ def stretch(left, right, b):
 
 @kernel
 def at(time, b):
-    """Place (m) and velocity (m/s) ``time`` seconds after the last event."""
+    """Return place (m) and velocity (m/s) ``time`` seconds after the last event.
+
+    Parameters
+    ----------
+    time : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float
+        x, y (m), vx, vy (m/s).
+    """
     return (
         b[BODY.x] + time * (b[BODY.vx] + 0.5 * time * b[BODY.ax]),
         b[BODY.y] + time * (b[BODY.vy] + 0.5 * time * b[BODY.ay]),
@@ -124,21 +198,61 @@ def at(time, b):
 
 @kernel
 def place(wait, b, outcome):
-    """Where and when the trial ends."""
+    """Note where and when the trial ends.
+
+    Parameters
+    ----------
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
     outcome[OUTCOME.x], outcome[OUTCOME.y], _, _ = at(wait, b)
     outcome[OUTCOME.time] = b[BODY.time] + wait
 
 
 @kernel
 def energy(world, square, omega):
-    """Kinetic energy (J) at this squared speed and angular velocity."""
+    """Return the kinetic energy (J) at a squared speed (m2/s2) and angular velocity (rad/s).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    square : float
+        Squared speed (m2/s2).
+    omega : float
+        Angular velocity (rad/s).
+
+    Returns
+    -------
+    float
+        Energy (J).
+    """
     spin = world.radius * omega
     return 0.5 * world.mass * (square + world.ratio * spin * spin)
 
 
 @kernel
 def clearance(world, x, y):
-    """Distance (m) of a rock with its centre at (x, y) from the cell below it."""
+    """Return the distance (m) of a rock with its centre at (x, y) from the cell below it.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    x : float
+        Place of the centre (m).
+    y : float
+        Height of the centre (m).
+
+    Returns
+    -------
+    float
+        Distance (m).
+    """
     return height_above(line_below(x, world.lines, world.path), x, y, world.path)
 
 
@@ -147,7 +261,21 @@ def clearance(world, x, y):
 
 @kernel
 def record_lines(world, lines, wait, b, passages):
-    """Passages of search lines within ``wait`` seconds from the last event."""
+    """Record passages of search lines within ``wait`` seconds from the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    lines : ndarray of float64, shape (n, 4)
+        Search lines x1, y1, x2, y2 (m).
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines.
+    """
     x0, x1 = b[BODY.x], b[BODY.x] + wait * (b[BODY.vx] + 0.5 * wait * b[BODY.ax])
     low, high = min(x0, x1), max(x0, x1)
     for i in range(lines.shape[0]):
@@ -160,7 +288,22 @@ def record_lines(world, lines, wait, b, passages):
 
 @kernel
 def meeting(line, direction, b):
-    """Time (s) from the last event at which the centre passes a search line to its right (+1) or left (-1); NEVER if not."""
+    """Return the time (s) from the last event at which the centre passes a search line.
+
+    Parameters
+    ----------
+    line : ndarray of float64, shape (4,)
+        x1, y1, x2, y2 (m).
+    direction : float
+        1 for passing to the right of the line, -1 for passing to its left.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        The time (s); NEVER if it does not.
+    """
     along_x, along_y = line[2] - line[0], line[3] - line[1]
     place = (b[BODY.x] - line[0]) * along_y - (b[BODY.y] - line[1]) * along_x
     time = passing(
@@ -179,7 +322,21 @@ def meeting(line, direction, b):
 
 @kernel
 def note_passage(world, i, time, b, passages):
-    """The rock passes search line i."""
+    """Note that the rock passes search line i ``time`` seconds after the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    i : int
+        Number of the search line.
+    time : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    passages : ndarray of float64, shape (n, len(PASSAGE))
+        First passages of the search lines.
+    """
     passages[i, PASSAGE.count] += 1.0
     absolute = b[BODY.time] + time
     if passages[i, PASSAGE.count] > 1.0 and absolute >= passages[i, PASSAGE.time]:
@@ -188,7 +345,8 @@ def note_passage(world, i, time, b, passages):
     omega = b[BODY.omega] + time * b[BODY.alpha]
     passages[i, PASSAGE.time], passages[i, PASSAGE.x], passages[i, PASSAGE.y] = absolute, x, y
     passages[i, PASSAGE.height] = clearance(world, x, y)
-    passages[i, PASSAGE.speed], passages[i, PASSAGE.omega] = math.sqrt(vx * vx + vy * vy), omega
+    passages[i, PASSAGE.speed] = math.sqrt(vx * vx + vy * vy)
+    passages[i, PASSAGE.omega] = omega
     passages[i, PASSAGE.kinetic] = energy(world, vx * vx + vy * vy, omega)
 
 
@@ -197,7 +355,26 @@ def note_passage(world, i, time, b, passages):
 
 @kernel
 def first_stop(world, lines, barriers, wait, b):
-    """When a barrier stops the rock within ``wait`` seconds from the last event, and its number; -1 if none does."""
+    """Return when a barrier stops the rock, and the barrier's number.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    lines : ndarray of float64, shape (n, 4)
+        Search lines x1, y1, x2, y2 (m).
+    barriers : ndarray of float64, shape (n, len(BARRIER))
+        The search lines as barriers.
+    wait : float
+        Time (s) from the last event within which it is looked for.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    tuple of float and int
+        Time (s) from the last event, and number of the barrier; ``wait`` and -1 if none stops it.
+    """
     number = -1
     for i in range(lines.shape[0]):
         if barriers[i, BARRIER.reach] >= 0.0:
@@ -210,7 +387,25 @@ def first_stop(world, lines, barriers, wait, b):
 
 @kernel
 def holds(world, line, barrier, time, b):
-    """Whether a barrier stops the rock that meets it ``time`` seconds after the last event."""
+    """Tell whether a barrier stops the rock that meets it ``time`` seconds after the last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    line : ndarray of float64, shape (4,)
+        Search line x1, y1, x2, y2 (m).
+    barrier : ndarray of float64, shape (len(BARRIER),)
+        The search line as a barrier.
+    time : float
+        Time after the last event (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    bool
+    """
     x, y, vx, vy = at(time, b)
     away = math.sqrt((x - line[0]) * (x - line[0]) + (y - line[1]) * (y - line[1]))
     load = energy(world, vx * vx + vy * vy, b[BODY.omega] + time * b[BODY.alpha])
@@ -222,7 +417,21 @@ def holds(world, line, barrier, time, b):
 
 @kernel
 def record_stations(world, first, distance, wait, b, peaks):
-    """Largest values at the stations that the rock passes within ``wait`` seconds from the last event."""
+    """Record the largest values at the stations that the rock passes before its next event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    first, distance : float
+        Place of the first station, and distance between two (m).
+    wait : float
+        Time (s) from the last event on.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    peaks : ndarray of float64, shape (m, len(PEAK))
+        Largest values at the stations.
+    """
     count = peaks.shape[0]
     if count == 0 or (b[BODY.vx] == 0.0 and b[BODY.ax] == 0.0):
         return
@@ -252,7 +461,22 @@ def record_stations(world, first, distance, wait, b, peaks):
 
 @kernel
 def record_peaks(world, wait, b, outcome):
-    """Largest height, speed and energy: at the events, and for the height where the rock moves parallel to a cell, eq. (18)."""
+    """Record the largest height, speed and energy until the next event.
+
+    Speed and energy are largest at the events, the height where the rock moves parallel to a cell,
+    equation (18).
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    outcome : ndarray of float64, shape (len(OUTCOME),)
+        Columns of the trial.
+    """
     for time in (0.0, wait):
         _, _, vx, vy = at(time, b)
         square = vx * vx + vy * vy
@@ -266,7 +490,22 @@ def record_peaks(world, wait, b, outcome):
 
 @kernel
 def highest(world, wait, b):
-    """Largest distance (m) of a rock in flight from the cell below it."""
+    """Return the largest distance (m) of a rock in flight from the cell below it.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    wait : float
+        Time from the last event on (s).
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+
+    Returns
+    -------
+    float
+        Distance (m).
+    """
     x, y, vx, vy = b[BODY.x], b[BODY.y], b[BODY.vx], b[BODY.vy]
     end = x + wait * vx
     peak = 0.0
@@ -277,10 +516,8 @@ def highest(world, wait, b):
         at_j = j * len(PATH)
         from_time, to_time = 0.0, wait
         if vx != 0.0:
-            one, two = (
-                (world.path[at_j + PATH.left] - x) / vx,
-                (world.path[at_j + PATH.right] - x) / vx,
-            )
+            one = (world.path[at_j + PATH.left] - x) / vx
+            two = (world.path[at_j + PATH.right] - x) / vx
             from_time, to_time = max(0.0, min(one, two)), min(wait, max(one, two))
         s, c = world.path[at_j + PATH.sin], world.path[at_j + PATH.cos]
         parallel = (vx * s + vy * c) / (world.gravity * c)
@@ -315,7 +552,11 @@ def trials(
     peaks,
     outcomes,
 ):
-    """Trials number ``first`` on, as many as ``outcomes`` has rows; passages and peaks have a row each too. See :func:`trial`."""
+    """Compute trials number ``first`` on, as many as ``outcomes`` has rows.
+
+    Parameters are those of :func:`trial`, but passages, peaks and outcomes have a row for each
+    trial.
+    """
     for i in range(outcomes.shape[0]):
         trial(
             seed,

@@ -82,7 +82,7 @@ def _row(variable: Variable, sizes: Sizes) -> tuple[str, ...]:
 
 
 def _start(variable: Variable, sizes: Sizes) -> str:
-    """Start value; of an array the first and the last."""
+    """Return the start value; of an array the first and the last."""
     if variable.causality is Causality.OUTPUT:
         return ""
     last = 0 if variable.size is None else sizes[variable.size] - 1

@@ -101,7 +101,15 @@ def model_description(
 
 
 def log_categories_and_experiment(root: etree._Element, component: Component) -> None:
-    """Append the elements LogCategories and DefaultExperiment to the root."""
+    """Append the elements LogCategories and DefaultExperiment to the root.
+
+    Parameters
+    ----------
+    root : Element
+        Root of the description, which grows.
+    component : Component
+        The component.
+    """
     categories = etree.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
         etree.SubElement(categories, "Category", name=name, description=description)
@@ -115,13 +123,31 @@ def log_categories_and_experiment(root: etree._Element, component: Component) ->
 
 
 def used_units(component: Component) -> list[str]:
-    """Return the units of the component's variables, in the order of :data:`UNITS`."""
+    """Return the units of the component's variables, in the order of :data:`UNITS`.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+
+    Returns
+    -------
+    list of str
+    """
     used = {v.unit for v in component.layout.variables if v.kind is Kind.REAL}
     return [unit for unit in UNITS if unit in used]
 
 
 def unit_definitions(root: etree._Element, component: Component) -> None:
-    """Append the element UnitDefinitions to the root."""
+    """Append the element UnitDefinitions to the root.
+
+    Parameters
+    ----------
+    root : Element
+        Root of the description, which grows.
+    component : Component
+        The component.
+    """
     definitions = etree.SubElement(root, "UnitDefinitions")
     for name in used_units(component):
         exponents = {base: str(exponent) for base, exponent in UNITS[name].base.items()}
@@ -148,13 +174,33 @@ def _type_definitions(root: etree._Element, component: Component) -> None:
 
 
 def add_items(enumeration: etree._Element, variable: Variable) -> None:
-    """Append the words of an enumeration with their numbers."""
+    """Append the words of an enumeration with their numbers.
+
+    Parameters
+    ----------
+    enumeration : Element
+        Type of the enumeration, which grows.
+    variable : Variable
+        Its declaration.
+    """
     for value, word in enumerate(variable.choices, start=1):
         etree.SubElement(enumeration, "Item", name=word, value=str(value))
 
 
 def enumeration_name(component: Component, variable: Variable) -> str:
-    """Name of the type of an enumeration."""
+    """Return the name of the type of an enumeration.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    variable : Variable
+        Its declaration.
+
+    Returns
+    -------
+    str
+    """
     return f"{component.name}.{variable.name}"
 
 
@@ -219,13 +265,37 @@ def _annotate(parent: etree._Element, name: str, annotation: etree._Element | No
 
 
 def initial(variable: Variable) -> dict[str, str]:
-    """Return the attribute ``initial``; inputs have none."""
+    """Return the attribute ``initial``; inputs have none.
+
+    Parameters
+    ----------
+    variable : Variable
+        Its declaration.
+
+    Returns
+    -------
+    dict of str to str
+        Attribute by its name, empty for an input.
+    """
     kinds = {Causality.PARAMETER: "exact", Causality.OUTPUT: "calculated"}
     return {"initial": kinds[variable.causality]} if variable.causality in kinds else {}
 
 
 def type_and_bounds(component: Component, variable: Variable) -> dict[str, str]:
-    """Return the attributes that tell a variable's type, unit and range."""
+    """Return the attributes that tell a variable's type, unit and range.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    variable : Variable
+        Its declaration.
+
+    Returns
+    -------
+    dict of str to str
+        Attributes by name.
+    """
     attributes = {}
     if variable.kind is Kind.REAL:
         attributes = {"declaredType": UNITS[variable.unit].quantity, "unit": variable.unit}
@@ -240,14 +310,37 @@ def type_and_bounds(component: Component, variable: Variable) -> dict[str, str]:
 
 
 def variability(variable: Variable) -> str:
-    """Return the attribute ``variability`` of a variable."""
+    """Return the attribute ``variability`` of a variable.
+
+    Parameters
+    ----------
+    variable : Variable
+        Its declaration.
+
+    Returns
+    -------
+    str
+        As FMI names it.
+    """
     if variable.causality is Causality.PARAMETER:
         return "fixed"
     return "continuous" if variable.kind is Kind.REAL else "discrete"
 
 
 def literal(kind: Kind, value: float) -> str:
-    """Return a value as XML writes it for a variable of this kind."""
+    """Return a value as XML writes it for a variable of this kind.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the variable.
+    value : float
+        The value.
+
+    Returns
+    -------
+    str
+    """
     if kind is Kind.REAL:
         return repr(float(value))
     return str(bool(value)).lower() if kind is Kind.BOOLEAN else str(int(value))

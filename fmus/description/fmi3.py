@@ -92,8 +92,22 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
 
 
 def value_references(component: Component, sizes: Sizes) -> dict[str, int]:
-    """Value reference of every variable, then of the sizes, then of the time."""
-    references, following = {}, 0
+    """Return the value reference of every variable, then of the sizes, then of the time.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+
+    Returns
+    -------
+    dict of str to int
+        Value reference by name.
+    """
+    references = {}
+    following = 0
     for variable in component.layout.ordered:
         references[variable.name] = following
         following += len(variable.element_names(sizes))
@@ -146,19 +160,7 @@ def _model_variables(
         if variable.size is not None:
             etree.SubElement(element, "Dimension", start=str(sizes[variable.size]))
     for name, value in sizes.items():
-        etree.SubElement(
-            variables,
-            "Int32",
-            {
-                "name": name,
-                "valueReference": str(references[name]),
-                "description": component.sizes[name].description,
-                "causality": "local",
-                "variability": "constant",
-                "initial": "exact",
-                "start": str(value),
-            },
-        )
+        _size(variables, name, value, component.sizes[name].description, references[name])
     etree.SubElement(
         variables,
         "Float64",
@@ -171,6 +173,25 @@ def _model_variables(
     )
 
 
+def _size(
+    variables: etree._Element, name: str, value: int, description: str, reference: int
+) -> None:
+    """Append a size, which is a constant that arrays refer to."""
+    etree.SubElement(
+        variables,
+        "Int32",
+        {
+            "name": name,
+            "valueReference": str(reference),
+            "description": description,
+            "causality": "local",
+            "variability": "constant",
+            "initial": "exact",
+            "start": str(value),
+        },
+    )
+
+
 def _annotate(parent: etree._Element, annotation: etree._Element | None) -> None:
     """Add an annotation, if there is one."""
     if annotation is not None:
@@ -179,7 +200,7 @@ def _annotate(parent: etree._Element, annotation: etree._Element | None) -> None
 
 
 def _start(variable: Variable, sizes: Sizes) -> dict[str, str]:
-    """Start values of all elements; outputs have none."""
+    """Return the start values of all elements; outputs have none."""
     if variable.causality is Causality.OUTPUT:
         return {}
     numbers = range(len(variable.element_names(sizes)))

@@ -1,8 +1,9 @@
-"""Native FMUs: the kernels of a component as machine code behind a slave in C. Nothing of Python is in them.
+"""Native FMUs: kernels of a component as machine code behind a slave in C, without Python.
 
-``slave.h`` is that slave, ``shim_fmi2.c`` and ``shim_fmi3.c`` are the functions of FMI 2.0 and 3.0 around it. Kernels are compiled
-by numba and LLVM for the processor :data:`CPU`, the shim by a C compiler for any x86-64; it looks at the processor before it makes
-an instance. The model description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and one flag.
+``slave.h`` is that slave, ``shim_fmi2.c`` and ``shim_fmi3.c`` are the functions of FMI 2.0 and 3.0
+around it. Kernels are compiled by numba and LLVM for the processor :data:`CPU`, the shim by a C
+compiler for any x86-64; it looks at the processor before it makes an instance. The model
+description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and one flag.
 """
 
 import json
@@ -56,13 +57,25 @@ CPU = Baseline(
     # SSE3, SSSE3, FMA, CX16, SSE4.1, SSE4.2, MOVBE, POPCNT, OSXSAVE, AVX, F16C
     _bits(0, 9, 12, 13, 19, 20, 22, 23, 27, 28, 29),
     _bits(3, 5, 8),  # BMI1, AVX2, BMI2
-    _bits(0, 5),
-)  # LAHF, LZCNT
+    _bits(0, 5),  # LAHF, LZCNT
+)
 
 
 @dataclass(frozen=True)
 class Platform:
-    """A platform of FMI 2.0: what FMI 3.0 calls it, the suffix of its libraries, what zig calls it, and options of the linker."""
+    """A platform of FMI 2.0.
+
+    Parameters
+    ----------
+    in_fmi3 : str
+        Its name in FMI 3.0.
+    suffix : str
+        Suffix of its libraries.
+    zig : str
+        Its name for zig.
+    options : tuple of str
+        Options of the linker.
+    """
 
     in_fmi3: str
     suffix: str
@@ -95,10 +108,12 @@ _PYTHON_REMAINS = "FMUs with Python inside need no compiler: `rockshed build --r
 
 
 def own_platform() -> str:
-    """The platform of this machine in the words of FMI.
+    """Return the platform of this machine in the words of FMI 2.0.
 
-    Raises:
-        BuildError: there are no native FMUs for it.
+    Raises
+    ------
+    BuildError
+        There are no native FMUs for it.
     """
     name = {"Linux": "linux64", "Windows": "win64", "Darwin": "darwin64"}.get(machine.system(), "")
     if not name or machine.machine().lower() not in ("x86_64", "amd64"):
@@ -112,12 +127,30 @@ def own_platform() -> str:
 def native_files(
     component: Component, sizes: Sizes, platforms: Sequence[str] = (), fmi: Fmi = Fmi.TWO
 ) -> Files:
-    """Everything that goes into a native FMU. Its GUID (FMI 3.0: instantiation token) is a hash over all that it is made from.
+    """Return everything that goes into a native FMU.
 
-    platforms: keys of :data:`PLATFORMS`; by default this machine's.
+    Its GUID (FMI 3.0: instantiation token) is a hash over all that it is made from.
 
-    Raises:
-        BuildError: a kernel needs Python, there is no compiler, or it fails.
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    platforms : sequence of str
+        Keys of :data:`PLATFORMS`; by default this machine's.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to bytes
+        Files by their path in the FMU.
+
+    Raises
+    ------
+    BuildError
+        A kernel needs Python, there is no compiler, or it fails.
     """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
     compilers = {name: compiler(name) for name in platforms}
@@ -139,23 +172,54 @@ def native_files(
 
 
 def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:
-    """Path of this machine's library in a native FMU.
+    """Return the path of this machine's library in a native FMU.
 
-    Raises:
-        BuildError: there are no native FMUs for this machine.
+    Parameters
+    ----------
+    component : Component
+        The component.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    str
+        Path inside the FMU, with forward slashes.
+
+    Raises
+    ------
+    BuildError
+        There are no native FMUs for this machine.
     """
     return _library(component, own_platform(), fmi)
 
 
 def _library(component: Component, platform: str, fmi: Fmi) -> str:
-    """Path of the library for a platform inside the FMU."""
+    """Return the path of the library for a platform inside the FMU."""
     folder = platform if fmi is Fmi.TWO else PLATFORMS[platform].in_fmi3
     return f"binaries/{folder}/{component.name}{PLATFORMS[platform].suffix}"
 
 
 def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
-    """GUID of a native FMU, in FMI 3.0 its instantiation token: a hash of the sources and versions that it follows from. Nothing
-    has to be computed for it but that."""
+    """Return the GUID of a native FMU, in FMI 3.0 its instantiation token.
+
+    It is a hash of the sources and versions that the FMU follows from; nothing has to be computed
+    for it but that.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    str
+        A UUID in braces.
+    """
     beside = [path for path in component.folder.iterdir() if path.suffix in (".md", ".png")]
     ours = (
         *_HERE.glob("*.py"),
@@ -176,7 +240,7 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
 
 
 def _described(component: Component, sizes: Sizes, guid: str, fmi: Fmi) -> Files:
-    """Description, documentation, icon and terminals: what can be told without compiling anything."""
+    """Return description, documentation, icon and terminals, for which nothing is compiled."""
     from ..description import fmi2 as description
     from ..description import fmi3 as description3
 
@@ -197,7 +261,7 @@ def _versions(*packages: str) -> list[str]:
 
 
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
-    """Object code of the kernels by platform; kept in the cache of compiled kernels."""
+    """Return the object code of the kernels by platform; it is kept with the compiled kernels."""
     made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
     stamp = digest(
         made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()}
@@ -212,13 +276,13 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
         return {name: path.read_bytes() for name, path in kept.items()}
     with tempfile.TemporaryDirectory(prefix="rockshed_") as work:
         if problems := _compile(component, sizes, platforms, Path(work)):
-            if any(
-                UNKNOWN_PLACE in problem for problem in problems
-            ):  # once more from the sources, for the lines
+            if any(UNKNOWN_PLACE in problem for problem in problems):
+                # once more from the sources, for the lines
                 settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
                 problems = _compile(component, sizes, platforms, Path(work), **settings)
             raise BuildError(
-                f"{component.name}: its kernels need more than the C library and cannot run without Python: "
+                f"{component.name}: its kernels need more than the C library and cannot run "
+                f"without Python: "
                 + "; ".join(problems)
                 + ". Kernels keep to explicit loops, scalar arithmetic, slices and other "
                 f"kernels. No native FMU was built. {_PYTHON_REMAINS}"
@@ -232,7 +296,7 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
 def _compile(
     component: Component, sizes: Sizes, platforms: Sequence[str], work: Path, **environment: str
 ) -> list[str]:
-    """Write ``PLATFORM.o`` into a folder; return the problems found.
+    """Write ``PLATFORM.o`` into a folder, and return the problems.
 
     Numba takes the processor from its environment, once per process.
     """
@@ -260,7 +324,8 @@ def _compile(
     )
     if done.returncode:
         raise BuildError(
-            f"{component.name}: compiling its kernels failed: {done.stderr.strip() or done.returncode}"
+            f"{component.name}: compiling its kernels failed: "
+            f"{done.stderr.strip() or done.returncode}"
         )
     problems = json.loads(done.stdout)
     assert isinstance(problems, list)
@@ -271,10 +336,22 @@ def _compile(
 
 
 def compiler(platform: str) -> list[str]:
-    """Command of a compiler for a platform.
+    """Return the command of a compiler for a platform.
 
-    Raises:
-        BuildError: there is none.
+    Parameters
+    ----------
+    platform : str
+        Key of :data:`PLATFORMS`.
+
+    Returns
+    -------
+    list of str
+        Program and options.
+
+    Raises
+    ------
+    BuildError
+        There is none.
     """
     zig = [
         sys.executable,
@@ -295,18 +372,20 @@ def compiler(platform: str) -> list[str]:
         return zig
     others = "environment variable CC, cc, gcc, clang, " if platform == "linux64" else ""
     raise BuildError(
-        f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip install ziglang`. "
-        f"{_PYTHON_REMAINS}"
+        f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip "
+        f"install ziglang`. {_PYTHON_REMAINS}"
     )
 
 
 def _linked(
     name: str, compiler: Sequence[str], platform: str, library: str, shim: str, sources: Files
 ) -> bytes:
-    """The shared library of an FMU, from the shim with all that it includes and kernels.o.
+    """Return the shared library of an FMU, from the shim with all that it includes and kernels.o.
 
-    Raises:
-        BuildError: the compiler fails; its messages.
+    Raises
+    ------
+    BuildError
+        The compiler fails; its messages.
     """
     with tempfile.TemporaryDirectory(prefix="rockshed_") as folder:
         work = Path(folder)
@@ -325,12 +404,12 @@ def _linked(
             done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
         except OSError as error:
             raise BuildError(
-                f"{name}: the compiler {compiler[0]} cannot be run: {error.strerror or error}; no native FMU was "
-                f"built. Remedy: set CC to another one. {_PYTHON_REMAINS}"
+                f"{name}: the compiler {compiler[0]} cannot be run: {error.strerror or error}; no "
+                f"native FMU was built. Remedy: set CC to another one. {_PYTHON_REMAINS}"
             ) from error
         if done.returncode or not (work / library).is_file():
             raise BuildError(
-                f"{name}: the compiler failed for {platform}, no native FMU was built: {' '.join(command)}\n"
-                f"{(done.stderr or done.stdout).strip()}\n{_PYTHON_REMAINS}"
+                f"{name}: the compiler failed for {platform}, no native FMU was built: "
+                f"{' '.join(command)}\n{(done.stderr or done.stdout).strip()}\n{_PYTHON_REMAINS}"
             )
         return (work / library).read_bytes()

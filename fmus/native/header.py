@@ -94,8 +94,10 @@ def _conduct() -> dict[str, object]:
 def _tables(component: Component, sizes: Sizes) -> dict[str, object]:
     from ..description.fmi3 import TIME
 
-    instance, references = Instance(component, sizes), Instance(component, sizes).references
-    ordered, event = component.layout.ordered, component.next_event
+    instance = Instance(component, sizes)
+    references = instance.references
+    ordered = component.layout.ordered
+    event = component.next_event
     lengths = [len(variable.element_names(sizes)) for variable in ordered]
     traits = [_traits(v) for v, length in zip(ordered, lengths) for _ in range(length)]
     return {

@@ -1,11 +1,12 @@
-"""Kernels as object code without Python, in a process of its own: numba compiles for one processor per process.
+"""Kernels as object code without Python, in a process of its own.
 
-``python -m rockshed.fmus.native.kernels < order.json`` writes ``PLATFORM.o`` into the working directory: the functions
-``rockshed_initialise``, ``rockshed_evaluate`` and ``rockshed_step`` over plain pointers. It prints the problems it found as a JSON
-list of texts.
+Numba compiles for one processor per process.
+``python -m rockshed.fmus.native.kernels < order.json`` writes ``PLATFORM.o`` into the working
+directory: the functions ``rockshed_initialise``, ``rockshed_evaluate`` and ``rockshed_step`` over
+plain pointers. It prints the problems as a JSON list of texts.
 
-Numba's own calling convention is wrapped, so no function of Python is needed; what a kernel needs besides is checked against a list
-of functions that every C library has.
+Numba's own calling convention is wrapped, so no function of Python is needed; what a kernel needs
+besides is checked against a list of functions that every C library has.
 """
 
 import json
@@ -56,7 +57,18 @@ def main() -> None:
 
 
 def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
-    """Types of the arguments of each kernel."""
+    """Return the types of the arguments of each kernel.
+
+    Parameters
+    ----------
+    instance : Instance
+        Of the component.
+
+    Returns
+    -------
+    dict of str to tuple
+        Types of numba by the name of the kernel.
+    """
     buffers = tuple(map(typeof, (instance.w, instance.x, instance.k)))
     return {
         "initialise": buffers,
@@ -68,7 +80,22 @@ def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:
 def compile_problems(
     component: Component, kinds: Mapping[str, tuple[Any, ...]], folder: Path
 ) -> list[str]:
-    """Return what keeps kernels from being compiled at all, with lines of the sources."""
+    """Return what keeps kernels from being compiled at all, with lines of the sources.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    kinds : mapping of str to tuple
+        Of :func:`signatures`.
+    folder : Path
+        The component's folder.
+
+    Returns
+    -------
+    list of str
+        A reason for each kernel that fails.
+    """
     problems = []
     for name, signature in kinds.items():
         kernel: Any = getattr(component, name)
@@ -80,7 +107,20 @@ def compile_problems(
 
 
 def linked(component: Component, instance: Instance) -> Any:
-    """All kernels with everything that they call, as one LLVM module that shows the three entries only."""
+    """Return all kernels with everything that they call, as one LLVM module.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    instance : Instance
+        Of this component; its buffers have the lengths of the FMU's.
+
+    Returns
+    -------
+    llvmlite.binding.ModuleRef
+        A module that shows the three entries only.
+    """
     lengths = [len(instance.w), len(instance.x), len(instance.k)]
     whole = llvm.parse_assembly("")
     for name, signature in signatures(instance).items():
@@ -95,7 +135,10 @@ def linked(component: Component, instance: Instance) -> Any:
 
 
 def _caller(component: Component, name: str) -> Callable[..., int]:
-    """A function that calls a kernel: what numba has in its cache can be linked, but not looked at."""
+    """Return a function that calls a kernel.
+
+    What numba has in its cache can be linked, but not looked at.
+    """
     kernel = getattr(component, name)
     if name == "step":
         return lambda t, h, w, x, k: kernel(t, h, w, x, k)
@@ -103,9 +146,25 @@ def _caller(component: Component, name: str) -> Callable[..., int]:
 
 
 def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
-    """A C function ``int64 entry([double t, double h,] double *w, double *x, int64 *k)`` around a compiled kernel.
+    """Return a C function around a compiled kernel, in a module of its own.
 
-    It returns what the kernel returns, or the negative status of numba's calling convention if the kernel raises an exception.
+    It is ``int64 entry([double t, double h,] double *w, double *x, int64 *k)`` and returns what the
+    kernel returns, or the negative status of numba's calling convention if the kernel raises an
+    exception.
+
+    Parameters
+    ----------
+    entry : str
+        Name of the function.
+    compiled : numba.core.compiler.CompileResult
+        The kernel.
+    lengths : list of int
+        Numbers of elements of ``w``, ``x`` and ``k``.
+
+    Returns
+    -------
+    llvmlite.ir.Module
+        The module.
     """
     module = ir.Module()
     descriptor, convention = compiled.fndesc, compiled.target_context.call_conv
@@ -139,18 +198,26 @@ def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
         ]  # owner, parent, number of elements, bytes of an element, data, shape, strides
     status = builder.call(callee, arguments)
     raised = builder.icmp_signed("!=", status, status.type(0))
-    builder.ret(
-        builder.select(
-            raised,
-            builder.sub(integer(0), builder.sext(status, integer)),
-            builder.load(arguments[0]),
-        )
-    )
+    negative = builder.sub(integer(0), builder.sext(status, integer))
+    builder.ret(builder.select(raised, negative, builder.load(arguments[0])))
     return module
 
 
 def shown_only(module: Any, names: Iterable[str]) -> Any:
-    """The module without what these functions do not need; nothing of it is visible outside the library."""
+    """Take out of a module what some functions do not need, and hide all else outside the library.
+
+    Parameters
+    ----------
+    module : llvmlite.binding.ModuleRef
+        The module, which is changed.
+    names : iterable of str
+        The functions.
+
+    Returns
+    -------
+    llvmlite.binding.ModuleRef
+        The module.
+    """
     for function in module.functions:
         if not function.is_declaration:
             function.linkage = "external" if function.name in names else "internal"
@@ -170,7 +237,22 @@ def shown_only(module: Any, names: Iterable[str]) -> Any:
 
 
 def emitted(module: Any, triple: str, cpu: str) -> bytes:
-    """Object code of a module for a platform."""
+    """Return the object code of a module for a platform.
+
+    Parameters
+    ----------
+    module : llvmlite.binding.ModuleRef
+        The module, which stays as it is.
+    triple : str
+        LLVM's name of the platform.
+    cpu : str
+        LLVM's name of the processor.
+
+    Returns
+    -------
+    bytes
+        An object file.
+    """
     machine = llvm.Target.from_triple(triple).create_target_machine(
         cpu=cpu, features="", opt=3, reloc="pic", codemodel="default"
     )

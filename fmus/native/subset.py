@@ -15,19 +15,31 @@ ALLOWED = frozenset(
     re.findall(
         r"\w+",
         """
-    acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs floor fma fmax fmin fmod frexp
-    hypot ldexp lgamma log log10 log1p log2 nearbyint pow rint round sin sinh sqrt tan tanh tgamma trunc
-    memcpy memmove memset pthread_create pthread_join""",
+    acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs
+    floor fma fmax fmin fmod frexp hypot ldexp lgamma log log10 log1p log2 nearbyint pow rint round
+    sin sinh sqrt tan tanh tgamma trunc memcpy memmove memset pthread_create pthread_join""",
     )
 )
-"""Functions of the C library (under Windows: of the shim) that kernels may call. Anything else would be Python's or numba's."""
+"""Functions of the C library (under Windows: of the shim) that kernels may call. Anything else
+would be Python's or numba's."""
 
 
 UNKNOWN_PLACE = "at an unknown place"
 
 
 def foreign_symbols(module: Any) -> list[str]:
-    """Return the symbols that an LLVM module needs from outside and may not."""
+    """Return the symbols that an LLVM module needs from outside and may not.
+
+    Parameters
+    ----------
+    module : llvmlite.binding.ModuleRef
+        The module.
+
+    Returns
+    -------
+    list of str
+        In alphabetical order.
+    """
     needed = [
         f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")
     ]
@@ -36,9 +48,19 @@ def foreign_symbols(module: Any) -> list[str]:
 
 
 def symbol_problems(module: Any, folder: Path) -> list[str]:
-    """The foreign symbols of a module by the lines of the component's sources that need them.
+    """Return the foreign symbols of a module by the lines of the sources that need them.
 
-    Lines are known if the module has debug information. folder: of the component.
+    Parameters
+    ----------
+    module : llvmlite.binding.ModuleRef
+        Lines are known if it has debug information.
+    folder : Path
+        The component's folder.
+
+    Returns
+    -------
+    list of str
+        A place with its symbols each.
     """
     source, by_place = _Source(str(module), folder), dict[str, list[str]]()
     for symbol in foreign_symbols(module):
@@ -58,7 +80,7 @@ class _Source:
         )
 
     def places(self, symbol: str, seen: frozenset[str] = frozenset()) -> Iterator[str]:
-        """Where our sources use a symbol, be it by functions of others that they call."""
+        """Yield where our sources use a symbol, be it by functions of others that they call."""
         named = re.compile(rf'@"?{re.escape(symbol)}"?(?![\w.$]).*!dbg (!\d+)')
         for function, body in self._functions:
             nodes = named.findall(body)
@@ -73,7 +95,7 @@ class _Source:
                 yield from self.places(function, seen | {function})
 
     def _chain(self, node: str) -> Iterator[str]:
-        """The place of an instruction, then that of the call by which it was set there, and so on."""
+        """Yield the place of an instruction, then those of the calls by which it came there."""
         while node:
             location = self._nodes[node]
             scope = _field(location, "scope")
@@ -81,7 +103,9 @@ class _Source:
                 scope = _field(self._nodes[scope], "scope")
             file = self._nodes[_field(self._nodes[scope], "file")]
             path = os.path.join(_field(file, "directory"), _field(file, "filename"))
-            yield f"{path}, line {_field(location, 'line')}, in {_field(self._nodes[scope], 'name')}"
+            yield (
+                f"{path}, line {_field(location, 'line')}, in {_field(self._nodes[scope], 'name')}"
+            )
             node = _field(location, "inlinedAt")
 
 
@@ -91,7 +115,24 @@ def _field(node: str, name: str) -> str:
 
 
 def error_problem(error: "NumbaError", name: str, kernel: Any, folder: Path) -> str:
-    """Return what numba finds wrong with a kernel, with the line as far as numba knows it."""
+    """Return what numba finds wrong with a kernel, with the line as far as numba knows it.
+
+    Parameters
+    ----------
+    error : NumbaError
+        Raised by the compilation.
+    name : str
+        Name of the kernel.
+    kernel : Dispatcher of numba
+        The kernel.
+    folder : Path
+        The component's folder.
+
+    Returns
+    -------
+    str
+        Place and reason.
+    """
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
     reasons = [
         line.strip()

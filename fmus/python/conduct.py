@@ -81,8 +81,8 @@ SENTENCES = {
     "not before it",
     "NO_START": "the start time is unknown: set up the experiment before entering the "
     "initialization mode",
-    "UNSTABLE": "internal_step = %s s exceeds stable_step = %s s: the integration will be unstable; "
-    "reduce internal_step to %s s or less",
+    "UNSTABLE": "internal_step = %s s exceeds stable_step = %s s: the integration will be "
+    "unstable; reduce internal_step to %s s or less",
     "STEP_REFUSED": "the step of %s s from t = %.9g s is refused: %s",
     "NO_LENGTH": "its length must be a positive number",
     "ELSEWHERE": "the slave is at t = %.9g s; steps follow one another, and only a restored state "
@@ -94,8 +94,8 @@ SENTENCES = {
     "OTHER_TYPE": "%s is of type %s, not %s: use the call of its type",
     "OUTPUT_SET": "%s = %s is refused: it is an output, which the component computes; set "
     "parameters or inputs",
-    "FIXED": "%s = %s is refused: a parameter is fixed after the initialisation; reset the slave to "
-    "change it",
+    "FIXED": "%s = %s is refused: a parameter is fixed after the initialisation; reset the slave "
+    "to change it",
     "BAD_INPUT": "at t = %.9g s: %s; correct what sends this value",
     "NOT_VALID_YET": "the outputs are not valid yet: %s",
     "DAMAGED": "this is no serialized state of a rockshed FMU, or it is damaged: restore another "

@@ -7,12 +7,17 @@ from glob import escape, glob
 
 
 def let_go_of_interpreter(resources: str) -> None:
-    """Make the binary forget the interpreter, which it has not started and would let go of twice when it is unloaded.
+    """Make the binary forget the interpreter.
 
-    The second time, at the end of the process, it writes to memory that is no longer its own, and some processes are aborted.
-    Nothing is done for a program that is no Python: there the binary has started the interpreter, and ends it.
+    The binary has not started it and would let go of it twice when it is unloaded. The second time,
+    at the end of the process, it writes to memory that is no longer its own, and some processes are
+    aborted. Nothing is done for a program that is no Python: there the binary has started the
+    interpreter, and ends it.
 
-    resources: folder of the resources of an instance. Instances that exist already are not affected.
+    Parameters
+    ----------
+    resources : str
+        Folder of the resources of an instance. Instances that exist already are not affected.
     """
     if sys.platform != "linux" or not sys.orig_argv:
         return

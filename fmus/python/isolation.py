@@ -1,13 +1,13 @@
-"""FMUs in one process share one Python interpreter: this keeps modules that other FMUs ship away from ours.
+"""Keep modules that other FMUs ship away from ours, as FMUs in one process share one interpreter.
 
-pythonfmu's binary puts the ``resources`` folder of every instance first in ``sys.path`` and leaves it there. Whatever stands in
-such a folder (``json.py``, ``numpy.py``, ``components/``) would be imported in the place of the library we mean. This module
-runs before anything else of an FMU is imported, so it may itself import only what every interpreter has loaded from the start.
+pythonfmu's binary puts the ``resources`` folder of every instance first in ``sys.path`` and leaves
+it there. Whatever stands in such a folder (``json.py``, ``numpy.py``, ``components/``) would be
+imported in the place of the library we mean. This module runs before anything else of an FMU is
+imported, so it may itself import only what every interpreter has loaded from the start.
 """
 
-from __future__ import (
-    annotations,  # an older Python must get as far as the message that it is too old
-)
+# an older Python must get as far as the message that it is too old
+from __future__ import annotations
 
 import os
 import sys
@@ -19,7 +19,7 @@ _OLDEST_PYTHON = (3, 11)
 
 
 class ForeignFoldersHidden:
-    """Context in which ``sys.path`` is free of the folders of FMUs; afterwards it is what it was."""
+    """Context in which ``sys.path`` is free of the folders of FMUs; it is restored afterwards."""
 
     def __enter__(self) -> None:
         self._path = list(sys.path)
@@ -39,13 +39,21 @@ class ForeignFoldersHidden:
 def require_libraries(fmu: str) -> None:
     """Import numpy and numba, the real ones.
 
-    Raises:
-        ImportError: Python is too old, they are not installed, or another FMU's modules stand in their place or keep them from
-            loading.
+    Parameters
+    ----------
+    fmu : str
+        Name of the FMU, for messages.
+
+    Raises
+    ------
+    ImportError
+        Python is too old, they are not installed, or another FMU's modules stand in their place or
+        keep them from loading.
     """
     if sys.version_info < _OLDEST_PYTHON:
         raise ImportError(
-            f"{fmu} needs Python 3.11 or later; this process runs {sys.version.split()[0]} ({sys.prefix})"
+            f"{fmu} needs Python 3.11 or later; this process runs {sys.version.split()[0]} "
+            f"({sys.prefix})"
         )
     with ForeignFoldersHidden():
         for name in _LIBRARIES:
@@ -53,14 +61,15 @@ def require_libraries(fmu: str) -> None:
                 module = __import__(name)
             except Exception as error:
                 raise ImportError(
-                    f"{fmu} needs {name} in the Python that runs it ({sys.version.split()[0]}, {sys.prefix}); "
-                    f"importing it failed with {type(error).__name__}: {error}. Remedy: pip install numpy numba"
-                    + _blame()
+                    f"{fmu} needs {name} in the Python that runs it ({sys.version.split()[0]}, "
+                    f"{sys.prefix}); importing it failed with {type(error).__name__}: {error}. "
+                    f"Remedy: pip install numpy numba" + _blame()
                 ) from error
             if _is_foreign(module):
                 raise ImportError(
-                    f"{fmu} needs {name}, but another FMU has loaded a module of its own under this name "
-                    f"({module.__file__}). Remedy: instantiate {fmu} first, or in a process of its own"
+                    f"{fmu} needs {name}, but another FMU has loaded a module of its own under "
+                    f"this name ({module.__file__}). Remedy: instantiate {fmu} first, or in a "
+                    f"process of its own"
                 )
 
 

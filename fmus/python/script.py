@@ -1,12 +1,16 @@
-"""The script that pythonfmu's binary runs inside an FMU: it finds the slave class, and mends what the binary leaves behind."""
+"""The script that pythonfmu's binary runs inside an FMU.
+
+It finds the slave class, and mends what the binary leaves behind.
+"""
 
 from string import Template
 
 SCRIPT = Template('''\
 """FMI slave $name. Generated: change the component it was frozen from, not this file.
 
-pythonfmu's binary runs this text when it imports it, and once more for every instance, then with another dictionary of locals.
-Each time it has put the resources folder first in sys.path, and it gives back a reference to the globals that it does not own.
+pythonfmu's binary runs this text when it imports it, and once more for every instance, then with
+another dictionary of locals. Each time it has put the resources folder first in sys.path, and it
+gives back a reference to the globals that it does not own.
 """
 
 import sys

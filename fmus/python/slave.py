@@ -1,8 +1,9 @@
 """The slave of every component: what pythonfmu's binary calls.
 
-The binary turns an exception that escapes from here into fmi2Fatal and crashes a few calls later, and of all calls only
-``do_step`` can return a status other than OK. So nothing escapes: a call that is refused is logged with its reason, the slave
-counts as failed, and every step is refused (fmi2Discard) until it is reset or an earlier state is restored.
+The binary turns an exception that escapes from here into fmi2Fatal and crashes a few calls later,
+and of all calls only ``do_step`` can return a status other than OK. So nothing escapes: a call that
+is refused is logged with its reason, the slave counts as failed, and every step is refused
+(fmi2Discard) until it is reset or an earlier state is restored.
 """
 
 import ctypes
@@ -46,7 +47,8 @@ from .interpreter import let_go_of_interpreter
 from .isolation import ForeignFoldersHidden
 
 _SEAL = struct.Struct("<8sI")
-"""Begins a serialized state: a mark and the checksum of what follows, :data:`_CLOCK` and the state of the component."""
+"""Begins a serialized state: a mark and the checksum of what follows, :data:`_CLOCK` and the state
+of the component."""
 _CLOCK = struct.Struct("<Id")
 _MARK = b"rockslav"
 _ROUNDING = 1e-6
@@ -61,16 +63,26 @@ class _RefusedError(Exception):
 
 
 def _guarded(otherwise: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Decorate a call of the binary: what goes wrong is logged and fails the slave, and ``otherwise`` gives the result."""
+    """Decorate a call of the binary: what goes wrong is logged and fails the slave.
+
+    Parameters
+    ----------
+    otherwise : callable
+        Returns the result of a call that goes wrong, from its arguments.
+
+    Returns
+    -------
+    callable
+        The decorator.
+    """
 
     def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(method)
         def call(self: "ComponentSlave", *arguments: Any) -> Any:
             try:
                 return method(self, *arguments)
-            except (
-                BaseException
-            ) as error:  # KeyboardInterrupt too: the binary crashes on it as on any other
+            except BaseException as error:
+                # KeyboardInterrupt too: the binary crashes on it as on any other
                 self._fail(error)
                 return otherwise(*arguments)
 
@@ -83,9 +95,10 @@ _nothing = _guarded(lambda *arguments: None)
 
 
 class ComponentSlave(Fmi2Slave):
-    """FMI 2.0 slave over an instance of a component. The value reference of a variable is its index in the buffer ``w``.
+    """FMI 2.0 slave over an instance of a component.
 
-    Subclasses name the component and the sizes it is built with.
+    The value reference of a variable is its index in the buffer ``w``. Subclasses name the
+    component and the sizes it is built with.
     """
 
     component: ClassVar[Component]
@@ -97,8 +110,11 @@ class ComponentSlave(Fmi2Slave):
         if self.resources is not None:
             let_go_of_interpreter(self.resources)
         self._instance = instance = Instance(self.component, self.sizes)
-        self._phase, self._stale, self._previewed = Phase.INSTANTIATED, Stale.STATE, False
-        self._time, self._stop_time, self._compiled = math.nan, math.inf, False
+        self._phase = Phase.INSTANTIATED
+        self._stale = Stale.STATE
+        self._previewed = False
+        self._compiled = False
+        self._time, self._stop_time = math.nan, math.inf
         self._advance: Callable[..., int] = self.component.step
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
         self._table = [
@@ -118,16 +134,27 @@ class ComponentSlave(Fmi2Slave):
     def setup_experiment(
         self, start_time: float, stop_time: float | None, tolerance: float | None
     ) -> None:
-        """Set the time (s) of the initialisation, and the end that no step may exceed."""
+        """Set the time (s) of the initialisation, and the end that no step may exceed.
+
+        Parameters
+        ----------
+        start_time : float
+            Time of the initialisation (s).
+        stop_time : float or None
+            End of the run (s), if there is one.
+        tolerance : float or None
+            Not used: no component has a step size control.
+        """
         self._expect(SET_UP)
         if not math.isfinite(start_time) or (stop_time is not None and not stop_time >= start_time):
             stop = "none" if stop_time is None else number(stop_time)
             raise _RefusedError(say("TIMES", number(start_time), stop))
-        self._time, self._stop_time = start_time, math.inf if stop_time is None else stop_time
+        self._time = start_time
+        self._stop_time = math.inf if stop_time is None else stop_time
 
     @_nothing
     def enter_initialization_mode(self) -> None:
-        """From now on outputs can be read: they follow from the parameters and inputs set so far."""
+        """Let outputs be read from now on, which follow from parameters and inputs set so far."""
         self._expect(ENTER)
         if math.isnan(self._time):
             raise _RefusedError(say("NO_START"))
@@ -150,7 +177,18 @@ class ComponentSlave(Fmi2Slave):
             self._phase = Phase.TERMINATED
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Advance by ``step_size`` (s) with the present inputs. False if that is refused or fails; the log tells why."""
+        """Advance with the present inputs.
+
+        Parameters
+        ----------
+        current_time, step_size : float
+            Start and length of the step (s).
+
+        Returns
+        -------
+        bool
+            False if that is refused or fails; the log tells why.
+        """
         try:
             due = (
                 self._phase is _RUNNING
@@ -192,7 +230,10 @@ class ComponentSlave(Fmi2Slave):
             raise _RefusedError(say("NOT_NOW", call.name, REMEDIES[self._phase]))
 
     def _compute(self) -> None:
-        """Bring outputs at the start up to date; the state, which may be expensive, only if a parameter has changed."""
+        """Bring outputs at the start up to date.
+
+        The state, which may be expensive, is computed only if a parameter has changed.
+        """
         with ForeignFoldersHidden():
             if self._stale is Stale.STATE:
                 self._instance.initialise()
@@ -203,21 +244,17 @@ class ComponentSlave(Fmi2Slave):
         self._stale = Stale.NOTHING
 
     def _compile_step(self) -> None:
-        """Compile the step now or load it from the cache, so that the first step takes no longer than the others."""
+        """Compile the step now or load it from the cache, so that the first step takes no longer.
+
+        There is no compiler with NUMBA_DISABLE_JIT, for debugging.
+        """
         compiler = getattr(self.component.step, "compile", None)
-        if (
-            compiler is not None and not self._compiled
-        ):  # there is none with NUMBA_DISABLE_JIT, for debugging
+        if compiler is not None and not self._compiled:
             with ForeignFoldersHidden():
                 from numba import typeof
 
-                compiler(
-                    tuple(
-                        map(
-                            typeof, (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k)
-                        )
-                    )
-                )
+                arguments = (0.0, 0.0, self._instance.w, self._instance.x, self._instance.k)
+                compiler(tuple(map(typeof, arguments)))
         self._compiled = True
 
     def _warn_of_unstable_step(self) -> None:
@@ -232,7 +269,18 @@ class ComponentSlave(Fmi2Slave):
     # --- values
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        """Values of real variables; a block of consecutive references is one slice of the buffer."""
+        """Return real variables; a block of consecutive references is one slice of the buffer.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+
+        Returns
+        -------
+        list of float
+            Values, not a number where the call is refused.
+        """
         try:
             if vrs and self._stale is Stale.NOTHING:
                 known = self._readers.get((vrs[0], len(vrs)))
@@ -244,7 +292,15 @@ class ComponentSlave(Fmi2Slave):
             return [math.nan] * len(vrs)
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
-        """Set real variables; a block of consecutive references is one slice of the buffer."""
+        """Set real variables; a block of consecutive references is one slice of the buffer.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+        values : list
+            A value for each.
+        """
         try:
             if vrs and self._phase is Phase.RUNNING:
                 known = self._writers.get((vrs[0], len(vrs)))
@@ -257,33 +313,71 @@ class ComponentSlave(Fmi2Slave):
 
     @_guarded(lambda vrs: [0] * len(vrs))
     def get_integer(self, vrs: list[int]) -> list[int]:
-        """Values of integer and enumeration variables and of the sizes."""
+        """Return integer and enumeration variables and the sizes.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+
+        Returns
+        -------
+        list of int
+            Values, 0 where the call is refused.
+        """
         others = iter(self._get(Kind.INTEGER, [r for r in vrs if r not in self._constants]))
         return [self._constants[r] if r in self._constants else int(next(others)) for r in vrs]
 
     @_nothing
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        """Set integer and enumeration variables."""
+        """Set integer and enumeration variables.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+        values : list
+            A value for each.
+        """
         self._set(Kind.INTEGER, vrs, values)
 
     @_guarded(lambda vrs: [False] * len(vrs))
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        """Return the values of boolean variables."""
+        """Return the values of boolean variables.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+
+        Returns
+        -------
+        list of bool
+            Values, False where the call is refused.
+        """
         return [bool(value) for value in self._get(Kind.BOOLEAN, vrs)]
 
     @_nothing
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
-        """Set variables of the type Boolean."""
+        """Set variables of the type Boolean.
+
+        Parameters
+        ----------
+        vrs : list of int
+            Value references.
+        values : list
+            A value for each.
+        """
         self._set(Kind.BOOLEAN, vrs, values)
 
     @_guarded(lambda vrs: [""] * len(vrs))
     def get_string(self, vrs: list[int]) -> list[str]:
-        """Refused: no component has a string."""
+        """Refuse to read a string: no component has one."""
         raise _RefusedError(f"value references {vrs} of strings are read; this FMU has no string")
 
     @_nothing
     def set_string(self, vrs: list[int], values: list[str]) -> None:
-        """Refused: no component has a string."""
+        """Refuse to set a string: no component has one."""
         raise _RefusedError(f"value references {vrs} of strings are set; this FMU has no string")
 
     def _variable(self, reference: int, kind: Kind) -> tuple[str, Variable]:
@@ -305,7 +399,10 @@ class ComponentSlave(Fmi2Slave):
         return [self._values[reference] for reference in vrs]
 
     def _preview(self) -> None:
-        """Compute the outputs before the initialization mode ends; what is wrong with the inputs may still be put right."""
+        """Compute the outputs before the initialization mode ends.
+
+        What is wrong with the inputs may still be put right.
+        """
         try:
             if not self._previewed:
                 self._compute()
@@ -332,7 +429,8 @@ class ComponentSlave(Fmi2Slave):
         if self._phase is not Phase.RUNNING:
             for causality in changed:
                 needs = Stale.STATE if causality is Causality.PARAMETER else Stale.OUTPUTS
-                self._stale, self._previewed = max(self._stale, needs), False
+                self._stale = max(self._stale, needs)
+                self._previewed = False
         elif vrs and all(
             variable.minimum is None and variable.maximum is None for _, variable in variables
         ):
@@ -353,7 +451,10 @@ class ComponentSlave(Fmi2Slave):
     # --- complete state
 
     def _get_fmu_state(self) -> bytes:
-        """The complete state with the time, exact to the bit. It is serialized already: nothing is left that could fail."""
+        """Return the complete state with the time, exact to the bit.
+
+        It is serialized already: nothing is left that could fail.
+        """
         try:
             content = _CLOCK.pack(self._phase, self._time) + self._instance.to_bytes()
             return _SEAL.pack(_MARK, zlib.crc32(content)) + content
@@ -363,10 +464,15 @@ class ComponentSlave(Fmi2Slave):
 
     @_nothing
     def _set_fmu_state(self, state: bytes) -> None:
-        """Go back to a state, also one of another process. Refused if it is damaged or of another component or size."""
+        """Go back to a state, also one of another process.
+
+        It is refused if it is damaged or of another component or size.
+        """
         self._instance.from_bytes(component_state(state))
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
-        self._phase, self._time, self._previewed = Phase(phase), time, False
+        self._phase = Phase(phase)
+        self._time = time
+        self._previewed = False
         self._stale = (
             Stale.STATE if phase in (Phase.INSTANTIATED, Phase.INITIALISING) else Stale.NOTHING
         )
@@ -396,17 +502,34 @@ class ComponentSlave(Fmi2Slave):
         self._log(text, Fmi2Status.error)
 
     def _log(self, text: str, status: Fmi2Status) -> None:
-        """Log with the instance's name. FMI takes a message for a printf format, some tools do not: no percent sign is safe."""
+        """Log with the instance's name.
+
+        FMI takes a message for a printf format, some tools do not: no percent sign is safe.
+        """
         self.log(
             f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent"), status
         )
 
 
 def component_state(state: bytes) -> bytes:
-    """The part of a slave's serialized state that :meth:`rockshed.components.common.component.Instance.from_bytes` reads.
+    """Return the part of a slave's serialized state that belongs to the component.
 
-    Raises:
-        ComponentError: not written by such a slave, or damaged.
+    :meth:`rockshed.components.common.component.Instance.from_bytes` reads it.
+
+    Parameters
+    ----------
+    state : bytes
+        Of a slave.
+
+    Returns
+    -------
+    bytes
+        Of the component.
+
+    Raises
+    ------
+    ComponentError
+        Not written by such a slave, or damaged.
     """
     if len(state) < _SEAL.size + _CLOCK.size or _SEAL.unpack_from(state) != (
         _MARK,
@@ -423,7 +546,7 @@ def _is_block(references: list[int]) -> bool:
 
 
 def _reader(buffer: Any, references: list[int]) -> Callable[[], list[float]]:
-    """Function that lists the values at these places of the buffer."""
+    """Return a function that lists the values at some places of the buffer."""
     if _is_block(references):
         return buffer[references[0] : references[0] + len(references)].tolist
     places = np.array(references)
@@ -431,12 +554,13 @@ def _reader(buffer: Any, references: list[int]) -> Callable[[], list[float]]:
 
 
 def _writer(buffer: Any, references: list[int]) -> Callable[[list[float]], None]:
-    """Function that puts a list of values to these places of the buffer. ``pack_into`` is faster than assigning a slice."""
+    """Return a function that puts a list of values to some places of the buffer.
+
+    ``pack_into`` is faster than assigning a slice.
+    """
     if _is_block(references):
-        pack, place = (
-            struct.Struct(f"{len(references)}d").pack_into,
-            references[0] * buffer.itemsize,
-        )
+        pack = struct.Struct(f"{len(references)}d").pack_into
+        place = references[0] * buffer.itemsize
         return lambda values: pack(buffer, place, *values)
     places = np.array(references)
     return lambda values: buffer.put(places, values)

@@ -8,15 +8,19 @@ from functools import cached_property
 from html import escape
 from importlib import import_module
 from pathlib import Path
+from shutil import rmtree
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from ..core.errors import refusing_unwritable
 from ..core.results.metric import Metric, Metrics
+from ..core.results.own_files import refuse_foreign
 from ..core.results.run_folder import RunFolder
+from ..files import naming
 from ..tables import Table
 
 if TYPE_CHECKING:
@@ -79,13 +83,15 @@ def whole_folder(folder: str | Path) -> Iterator[Path]:
 
 
 @contextmanager
-def shared_folder(folder: str | Path) -> Iterator[Path]:
+def shared_folder(folder: str | Path, names: Sequence[str]) -> Iterator[Path]:
     """Open a folder whose other files stay; the new ones appear when the block ends.
 
     Parameters
     ----------
     folder : path
         Of the results; it is made where it is missing, and removed again if the block fails.
+    names : sequence of str
+        Files that may be written, relative to the folder.
 
     Yields
     ------
@@ -95,23 +101,50 @@ def shared_folder(folder: str | Path) -> Iterator[Path]:
     Raises
     ------
     InputRefused
-        The folder cannot be written.
+        The folder cannot be written, or the user has files of these names in it.
     """
     target = Path(folder)
+    refuse_foreign(target, names, "rename it or choose another folder")
     parents = (target, *target.parents)
     missing = [parent for parent in parents if not parent.exists()]
     with refusing_unwritable(target):
         target.mkdir(parents=True, exist_ok=True)
-        place = TemporaryDirectory(prefix=".rockshed-", dir=target)
+        _remove_abandoned(target)
+        place = TemporaryDirectory(prefix=_SHARED, dir=target)
     try:
-        with place as name:
+        with place as name, _locked(Path(name)):
             yield Path(name)
-            for file in Path(name).iterdir():
+            written = [file for file in Path(name).iterdir() if file.name != _LOCK]
+            for file in written:
                 os.replace(file, target / file.name)
     finally:
         for parent in missing:
             with suppress(OSError):  # it is not empty
                 parent.rmdir()
+
+
+_SHARED, _LOCK = ".rockshed-", ".alive"
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Lock a folder as long as this process works in it."""
+    lock = FileLock(folder / _LOCK)
+    lock.acquire(timeout=0)
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def _remove_abandoned(folder: Path) -> None:
+    """Remove folders in which analyses wrote that were killed."""
+    for left in folder.glob(f"{_SHARED}*/{_LOCK}"):
+        lock = FileLock(left)
+        with suppress(Timeout, OSError):
+            lock.acquire(timeout=0)
+            rmtree(left.parent, ignore_errors=True)
+            lock.release()
 
 
 class Result(ABC):
@@ -274,7 +307,8 @@ class Result(ABC):
             Called for each figure.
         """
         folder = place / self.picture_folder
-        self._files = [file.name for file in self.write_files(place)]
+        with naming(place):
+            self._files = [file.name for file in self.write_files(place)]
         drawn = self.write_pictures(folder, progress) if pictures else []
         if self.animated:
             drawn += self.pictures_module().animate(self, folder, progress)
@@ -301,7 +335,8 @@ class Result(ABC):
         files = [folder / f"{name}.png" for name in drawings]
         progress("drawing", 0, len(files))
         for number, (draw, file) in enumerate(zip(drawings.values(), files, strict=True), 1):
-            draw().savefig(file, format="png", metadata={"Software": "rockshed"})
+            with naming(file):
+                draw().savefig(file, format="png", metadata={"Software": "rockshed"})
             progress("drawing", number, len(files))
         return files
 

@@ -5,13 +5,12 @@ import sys
 from functools import partial
 from importlib import import_module
 from io import TextIOWrapper
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
-from ..core.supervisor import supervised
+from ..core.supervisor import Ending, supervised
 
 _OBJECTS_BEFORE_COLLECTION = 100_000
 """Objects after which garbage is looked for. Imports make many objects and no garbage.
@@ -20,8 +19,8 @@ Every 700 objects, as Python does by itself, takes a twentieth of the start.
 """
 
 COMMANDS = {
-    "list": "List cases and components.",
-    "build": "Build FMUs, always anew.",
+    "list": "List all cases and components.",
+    "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU or a system: ports, values, connections.",
     "export": "Write a system as TOML, with its FMUs, to change and run it.",
     "run": "Run a case or a system file, compare, draw.",
@@ -105,15 +104,16 @@ def main() -> None:
             stream.reconfigure(errors="replace")
     work = partial(app, prog_name="rockshed")
     if sys.argv[1:2] == ["run"]:  # the code of FMUs may crash
-        supervised(work, [sys.executable, "-m", f"{__package__}.app", *sys.argv[1:]], _report_crash)
+        command = [sys.executable, "-P", "-m", "rockshed", *sys.argv[1:]]
+        supervised(work, command, _report_crash)
     else:
         work()
 
 
-def _report_crash(folder: Path | None, reason: str) -> int:
+def _report_crash(ending: Ending) -> int:
     from .crash import report_crash  # what crashes has not been imported here
 
-    return report_crash(folder, reason)
+    return report_crash(ending)
 
 
 if __name__ == "__main__":

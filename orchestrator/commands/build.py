@@ -52,7 +52,7 @@ def command(
     output_dir: _Folder = None,
     quiet: Quiet = False,
 ) -> None:
-    """Build FMUs, always anew."""
+    """Build FMUs of components, always anew."""
     problems: list[Problem] = []
     export = Export(runtime, platform or [], fmi)
     with opened(quiet) as screen, screen.busy("building"):

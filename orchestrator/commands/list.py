@@ -8,7 +8,7 @@ from .screen import opened
 
 
 def command() -> None:
-    """List cases and components."""
+    """List all cases and components."""
     with opened() as screen:
         names = Table(("case", ""))
         for case in cases().values():

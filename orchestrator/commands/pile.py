@@ -11,6 +11,7 @@ from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site
 from .screen import COLD_START, opened
+from .streams import tell_leftovers
 
 _Site = Annotated[
     Path,
@@ -36,6 +37,7 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         folder = output_dir or folder_of_site(site, "pile", screen)
+        tell_leftovers(folder, screen)
         if is_cold(["Hammer", "PileRod"]):
             screen.note(COLD_START)
         pictures = not no_figures

@@ -16,6 +16,7 @@ from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site
 from .screen import COLD_START, RUN_FAILED, Screen, opened
+from .streams import tell_leftovers
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
@@ -83,14 +84,14 @@ def command(
     Percentiles have confidence intervals.
     """
     with opened(quiet, as_json) as screen:
-        count = _count(trials, preset)
         folder = output_dir or folder_of_site(site, "rockfall", screen)
-        _note(screen, bool(replay) and animation is None)
+        tell_leftovers(folder, screen)
+        _tell(screen, bool(replay) and animation is None)
         try:
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = rockfall(
                     site,
-                    trials=count,
+                    trials=_count(trials, preset),
                     seed=seed,
                     workers=workers,
                     scheduler=scheduler,
@@ -107,11 +108,11 @@ def command(
         show(screen, result)
 
 
-def _note(screen: Screen, is_animated: bool) -> None:
-    """Say what takes time, and in which form animations are written if none is asked for."""
+def _tell(screen: Screen, animates: bool) -> None:
+    """Note what makes the first campaign slow, and how animations come."""
     if is_cold(["SlopeRockfall"]):
         screen.note(COLD_START)
-    if is_animated and not can_write_mp4():
+    if animates and not can_write_mp4():
         screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
 
 

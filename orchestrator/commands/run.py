@@ -28,6 +28,7 @@ from .options import (
 )
 from .results_place import results_folder
 from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
+from .streams import stdout_for_results, tell_leftovers
 
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
 _StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")]
@@ -108,9 +109,11 @@ def command(
     request = Request(
         target, values, sizes, coupling, options, in_process, load_cell, model, runtime
     )
+    announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
-        done = _simulate(request, problems, output_dir, allow_unstable, screen)
-        _show_run(done, screen, not no_figures)
+        with stdout_for_results():
+            done = _simulate(request, problems, output_dir, allow_unstable, screen)
+        show_run(done, screen, not no_figures)
 
 
 def _chosen(**options: Any) -> dict[str, Any]:
@@ -135,7 +138,7 @@ def _simulate(
         folder = output_dir or _folder(system, screen)
         if is_cold(system.job.components):
             progress.describe(COLD_START)
-        announce(folder)
+        tell_leftovers(folder, screen)
         try:
             with options_named(request.options):
                 return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
@@ -153,15 +156,31 @@ def _folder(system: System, screen: Screen) -> Path:
     )
 
 
-def _show_run(done: Run, screen: Screen, with_figures: bool) -> None:
+def show_run(done: Run, screen: Screen, with_figures: bool) -> None:
     """Draw and show a run; one that is not complete gives its exit code.
 
     Why a run failed is said before drawing, which takes its time and may be interrupted.
+
+    Parameters
+    ----------
+    done : Run
+        Complete or not.
+    screen : Screen
+        Of the command.
+    with_figures : bool
+        Whether pictures are drawn.
+
+    Raises
+    ------
+    typer.Exit
+        The run is not complete, or drawing was interrupted.
     """
     if done.status == "failed":
         screen.fail(str(done.error))
     if done.status == "interrupted":
-        reached = f"interrupted at t = {1e3 * done.time[-1]:g} ms"
+        reached = (
+            f"interrupted at t = {1e3 * done.time[-1]:g} ms" if done.time.size else "interrupted"
+        )
         screen.warn(f"{reached}; the results until then are kept")
     pictures: list[Path] = []
     drawn = True

@@ -20,6 +20,7 @@ from rich.markup import escape
 from rich.padding import Padding
 from rich.text import Text
 
+from ..core.ending import asked_to_end, interrupt
 from ..core.errors import InputRefused, Problem
 from ..tables import Table
 
@@ -166,7 +167,7 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     """
     screen = Screen(quiet, as_json)
     try:
-        with without_warnings_of_libraries():
+        with asked_to_end(interrupt), without_warnings_of_libraries():
             yield screen
     except InputRefused as refusal:
         screen.refuse(refusal.problems)

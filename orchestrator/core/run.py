@@ -2,24 +2,26 @@
 
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from .errors import RunFailed
 from .fmu.fmu_slave import FmuFile
-from .fmu.slave import FATAL, Slave, Source
+from .fmu.slave import FATAL, OK, WARNING, Slave, Source, counts_of, status_name
 from .loop.buses import Buses
-from .loop.initialisation import free, initialise, instantiate
+from .loop.initialisation import initialise, instantiate
 from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Master, Progress
-from .loop.recording import Recorder
+from .loop.recording import Hearing, Recorder
 from .results.metric import Metric
 from .results.provenance import describe_run
 from .results.reading import StoredRun, read_run
 from .results.run_folder import RunFolder
+from .supervisor import announce
 from .system.clock import to_seconds
 from .system.plan import Plan
 from .system.planning import make_plan
@@ -42,8 +44,9 @@ def simulate(
 ) -> StoredRun:
     """Run a system and write its results into a folder.
 
-    Ctrl-C ends the run and keeps what was computed. Everything happens in the calling process:
-    code of an FMU that crashes takes it along (the command ``rockshed run`` does not die of it).
+    Ctrl-C or SIGTERM ends the run and keeps what was computed. Everything happens in the calling
+    process: code of an FMU that crashes takes it along (the command ``rockshed run`` does not die
+    of it).
 
     Parameters
     ----------
@@ -75,10 +78,11 @@ def simulate(
     made_from = {**sources_of(system), **(sources or {})}
     plan = make_plan(system, made_from)
     with Interruption() as interruption, RunFolder(folder) as results:
-        session = _Session(plan, made_from, results)
+        announce(folder=str(results.folder), running=str(results.running))
+        session = _Session(plan, made_from, results, interruption)
         try:
             session.prepare(allow_unstable, dict(facts or {}))
-            session.run(interruption, progress)
+            session.run(progress)
         finally:
             session.close()
     return read_run(folder)
@@ -91,55 +95,100 @@ class _Session:
     plan: Plan
     sources: Mapping[str, Source]
     results: RunFolder
+    interruption: Interruption
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
+    finished: bool = False
+    warnings: list[str] = field(default_factory=list)
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         """Make and initialise the slaves, then open the results."""
         began = time.perf_counter()
         plan = self.plan
         self.journal = Journal(self.results.running, plan.order)
-        self.slaves = instantiate(plan, self.sources, self.journal.prepares)
+        self.slaves = instantiate(plan, self.sources, self._enter)
         buses = Buses(plan, self.journal.entries)
-        initial = initialise(self.slaves, buses, allow_unstable, self.journal.prepares)
+        initial = initialise(self.slaves, buses, allow_unstable, self._enter)
         self.warnings = [*plan.warnings, *initial]
         self.initialised = True
         self.accounts = Accounts(self.slaves, buses)
         recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results)
         self.watched = buses.watched
         self.master = Master(self.slaves, buses, recorder)
+        self.hearing = Hearing(self.slaves)
         self.journal.legend(buses.operations, plan.timing.start, plan.schedule)
+        self.journal.rests()
         self.preparation = time.perf_counter() - began
         known = describe_run(plan, self.sources, self.slaves)
         self.results.begin(recorder.columns, {**known, **facts})
 
-    def run(self, interruption: Interruption, progress: Progress | None) -> None:
+    def _enter(self, component: str) -> None:
+        """Note that a component is called next; stop here if that was asked for."""
+        self.interruption.look()
+        self.journal.prepares(component)
+
+    def run(self, progress: Progress | None) -> None:
         """Carry out the exchanges and finish the results, also those of a run that fails."""
         failure: RunFailed | None = None
         try:
-            status = "complete" if self.master.run(interruption, progress) else "interrupted"
+            is_complete = self.master.run(self.interruption, progress)
+            status = "complete" if is_complete else "interrupted"
         except RunFailed as error:
             status = "failed"
             failure = error
-        self.journal.close()
-        self.results.finish(
-            status,
-            self._metrics(),
-            error=str(failure) if failure else None,
-            ended=datetime.now(UTC).isoformat(),
-            warnings=self.warnings + self.accounts.warnings,
-            wall_time={
+        except OSError as error:
+            self._give_up(error)
+        self._finish(status, failure)
+        if failure is not None:
+            raise failure
+
+    def _finish(self, status: str, failure: RunFailed | None) -> None:
+        self.journal.rests()
+        try:
+            self.results.finish(
+                status,
+                self._metrics(),
+                error=str(failure) if failure else None,
+                **self._facts(),
+            )
+        except OSError as error:
+            self._give_up(error)
+        self.finished = True
+        self.journal.moved(self.results.folder)
+
+    def _give_up(self, error: OSError) -> NoReturn:
+        """Keep what could be written as the results of a run that failed."""
+        place = self.results.running
+        what = f"cannot be written: {error.strerror or error}; what was computed is in {place}"
+        failure = RunFailed(str(error.filename or place), self.master.reached, what)
+        with suppress(OSError):
+            self.results.give_up(str(failure), **self._facts())
+        raise failure from error
+
+    def _facts(self) -> dict[str, Any]:
+        """Return what is known of a run at its end."""
+        return {
+            "ended": datetime.now(UTC).isoformat(),
+            "warnings": self._all_warnings(),
+            "wall_time": {
                 "preparation": self.preparation,
                 "exchanges": self.master.wall_time,
                 "recording": self.master.recording_time,
             },
-            cpu_time={"exchanges": self.master.cpu_time},
-        )
-        if failure is not None:
-            raise failure
+            "cpu_time": {"exchanges": self.master.cpu_time},
+        }
+
+    def _all_warnings(self) -> list[str]:
+        ended = []
+        if self.master.ended_by:
+            ended = [f"{self.master.ended_by} has ended the run at t = {self.master.reached:.9g} s"]
+        said = self.hearing.warnings(self.master.warned)
+        return self.warnings + self.accounts.warnings + ended + said
 
     def _metrics(self) -> list[Metric]:
         simulated = to_seconds(self.master.exchanges * self.plan.timing.exchange)
+        if self.master.ended_by:
+            simulated = self.master.reached - self.plan.timing.seconds(0)
         return [
             *(metric for entry in self.watched for metric in self._of_watched(entry)),
             *self.accounts.metrics(),
@@ -165,7 +214,21 @@ class _Session:
 
         One that has failed beyond repair may not be called any more.
         """
-        for slave in self.slaves.values():
+        for name, slave in self.slaves.items():
+            self.journal.ends(name)
             if self.initialised and all(status != FATAL for status, _ in slave.messages):
-                slave.terminate()
-        free(self.slaves.values())
+                self._terminate(slave)
+        for name, slave in self.slaves.items():
+            self.journal.ends(name)
+            slave.free()
+        if self.finished:
+            warnings = self._all_warnings()
+            if warnings != self.results.provenance["warnings"]:
+                self.results.amend(warnings=warnings)
+            self.journal.close()
+
+    def _terminate(self, slave: Slave) -> None:
+        count = sum(counts_of(slave.messages).values())
+        status = slave.terminate()
+        if not OK <= status <= WARNING and sum(counts_of(slave.messages).values()) == count:
+            slave.messages.append((status, f"fmi2Terminate returned {status_name(status)}"))

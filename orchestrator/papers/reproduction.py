@@ -1,22 +1,26 @@
 """A reproduction: the studies of a paper, their runs, and the files that tell of them."""
 
 import os
+import shutil
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
+from itertools import chain, count
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.results.own_files import is_foreign_picture, refuse_foreign
 from ..core.system.names import nearest
-from ..files import write_file, write_json
+from ..files import whole_file, write_file, write_json
 from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
 from ..runs.building import Note, silent
 from ..runs.kept import KeptRuns
 from ..tables import Table
+from ..temporary import TemporaryFolder
 from ..versions import versions
 from .page import page
 from .report import Part, as_data, table
@@ -164,14 +168,17 @@ def reproduce(
         Unknown paper or study, or a folder that cannot be written; nothing has been run.
     """
     selected = chosen(paper, only)
-    with refusing_unwritable(folder / FIGURES, "name another folder with --output-dir"):
+    remedy = "name another folder with --output-dir"
+    refuse_foreign(folder, (DATA, PAGE), remedy)
+    with refusing_unwritable(folder / FIGURES, remedy):
         (folder / FIGURES).mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
     kept = KeptRuns(folder / FINISHED)
     outcomes = Outcomes(run_all(tasks, workers, note, counted, kept), quick)
-    parts = [_part(study, outcomes, folder / FIGURES) for study in selected]
+    with TemporaryFolder() as drawn:
+        parts = [_part(study, outcomes, drawn, folder / FIGURES) for study in selected]
     facts = {
         "paper": PAPERS[paper],
         "started": started,
@@ -189,6 +196,17 @@ def reproduce(
     return made
 
 
-def _part(study: Study, outcomes: Outcomes, figures: Path) -> Part:
+def _part(study: Study, outcomes: Outcomes, drawn: Path, figures: Path) -> Part:
+    """Return the rows of a study, and its figures, which are drawn elsewhere first."""
     rows = study.rows(outcomes)
-    return Part(study, rows, study.draw(outcomes, rows, figures))
+    files = study.draw(outcomes, rows, drawn)
+    return Part(study, rows, [_put(file, figures / file.name) for file in files])
+
+
+def _put(file: Path, target: Path) -> Path:
+    """Move a figure to its place, or beside a file of the user that is there."""
+    names = (target.with_name(f"{target.stem}-{n}{target.suffix}") for n in count(2))
+    place = next(path for path in chain([target], names) if not is_foreign_picture(path))
+    with whole_file(place) as temporary:
+        shutil.copyfile(file, temporary)
+    return place

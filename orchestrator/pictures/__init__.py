@@ -9,6 +9,7 @@ from tempfile import TemporaryFile
 from rockshed.components.common.roles import Role
 
 from ..core.errors import InputRefused, refusing_unwritable
+from ..core.results.own_files import is_foreign_picture
 from ..core.results.reading import StoredRun
 from ..metrics.comparison import known_of
 from ..metrics.contents import ForeignStateError, reader_of
@@ -78,6 +79,9 @@ def draw_all(
             warn(f"no picture {picture.name}: {damaged}")
             continue
         _make(folder)
+        if is_foreign_picture(file):
+            warn(f"no picture {picture.name}: {file} was not drawn by this program, and stays")
+            continue
         try:
             picture.draw(file)
         except ForeignStateError as error:

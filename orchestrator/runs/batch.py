@@ -5,20 +5,19 @@ Each process keeps its FMUs' code compiled from run to run.
 
 import os
 import signal
-import tempfile
 import time
 from _thread import interrupt_main
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import get_context, parent_process
-from pathlib import Path
+from multiprocessing import active_children, get_context, parent_process
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
 from ..core.system.system import SystemSpec
+from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import prepare
 from .kept import KeptRuns
@@ -274,6 +273,11 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin_process)
     try:
         yield pool
+    except BaseException:
+        for child in active_children():  # only a terminal tells Ctrl-C to all processes
+            with suppress(OSError):
+                os.kill(child.pid or 0, signal.SIGINT)
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -321,8 +325,8 @@ def _run(order: _Order, began: float) -> Outcome:
     from ..core.results.reading import read_run
     from ..core.run import simulate
 
-    with tempfile.TemporaryDirectory(prefix="rockshed-") as folder:
-        place = Path(folder) / "run"
+    with TemporaryFolder("rockshed-") as folder:
+        place = folder / "run"
         failure = None
         try:
             run = simulate(order.system, place, allow_unstable=order.allow_unstable)

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Port
-from ..core.fmu.fmu_slave import READABLE, FmuFile, read_description
+from ..core.fmu.fmu_slave import READABLE, FmuFile, UnusableError, read_description
 from ..core.fmu.slave import REAL
 from ..core.run import sources_of
 from ..core.system.plan import Plan
@@ -70,8 +70,8 @@ def describe_fmu(path: Path) -> Overview:
     xml = file.model_description()
     try:
         description = read_description(xml, READABLE)
-    except ValueError as error:
-        raise InputRefused([Problem(str(path), str(error), "use another export of it")]) from error
+    except UnusableError as error:
+        raise InputRefused([Problem(str(path), str(error), error.remedy)]) from error
     root = ElementTree.fromstring(xml)
     facts = Table(("", ""))
     for name, value in {

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..core.errors import InputRefused, Problem
 from ..core.results import reading
+from ..core.results.own_files import add_files
 from ..core.system.names import select
 from ..metrics import comparison
 from ..tables import Table
@@ -111,7 +112,9 @@ class Run(reading.StoredRun):
         from .. import pictures  # imports matplotlib
 
         place = Path(folder) if folder is not None else self.folder / "figures"
-        return {file.stem: file for file in pictures.draw_all(self, place, note, warn)}
+        files = pictures.draw_all(self, place, note, warn)
+        add_files(self.folder, files)
+        return {file.stem: file for file in files}
 
     def save(self, folder: str | Path) -> Path:
         """Copy the results into a folder that does not exist yet.

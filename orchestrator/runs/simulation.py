@@ -1,8 +1,7 @@
 """A run from a system to its results, metrics and references included."""
 
-import shutil
-import tempfile
 import weakref
+from contextlib import suppress
 from pathlib import Path
 
 from ..core.errors import RunFailed
@@ -11,6 +10,7 @@ from ..core.results.metric import Metrics
 from ..core.results.reading import add_metrics
 from ..core.run import simulate as simulate_spec
 from ..metrics import comparison
+from ..temporary import TemporaryFolder
 from .run import Run, read_run
 from .system import System
 
@@ -63,18 +63,18 @@ def simulate(
     >>> run.metrics["simulated_time"].value
     0.001
     """
-    temporary = tempfile.mkdtemp(prefix="rockshed-") if folder is None else None
-    place = Path(temporary) / system.name if temporary else Path(str(folder))
+    temporary = TemporaryFolder("rockshed-") if folder is None else None
+    place = Path(temporary.name) / system.name if temporary else Path(str(folder))
     try:
         _carry_out(system, place, progress, allow_unstable)
     except RunFailed as failure:
-        failure.run = _measured(place, temporary)
+        failure.run = _kept(measured(place), temporary)
         raise
     except BaseException:
         if temporary:
-            shutil.rmtree(temporary, ignore_errors=True)
+            temporary.cleanup()
         raise
-    return _measured(place, temporary)
+    return _kept(measured(place), temporary)
 
 
 def _carry_out(
@@ -91,13 +91,29 @@ def _carry_out(
     )
 
 
-def _measured(folder: Path, temporary: str | None) -> Run:
-    """Add the metrics that follow from the results to those of the run, and read them all."""
+def measured(folder: Path) -> Run:
+    """Add the metrics that follow from the results to those of the run, and read them all.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a run that has ended.
+
+    Returns
+    -------
+    Run
+        With all metrics; they are written down too, unless the disk is full.
+    """
     done = read_run(folder)
     metrics = comparison.figures(done, comparison.known_of(done))
-    add_metrics(folder, metrics)
+    with suppress(OSError):
+        add_metrics(done.folder, metrics)
     everything = Metrics([*done.metrics.values(), *metrics])
-    run = Run(**{**vars(done), "metrics": everything})
+    return Run(**{**vars(done), "metrics": everything})
+
+
+def _kept(run: Run, temporary: TemporaryFolder | None) -> Run:
+    """Return the run; a temporary folder of its results goes with it."""
     if temporary:
-        weakref.finalize(run, shutil.rmtree, temporary, ignore_errors=True)
+        weakref.finalize(run, temporary.cleanup)
     return run

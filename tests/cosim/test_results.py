@@ -13,6 +13,7 @@ from fmpy.util import read_csv
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.results.metric import Metric
+from rockshed.core.results.own_files import add_files
 from rockshed.core.results.reading import add_metrics, read_run
 from rockshed.core.results.run_folder import Column, RunFolder, running_folder
 from rockshed.core.run import simulate
@@ -179,15 +180,17 @@ def writing(folder):
 
 def test_a_finished_run_is_replaced_as_a_whole(result, tmp_path):
     before = result.series["mass.position"]
-    (result.folder / "plots").mkdir()
-    (result.folder / "plots" / "old.png").write_text("old")
+    drawn = result.folder / "figures" / "old.png"
+    drawn.parent.mkdir()
+    drawn.write_text("old")
+    add_files(result.folder, [drawn])
     with RunFolder(result.folder) as folder:
         folder.begin([Column("x", "m")], {"name": "n"})
         folder.rows(np.array([0.0]), np.array([[1.0]]))
         assert read_run(result.folder).series["mass.position"].tolist() == before.tolist()
         folder.finish("complete", [])
     assert list(read_run(result.folder).series) == ["time", "x"]
-    assert not (result.folder / "plots").exists()
+    assert not drawn.parent.exists()
     assert [path.name for path in result.folder.parent.iterdir()] == ["run"]
 
 

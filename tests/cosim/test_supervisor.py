@@ -17,8 +17,8 @@ import os, signal, sys, time
 from pathlib import Path
 from rockshed.core import supervisor
 
-def report(folder, reason):
-    print("reported", folder, reason, flush=True)
+def report(ending):
+    print("reported", ending.facts.get("folder"), ending.reason, flush=True)
     return 1
 
 def work():
@@ -32,7 +32,7 @@ WAY
 supervisor.supervised(work, command, report)
 """
 SPAWNED = "supervisor._forked = lambda work, report: supervisor._spawned(command, report)"
-CRASH = "supervisor.announce(Path('/tmp/run')); os.kill(os.getpid(), signal.SIGSEGV)"
+CRASH = "supervisor.announce(folder='/tmp/run'); os.kill(os.getpid(), signal.SIGSEGV)"
 WAIT = """
     for _ in range(200):
         time.sleep(0.05)

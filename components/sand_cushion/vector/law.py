@@ -91,7 +91,7 @@ def _contact(
 
 
 def _block(access: Access, lasting: bool) -> None:
-    """Write the loop over the BLOCK contacts of a block, for the arguments of :func:`_block_law`."""
+    """Write the loop over the contacts of a block, for the arguments of :func:`_block_law`."""
     constants = _constants(access)
     step = spread(access.builder, access[4], LANES)
     sums = SimpleNamespace(
@@ -123,9 +123,21 @@ def _block_law(lasting: bool) -> Any:
     def block_law(typing, block, spring, plastic, law, dt, at, tally):
         """Compute the BLOCK contacts from ``at`` on, whose columns lie in ``block``.
 
-        Force to the right and upwards (of the first disc on the second), tangential and normal
-        force come into the first four columns. Springs (N) and permanent overlaps (m) become those
-        after the step, and the energies of TALLY grow.
+        Parameters
+        ----------
+        block : ndarray of float64
+            Columns of the contacts; force to the right and upwards (of the first disc on the
+            second), tangential and normal force (N) come into the first four.
+        spring, plastic : ndarray of float64
+            Springs (N) and permanent overlaps (m), which become those after the step.
+        law : ndarray of float64
+            Constants of the contact.
+        dt : float
+            Time step (s).
+        at : int
+            First contact.
+        tally : ndarray of float64
+            The energies of TALLY, which grow.
         """
 
         def generate(context, builder, signature, arguments):

@@ -69,10 +69,8 @@ def plain_columns_to_pairs(load, pair, at, block):
         Columns 0, 1 and 2: force to the right, upwards and tangential force (N).
     """
     for q in range(BLOCK):
-        i, j = (
-            (pair[at + q] & 0xFFFFFFFF) * FORCE_ROW // ROW,
-            (pair[at + q] >> 32) * FORCE_ROW // ROW,
-        )
+        i = (pair[at + q] & 0xFFFFFFFF) * FORCE_ROW // ROW
+        j = (pair[at + q] >> 32) * FORCE_ROW // ROW
         x, y, turning = block[q], block[BLOCK + q], block[2 * BLOCK + q]
         load[i] -= x
         load[i + 1] -= y
@@ -139,10 +137,8 @@ def _columns_to_pairs(turning: bool) -> Any:
 
         def generate(context, builder, signature, arguments):
             access = Access(context, builder, signature, arguments)
-            nothing, sign = (
-                Lanes(builder, constant([0.0] * LANES)),
-                Lanes(builder, constant([-1.0, -1.0, 1.0, 1.0])),
-            )
+            nothing = Lanes(builder, constant([0.0] * LANES))
+            sign = Lanes(builder, constant([-1.0, -1.0, 1.0, 1.0]))
             even, odd = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
             width = FORCE_ROW if turning else 2
             with access.lanes_of_block() as lane:

@@ -23,13 +23,25 @@ from ..declarations import MOST_THREADS
 
 _NUMBER, _BYTES = ir.IntType(64), ir.IntType(8).as_pointer()
 _HAS_THREADS = sys.platform != "win32"
-"""Whether there are POSIX threads. Where there are none, and where one cannot be started, parts follow each other."""
+"""Whether there are POSIX threads. Where there are none, and where one cannot be started, parts
+follow each other."""
 
 
 def shared_among_threads(work: Any) -> Any:
-    """A function for kernels, ``share(threads, parts, *arguments)``, that calls the kernel ``work(part, *arguments)`` for each part
-    from 0 to ``parts`` - 1 and returns when all are done. Thread t of T does the parts t, t + T, t + 2 T, ...; the last thread is
-    the calling one. What ``work`` returns is lost."""
+    """Return a function for kernels that shares out the calls of a kernel among threads.
+
+    Parameters
+    ----------
+    work : callable
+        Kernel ``work(part, *arguments)``; its result is lost.
+
+    Returns
+    -------
+    callable
+        ``share(threads, parts, *arguments)``, which calls ``work`` for each part from 0 to
+        ``parts`` - 1 and returns when all are done. Thread t of T does the parts t, t + T, t + 2 T,
+        ...; the last thread is the calling one.
+    """
 
     @intrinsic
     def share(typing: Any, threads: Any, parts: Any, *arguments: Any) -> tuple[Any, Any]:
@@ -51,12 +63,16 @@ def shared_among_threads(work: Any) -> Any:
 
 
 def _share_type(arguments: ir.Type) -> ir.Type:
-    """What a thread is told: its first part, the distance to its next one, the number of parts, and the arguments."""
+    """Return the type of a thread's share of the work.
+
+    It holds the thread's first part, the distance to its next one, the number of parts, and the
+    arguments.
+    """
     return ir.LiteralStructType([_NUMBER, _NUMBER, _NUMBER, arguments])
 
 
 def _worker(context: Any, caller: ir.IRBuilder, compiled: Any, arguments: ir.Type) -> ir.Function:
-    """A function ``void *worker(void *share)`` that does one thread's parts."""
+    """Return a function ``void *worker(void *share)`` that does one thread's parts."""
     module = caller.module
     worker = ir.Function(module, ir.FunctionType(_BYTES, [_BYTES]), module.get_unique_name("parts"))
     worker.linkage = "internal"
@@ -119,7 +135,7 @@ def _least(builder: ir.IRBuilder, *numbers: ir.Value) -> ir.Value:
 def _start(
     builder: ir.IRBuilder, worker: ir.Function, share: ir.Value, handle: ir.Value
 ) -> ir.Value:
-    """Start a thread. Returns whether it runs."""
+    """Start a thread, and return whether it runs."""
     if not _HAS_THREADS:
         return ir.IntType(1)(0)
     integer = ir.IntType(32)

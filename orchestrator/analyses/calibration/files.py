@@ -16,12 +16,15 @@ from typing import Any
 from rockshed.components.common.units import cm, kgf
 
 from ...core.results.columns import result_column, result_table
+from ...core.results.own_files import FILES
 from ...files import whole_file, write_json
 from .fit import Fit
 from .search import Calibration
 from .tables import HEADINGS, cells, settings
 
 DATA, TABLE, CURVE = "calibration.json", "calibration.csv", "curve.csv"
+NAMES = (DATA, TABLE, CURVE, "calibration.png")
+"""All files of a calibration, the picture included."""
 _CURVE_HEADINGS = ("penetration (cm)", "load (kgf)", "computed load (kgf)", "spread (kgf)")
 
 
@@ -122,7 +125,7 @@ def write_files(
         Of the files.
     """
     files = [folder / DATA, folder / TABLE]
-    write_json(files[0], as_data(calibrations, remarks))
+    write_json(files[0], {**as_data(calibrations, remarks), FILES: NAMES})
     _write_csv(files[1], HEADINGS, cells(calibrations))
     best = calibrations[0].fits[0]
     if best.measured.is_curve:

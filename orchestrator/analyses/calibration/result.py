@@ -8,7 +8,7 @@ from typing import Any
 from ...core.results.metric import Metric
 from ...tables import Table
 from ..frame import Result, shared_folder
-from .files import as_data, modulus_columns, write_files
+from .files import NAMES, as_data, modulus_columns, write_files
 from .fit import Fit, Unreachable
 from .search import Calibration
 from .tables import E_BAR, modulus_table, notes
@@ -44,7 +44,7 @@ class CalibrationResult(Result):
     @classmethod
     def opened(cls, folder: str | Path) -> AbstractContextManager[Path]:
         """Open the folder of the results, in which other files stay as they are."""
-        return shared_folder(folder)
+        return shared_folder(folder, NAMES)
 
     @property
     def name(self) -> str:

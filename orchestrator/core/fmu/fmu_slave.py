@@ -10,10 +10,9 @@ import io
 import itertools
 import os
 import sys
-import tempfile
 import weakref
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -43,8 +42,10 @@ from fmpy.model_description import (
     read_model_description,
 )
 
+from ...temporary import TemporaryFolder
 from ..errors import InputRefused, Problem
 from .annotations import NOTHING, Annotation, read_annotations
+from .archive import MOST_DESCRIPTION, Archive, ArchiveError
 from .description import Description, Port, UnitDefinition
 from .slave import (
     BOOLEAN,
@@ -53,10 +54,11 @@ from .slave import (
     INTEGER,
     OK,
     REAL,
-    STATUS_NAMES,
     Addresses,
+    Messages,
     ValueReferences,
     Values,
+    status_name,
 )
 
 _DESCRIPTION_FILE = "modelDescription.xml"
@@ -64,8 +66,23 @@ DRIVEN = ("2.0",)
 """Versions of FMI that this program drives."""
 READABLE = ("2.0", "3.0")
 """Versions of FMI whose descriptions it can show."""
+_LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
+"""Kinds of status that FMI asks for (fmi2StatusKind)."""
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
-_MESSAGES_KEPT = 1000
+
+
+class UnusableError(ValueError):
+    """An FMU that cannot be used.
+
+    Attributes
+    ----------
+    remedy : str
+        Something to do about it.
+    """
+
+    def __init__(self, what: str, remedy: str) -> None:
+        self.remedy = remedy
+        super().__init__(what)
 
 
 class FmuFile:
@@ -94,30 +111,52 @@ class FmuFile:
         InputRefused
             No such file, not an FMU, or no binary for this platform.
         """
+        if self.path.is_dir():
+            raise self._refusal(
+                "is a folder, and no FMU", "name the FMU, or pack the folder as zip"
+            )
         if not self.path.is_file():
             raise self._refusal("there is no such file", "build the FMU or correct the path")
         content = self.path.read_bytes()
         self.origin["sha256"] = hashlib.sha256(content).hexdigest()
-        try:
-            with zipfile.ZipFile(io.BytesIO(content)) as archive:
-                names = archive.namelist()
-                xml = archive.read(_DESCRIPTION_FILE) if _DESCRIPTION_FILE in names else None
-        except zipfile.BadZipFile as error:
-            raise self._refusal("is not an FMU: not a zip archive", "export it again") from error
+        with self._archive(content) as archive:
+            archive.check_size()
+            xml = archive.read(_DESCRIPTION_FILE, MOST_DESCRIPTION)
         if xml is None:
             raise self._refusal(
                 f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again"
             )
-        is_fmi_3 = _version(xml).startswith("3")
-        self._check_binary(names, fmpy.platform_tuple if is_fmi_3 else fmpy.platform)
+        if _is_co_simulation(xml):  # else that is the reason
+            is_fmi_3 = _version(xml).startswith("3")
+            self._check_binary(archive.names, fmpy.platform_tuple if is_fmi_3 else fmpy.platform)
         return xml
+
+    @contextlib.contextmanager
+    def _archive(self, content: bytes | None = None) -> Iterator[Archive]:
+        """Open the archive; what is wrong with it becomes a refusal."""
+        try:
+            with Archive(self.path if content is None else io.BytesIO(content)) as archive:
+                yield archive
+        except ArchiveError as error:
+            raise self._refusal(str(error), error.remedy) from error
 
     def content(self, name: str) -> bytes | None:
         """Read a file in the FMU; return None if it is not in it."""
-        with zipfile.ZipFile(self.path) as archive:
-            return archive.read(name) if name in archive.namelist() else None
+        with self._archive() as archive:
+            return archive.read(name, MOST_DESCRIPTION)
 
-    def _check_binary(self, names: list[str], platform: str) -> None:
+    def unpack(self, folder: Path) -> None:
+        """Unpack everything into a folder.
+
+        Raises
+        ------
+        InputRefused
+            The archive is damaged or too large.
+        """
+        with self._archive() as archive:
+            archive.unpack(folder)
+
+    def _check_binary(self, names: Collection[str], platform: str) -> None:
         platforms = sorted(
             {
                 name.split("/")[1]
@@ -168,7 +207,7 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
 
     Raises
     ------
-    ValueError
+    UnusableError
         It is for another version of FMI or no co-simulation, or cannot be understood.
     """
     root = _checked_root(xml, versions)
@@ -182,7 +221,9 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         warnings = tuple(error.problems)
         model = _read_leniently(archive, error)
     except Exception as error:  # whatever a broken file does to the reader
-        raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
+        what = f"its {_DESCRIPTION_FILE} cannot be read: {error}"
+        raise UnusableError(what, "export it again") from error
+    _check_references(model)
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation
     told = read_annotations(root)
@@ -208,14 +249,34 @@ def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
     """Return the root of a description, after a look at its version and kind."""
     try:
         root = ElementTree.fromstring(xml)
-    except ElementTree.ParseError as error:
-        raise ValueError(f"its {_DESCRIPTION_FILE} cannot be read: {error}") from error
-    if not (root.get("fmiVersion") or "").startswith(versions):
+    except (ElementTree.ParseError, LookupError, ValueError) as error:
+        what = f"its {_DESCRIPTION_FILE} cannot be read: {error}"
+        raise UnusableError(what, "export it again") from error
+    if root.tag != "fmiModelDescription":
+        what = f"its {_DESCRIPTION_FILE} describes no FMU: it begins with <{root.tag}>"
+        raise UnusableError(what, "export it again")
+    version = root.get("fmiVersion") or "without a version"
+    if not version.startswith(versions):
         what = "shows FMI 2.0 and 3.0" if versions == READABLE else "drives FMI 2.0"
-        raise ValueError(f"is FMI {root.get('fmiVersion')}; this program {what}")
+        raise UnusableError(
+            f"is FMI {version}; this program {what}", "use an FMU of it for FMI 2.0"
+        )
     if root.find("CoSimulation") is None:
-        raise ValueError("is for model exchange only; co-simulation is needed")
+        kinds = [text for tag, text in _OTHER_KINDS.items() if root.find(tag) is not None]
+        what = f"is for {' and '.join(kinds) or 'nothing'} only; co-simulation is needed"
+        raise UnusableError(what, "export it for co-simulation")
     return root
+
+
+_OTHER_KINDS = {"ModelExchange": "model exchange", "ScheduledExecution": "scheduled execution"}
+
+
+def _is_co_simulation(xml: bytes) -> bool:
+    try:
+        _checked_root(xml, READABLE)
+    except UnusableError:
+        return False
+    return True
 
 
 def _version(xml: bytes) -> str:
@@ -230,7 +291,19 @@ def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:
     try:
         return read_model_description(archive, validate=False)
     except Exception as error:  # whatever a broken file does to the reader
-        raise ValueError(f"its {_DESCRIPTION_FILE} is not valid: {cause}") from error
+        what = f"its {_DESCRIPTION_FILE} is not valid: {cause}"
+        raise UnusableError(what, "export it again") from error
+
+
+def _check_references(model: ModelDescription) -> None:
+    """Refuse value references that 32 bits cannot hold."""
+    for variable in model.modelVariables:
+        if not 0 <= int(variable.valueReference) < 1 << 32:
+            what = (
+                f"its {_DESCRIPTION_FILE} is not valid: the valueReference "
+                f"{variable.valueReference} of {variable.name} is no whole number below 2^32"
+            )
+            raise UnusableError(what, "export it again")
 
 
 def _unit(unit: Any) -> UnitDefinition:
@@ -310,7 +383,6 @@ def _log(environment: int, _instance: bytes, status: int, _category: bytes, mess
     """
     slave = _slaves.get(environment)
     if slave is not None:
-        del slave.messages[:-_MESSAGES_KEPT]
         slave.messages.append((status, (message or b"").decode("utf-8", "replace")))
 
 
@@ -361,14 +433,15 @@ class FmuSlave:
 
     def __init__(self, file: FmuFile, name: str) -> None:
         self.name = name
-        self.messages: list[tuple[int, str]] = []
-        self._folder = tempfile.TemporaryDirectory(prefix="rockshed_", ignore_cleanup_errors=True)
+        self.messages: list[tuple[int, str]] = Messages()
+        self._folder = TemporaryFolder()
         description = read_description(file.model_description())
         self._fmu: Any = None
+        self._by_pythonfmu = _made_by_pythonfmu(description.generation_tool)
         key = next(_keys)
         _slaves[key] = self
         try:
-            fmpy.extract(file.path, self._folder.name)
+            file.unpack(Path(self._folder.name))
             # fmpy goes elsewhere, and stays there if the library cannot be loaded
             with contextlib.chdir(os.getcwd()):
                 self._fmu = FMU2Slave(
@@ -378,10 +451,7 @@ class FmuSlave:
                     unzipDirectory=self._folder.name,
                 )
             self._release = weakref.finalize(self, _release_python, self._fmu.dll)
-            self._instantiate(
-                _callbacks(key, description.generation_tool),
-                _made_by_pythonfmu(description.generation_tool),
-            )
+            self._instantiate(_callbacks(key, description.generation_tool))
         except Exception as error:  # fmpy raises bare exceptions, and the loader many kinds
             self._unload()
             said = "; ".join(text for _, text in self.messages)
@@ -399,14 +469,14 @@ class FmuSlave:
         self._setters = {kind: _MOVE(address) for kind, address in self.addresses.set.items()}
         self._getters = {kind: _MOVE(address) for kind, address in self.addresses.get.items()}
 
-    def _instantiate(self, callbacks: fmi2CallbackFunctions, by_pythonfmu: bool) -> None:
+    def _instantiate(self, callbacks: fmi2CallbackFunctions) -> None:
         """Make the instance, as fmpy does but for the location of the resources.
 
         Of all that is escaped in the URI of a path, pythonfmu's binary knows spaces only, and ends
         the process where it does not find its files.
         """
         location = Path(self._folder.name, "resources").absolute().as_uri()
-        if by_pythonfmu:
+        if self._by_pythonfmu:
             location = unquote(location)
             if "%20" in location:  # the binary would read a space
                 raise ValueError(
@@ -484,6 +554,20 @@ class FmuSlave:
         """Make a step (s) from a time (s)."""
         return int(self._step(self._fmu.component, time, step, 1))
 
+    def terminated_at(self) -> float | None:
+        """Return the time (s) up to which the last step went, if the FMU wants to end there.
+
+        pythonfmu's binary says so of every step that has failed.
+        """
+        if self._by_pythonfmu:
+            return None
+        try:
+            if not self._fmu.getBooleanStatus(_TERMINATED):
+                return None
+            return float(self._fmu.getRealStatus(_LAST_SUCCESSFUL_TIME))
+        except FMICallException:
+            return None
+
     def state(self) -> bytes:
         """Serialize the complete state.
 
@@ -526,7 +610,7 @@ class FmuSlave:
         pythonfmu's binary returns OK for both.
         """
         earlier = self.messages
-        self.messages = []
+        self.messages = Messages()
         reasons: list[str] = []
         try:
             yield
@@ -534,7 +618,9 @@ class FmuSlave:
             reasons.append(str(error))
         finally:
             reasons += [text for status, text in self.messages if status >= ERROR]
-            self.messages = earlier + self.messages
+            for message in self.messages:
+                earlier.append(message)
+            self.messages = earlier
         if reasons:
             raise RuntimeError(f"{self.name}: {what}: {'; '.join(reasons)}")
 
@@ -574,6 +660,6 @@ class FmuSlave:
         except FMICallException as error:
             if len(self.messages) == count:
                 self.messages.append(
-                    (error.status, f"{error.function} returned {STATUS_NAMES[error.status]}")
+                    (error.status, f"{error.function} returned {status_name(error.status)}")
                 )
             return int(error.status)

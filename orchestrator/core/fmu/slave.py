@@ -10,6 +10,7 @@ turn, ``terminate``, ``free``.
 """
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
@@ -20,7 +21,22 @@ from numpy.typing import NDArray
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 """Status of an FMI call. OK and WARNING let the run go on."""
 
-STATUS_NAMES = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
+_STATUS_NAMES = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
+
+
+def status_name(status: int) -> str:
+    """Return the name of a status; of a number that FMI does not know, that."""
+    known = 0 <= status < len(_STATUS_NAMES)
+    return _STATUS_NAMES[status] if known else f"{status}, which is no status of FMI"
+
+
+def worst(*statuses: int) -> int:
+    """Return the worst status; one below OK, which FMI does not know, is the worst of all."""
+    return min(statuses) if min(statuses) < OK else max(statuses)
+
+
+MESSAGES_KEPT = 1000
+"""Messages of a slave that are kept, and different ones that are counted."""
 
 REAL = "Real"
 INTEGER = "Integer"
@@ -50,6 +66,33 @@ class Addresses:
     set: Mapping[str, int]
     get: Mapping[str, int]
     do_step: int
+
+
+class Messages(list[tuple[int, str]]):
+    """The newest messages of a slave, status and text of each, and the number of all of them.
+
+    Attributes
+    ----------
+    counts : Counter
+        How often each message has come; those of which there are too many are one.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counts: Counter[tuple[int, str]] = Counter()
+
+    def append(self, message: tuple[int, str]) -> None:
+        """Take a message; the oldest is dropped where there are too many."""
+        super().append(message)
+        del self[:-MESSAGES_KEPT]
+        if message not in self.counts and len(self.counts) >= MESSAGES_KEPT:
+            message = (message[0], "(other messages)")
+        self.counts[message] += 1
+
+
+def counts_of(messages: list[tuple[int, str]]) -> Counter[tuple[int, str]]:
+    """Return how often each message of a slave has come."""
+    return Counter(messages.counts if isinstance(messages, Messages) else messages)
 
 
 class Slave(Protocol):
@@ -90,6 +133,12 @@ class Slave(Protocol):
 
     def step(self, time: float, step: float) -> int:
         """Make a step (s) from a time (s) with the inputs as they are set."""
+
+    def terminated_at(self) -> float | None:
+        """Return the time (s) up to which a step went that the slave has ended with DISCARD.
+
+        None where the slave does not want the run to end.
+        """
 
     def state(self) -> bytes:
         """Serialize the complete state.
@@ -160,3 +209,8 @@ def without_name(name: str, text: str) -> str:
     Wherever the message is shown, the name of the component stands there already.
     """
     return re.sub(rf"^{re.escape(name)}( \([^)]*\))?: ", "", text)
+
+
+def times(count: int) -> str:
+    """Return how often something was said, to stand behind it; nothing for once."""
+    return f" ({count} times)" if count > 1 else ""

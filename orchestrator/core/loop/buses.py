@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..fmu.slave import Slave
+from ..fmu.slave import OK, Slave, worst
 from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
 from .blocks import make_blocks
@@ -79,18 +79,20 @@ class Buses:
 
     def give(self, slave: Slave) -> int:
         """Set all connected inputs of a slave to the newest values; return the worst status."""
-        worst = 0
+        status = OK
         for block in self.setters.get(slave.name, []):
             self.inputs[block.places] = self.outputs[self.plan.source[block.places]]
-            worst = max(worst, slave.set(block.references, self.inputs[block.places], block.kind))
-        return worst
+            values = self.inputs[block.places]
+            status = worst(status, slave.set(block.references, values, block.kind))
+        return status
 
     def take(self, slave: Slave) -> int:
         """Get all exchanged outputs of a slave; return the worst status."""
-        worst = 0
+        status = OK
         for block in self.getters.get(slave.name, []):
-            worst = max(worst, slave.get(block.references, self.outputs[block.places], block.kind))
-        return worst
+            values = self.outputs[block.places]
+            status = worst(status, slave.get(block.references, values, block.kind))
+        return status
 
     def not_finite(self, component: str) -> End | None:
         """Return the first exchanged output of a component that is no finite number."""

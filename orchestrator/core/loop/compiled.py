@@ -14,13 +14,14 @@ from llvmlite import ir
 from numba import from_dtype, njit, types
 from numba.extending import intrinsic
 
-from ..fmu.slave import WARNING
+from ..fmu.slave import OK, WARNING
 from ..system.clock import TICKS_PER_SECOND
 from ..system.schedule import Action
 from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
 
 _SET = int(Action.SET)
 _STEP = int(Action.STEP)
+_OK = OK
 _WARNING = WARNING
 _TICKS_PER_SECOND = float(TICKS_PER_SECOND)
 
@@ -124,7 +125,7 @@ def _watch(watched, outputs, exchange):  # type: ignore[no-untyped-def]
 @_compiled
 def _is_bad(status):  # type: ignore[no-untyped-def]
     """Tell whether a run has to end at this status."""
-    return status > _WARNING or status == NOT_FINITE
+    return status > _WARNING or status < _OK
 
 
 @_compiled
@@ -180,12 +181,13 @@ def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
 def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
     """Carry out an operation of a period that began at the tick ``origin``.
 
-    Returns the first bad status, or OK.
+    Returns the first bad status, or the worst one.
     """
     if operation["action"] == _STEP:
         time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
         step = float(operation["length"]) / _TICKS_PER_SECOND
         return _call_step(operation["do_step"], operation["instance"], time, step)
+    worst = 0
     for m in range(operation["first_move"], operation["end_move"]):
         if operation["action"] == _SET:
             status = _give(tables, tables.moves[m])
@@ -193,7 +195,9 @@ def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
             status = _take(tables, tables.moves[m], tables.outputs, 0)
         if _is_bad(status):
             return status
-    return 0
+        if status != 0:
+            worst = status
+    return worst
 
 
 @_compiled
@@ -214,6 +218,8 @@ def _record(tables, base):  # type: ignore[no-untyped-def]
             status = _take(tables, tables.moves[m], tables.snapshots, base)
             if _is_bad(status):
                 return o, status
+            if status != 0:
+                tables.warned[o] += 1
     tables.journal[1] = -1
     return 0, 0
 
@@ -248,8 +254,10 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
         for o in range(tables.first[n % period], tables.first[n % period + 1]):
             tables.journal[1] = o
             status = _operate(tables, tables.operations[o], origin)
-            if _is_bad(status):
-                return n - first, o, status
+            if status != 0:
+                if _is_bad(status):
+                    return n - first, o, status
+                tables.warned[o] += 1
         _post(tables.channels, tables.inputs, tables.outputs)
         _watch(tables.watched, tables.outputs, n + 1)
         if (n + 1) % tables.every == 0:

@@ -1,5 +1,6 @@
 """The exchange loop: every slave is called by the addresses of its C functions."""
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -46,6 +47,14 @@ class ExchangeLoop:
         self._tables = _tables(buses, self._addresses(slaves))
         self._head = head(self._tables)
         self._loop = advance()
+
+    @property
+    def warned(self) -> Counter[str]:
+        """Return how often calls of each component had the status Warning."""
+        counts: Counter[str] = Counter()
+        for operation, count in zip(self._operations, self._tables.warned):
+            counts[operation.component] += int(count)
+        return counts
 
     def advance(self, first: int, count: int) -> Fault | None:
         """Carry out exchanges until the first operation that fails.
@@ -117,6 +126,7 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
         watched=buses.watched,
         snapshots=snapshots.rows.ravel(),
         journal=buses.journal,
+        warned=np.zeros(len(operations), np.int64),
     )
 
 

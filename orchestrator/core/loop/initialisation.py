@@ -3,13 +3,14 @@
 What they refuse is collected from all of them.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
 from ..errors import InputRefused, Problem
 from ..fmu.description import Port
-from ..fmu.slave import ERROR, STATUS_NAMES, WARNING, Slave, Source, without_name
+from ..fmu.slave import ERROR, OK, WARNING, Slave, Source, status_name, times, without_name, worst
 from ..system.plan import Plan
 from .buses import Buses
 
@@ -46,15 +47,18 @@ def instantiate(
     """
     slaves: dict[str, Slave] = {}
     problems: list[Problem] = []
-    for name in plan.order:
-        entering(name)
-        try:
-            slaves[name] = sources[name].instantiate(name)
-        except InputRefused as refusal:
-            problems += refusal.problems
-    if problems:
+    try:
+        for name in plan.order:
+            entering(name)
+            try:
+                slaves[name] = sources[name].instantiate(name)
+            except InputRefused as refusal:
+                problems += refusal.problems
+        if problems:
+            raise InputRefused(problems)
+    except BaseException:
         free(slaves.values())
-        raise InputRefused(problems)
+        raise
     return slaves
 
 
@@ -117,11 +121,8 @@ def initialise(
 
 def _warnings(slave: Slave) -> list[str]:
     name = slave.name
-    return [
-        f"{name}: {without_name(name, text)}"
-        for status, text in slave.messages
-        if status == WARNING
-    ]
+    said = Counter(without_name(name, text) for status, text in slave.messages if status == WARNING)
+    return [f"{name}: {text}{times(count)}" for text, count in said.items()]
 
 
 def _refuse_lost(buses: Buses) -> None:
@@ -137,16 +138,14 @@ def _refuse_lost(buses: Buses) -> None:
 
 
 def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, stop: float) -> int:
-    worst = 0
+    status = OK
     for port, value in starts:
         if isinstance(value, str):
-            worst = max(worst, slave.set_text(port.reference, value))
+            status = worst(status, slave.set_text(port.reference, value))
         else:
-            worst = max(
-                worst,
-                slave.set(np.array([port.reference], np.uint32), np.array([value]), port.kind),
-            )
-    return max(worst, slave.setup_experiment(start, stop), slave.enter_initialisation())
+            reference = np.array([port.reference], np.uint32)
+            status = worst(status, slave.set(reference, np.array([value]), port.kind))
+    return worst(status, slave.setup_experiment(start, stop), slave.enter_initialisation())
 
 
 def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: Entering) -> None:
@@ -154,7 +153,11 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: 
     problems = []
     for slave in slaves.values():
         entering(slave.name)
-        problems += _refusals(slave, call(slave))
+        said = len(slave.messages)
+        status = call(slave)
+        problems += _refusals(slave, status)
+        if status == WARNING and len(slave.messages) == said:
+            slave.messages.append((WARNING, "returned Warning without a message"))
     if problems:
         raise InputRefused(problems)
 
@@ -162,9 +165,9 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: 
 def _refusals(slave: Slave, status: int) -> list[Problem]:
     """Return what a slave refused, by its status or by a message with the status Error."""
     errors = [text for severity, text in slave.messages if severity >= ERROR]
-    if status <= WARNING and not errors:
+    if OK <= status <= WARNING and not errors:
         return []
-    silence = [f"returned {STATUS_NAMES[status]} without a message"]
+    silence = [f"returned {status_name(status)} without a message"]
     texts = errors or [text for _, text in slave.messages] or silence
     return [Problem(slave.name, without_name(slave.name, text)) for text in dict.fromkeys(texts)]
 

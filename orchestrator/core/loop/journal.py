@@ -39,7 +39,7 @@ class Journal:
     ----------
     entries : array of int64, shape (2,)
         Exchange and operation under way. An operation of -1 is none of an FMU; -2, -3, ... are
-        preparations of the first, second, ... component.
+        preparations of the first, second, ... component, and behind those of all come their ends.
     """
 
     def __init__(self, folder: Path, components: Sequence[str]) -> None:
@@ -78,6 +78,19 @@ class Journal:
         """Note that a component is being made or initialised."""
         self.entries[OPERATION] = _NOTHING - 1 - self._components.index(component)
 
+    def ends(self, component: str) -> None:
+        """Note that a component is being terminated and freed."""
+        place = len(self._components) + self._components.index(component)
+        self.entries[OPERATION] = _NOTHING - 1 - place
+
+    def rests(self) -> None:
+        """Note that no component is called."""
+        self.entries[OPERATION] = _NOTHING
+
+    def moved(self, folder: Path) -> None:
+        """Note that the folder of the run has another name now."""
+        self._folder = folder
+
     def close(self) -> None:
         """Remove the files: the run has not crashed."""
         self.entries[:] = _NOTHING
@@ -93,14 +106,14 @@ def last_entry(folder: Path, reason: str) -> str:
     folder : Path
         In which the run was writing.
     reason : str
-        Name of the signal or exception that ended it.
+        Name of the signal or exception that ended it, or what its code did.
 
     Returns
     -------
     str
         Component, time, call and reason; no component if the code of none was running.
     """
-    how = f"was killed ({reason})" if reason == "SIGKILL" else f"crashed ({reason})"
+    how = _how(reason)
     try:
         entries = np.fromfile(folder / FILE, np.int64)
         legend = json.loads((folder / LEGEND).read_text(encoding="utf-8"))
@@ -108,11 +121,20 @@ def last_entry(folder: Path, reason: str) -> str:
         return f"the run {how}"
     operation = int(entries[OPERATION])
     if operation < _NOTHING:
-        component = legend["components"][_NOTHING - 1 - operation]
-        return f"{component}: its code {how} while it was made ready"
+        number = _NOTHING - 1 - operation
+        component = legend["components"][number % len(legend["components"])]
+        ready = number < len(legend["components"])
+        when = "while it was made ready" if ready else "when it was ended, after the run"
+        return f"{component}: its code {how} {when}"
     if operation == _NOTHING:
         return f"the run {how}"
     return _call(legend, operation, int(entries[EXCHANGE]), how)
+
+
+def _how(reason: str) -> str:
+    if reason == "SIGKILL":
+        return f"was killed ({reason})"
+    return f"crashed ({reason})" if reason.startswith(("SIG", "exception")) else reason
 
 
 def _call(legend: dict[str, Any], operation: int, exchange: int, how: str) -> str:

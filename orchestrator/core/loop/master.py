@@ -1,14 +1,14 @@
-"""The course of a run, and what ends it early: a slave that fails, or Ctrl-C."""
+"""The course of a run, and what ends it early: a slave that fails or ends, or Ctrl-C."""
 
-import signal
-import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from types import FrameType, TracebackType
-from typing import Any
 
+from ..ending import asked_to_end
 from ..errors import RunFailed
-from ..fmu.slave import FATAL, STATUS_NAMES, Slave
+from ..fmu.slave import DISCARD, FATAL, Slave, status_name
 from ..system.clock import to_seconds
 from ..system.schedule import Action
 from .buses import Buses
@@ -28,19 +28,18 @@ Progress = Callable[[float, float], None]
 
 
 class Interruption:
-    """Ctrl-C as a flag that the master asks for. A context manager.
+    """Ctrl-C or a request to terminate as a flag that the master asks for. A context manager.
 
     An exception would be raised wherever Python happens to be, inside an FMU too, which takes it
-    for its own failure. The second Ctrl-C is not caught any more.
+    for its own failure. The second request is not caught any more.
     """
 
     def __init__(self) -> None:
         self.requested = False
 
     def __enter__(self) -> "Interruption":
-        self._in_main = threading.current_thread() is threading.main_thread()
-        if self._in_main:
-            self._before: Any = signal.signal(signal.SIGINT, self._request)
+        self._opened = ExitStack()
+        self._put_back = self._opened.enter_context(asked_to_end(self._request))
         return self
 
     def __exit__(
@@ -49,12 +48,22 @@ class Interruption:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if self._in_main:
-            signal.signal(signal.SIGINT, self._before)
+        self._opened.close()
 
     def _request(self, _signal: int, _frame: FrameType | None) -> None:
         self.requested = True
-        signal.signal(signal.SIGINT, self._before)
+        self._put_back()
+
+    def look(self) -> None:
+        """Raise the exception of Ctrl-C if the end was requested: nothing is there to be kept.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Between two calls of FMUs while they are made ready.
+        """
+        if self.requested:
+            raise KeyboardInterrupt
 
 
 class Master:
@@ -77,6 +86,10 @@ class Master:
         Time (s) that they took, snapshots included; that of the processor.
     recording_time : float
         Time (s) from snapshots to files, and for states.
+    reached : float
+        Simulated time reached (s).
+    ended_by : str
+        Component that has ended the run before its stop time; empty if none has.
     """
 
     def __init__(self, slaves: Mapping[str, Slave], buses: Buses, recorder: Recorder) -> None:
@@ -90,6 +103,18 @@ class Master:
         self.wall_time = 0.0
         self.cpu_time = 0.0
         self.recording_time = 0.0
+        self.ended_by = ""
+        self._ended_at = 0.0
+
+    @property
+    def reached(self) -> float:
+        """Return the simulated time reached (s)."""
+        return self._ended_at if self.ended_by else self._plan.timing.seconds(self.exchanges)
+
+    @property
+    def warned(self) -> Counter[str]:
+        """Return how often calls of each component had the status Warning."""
+        return self._loop.warned
 
     def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
         """Carry out all exchanges. Rows up to the end are recorded in any case.
@@ -128,6 +153,9 @@ class Master:
         while self.exchanges < timing.exchanges and not interruption.requested:
             due = min(self._recorder.next_frames(self.exchanges), timing.exchanges)
             self._advance(min(due - self.exchanges, self._at_once, snapshots.room))
+            if self.ended_by:
+                self._record_end()
+                return True
             if self.exchanges == due:
                 self._recorder.frames(due)
             if progress is not None:
@@ -144,6 +172,17 @@ class Master:
         self._buses.snapshots.waiting.append(self.exchanges)
         self._recorder.look()
 
+    def _record_end(self) -> None:
+        """Take a row at the time at which a component has ended the run, if it is a new one."""
+        timing = self._plan.timing
+        last = self.exchanges - self.exchanges % self._buses.snapshots.every
+        if self._ended_at <= timing.seconds(last):
+            return
+        self._recorder.flush()
+        self._buses.take(self._slaves[self.ended_by])
+        self._recorder.ended_at = self._ended_at
+        self._record()
+
     def _advance(self, count: int) -> None:
         began = time.perf_counter()
         began_of_thread = time.thread_time()
@@ -152,11 +191,23 @@ class Master:
         self.wall_time += took
         self.cpu_time += time.thread_time() - began_of_thread
         self._arrive(count, fault)
-        if fault is not None:
+        if fault is not None and not self._is_end(fault):
             raise self._failure(fault) from fault.cause
         self._recorder.look()
         in_time = int(count * _SECONDS_AT_ONCE / max(took, 1e-9))
         self._at_once = max(1, min(_MOST_AT_ONCE, _GROWTH * self._at_once, in_time))
+
+    def _is_end(self, fault: Fault) -> bool:
+        """Tell whether a slave has discarded a step because it wants to end the run."""
+        if fault.status != DISCARD or fault.operation.action is not Action.STEP:
+            return False
+        ask = getattr(self._slaves[fault.operation.component], "terminated_at", None)
+        at = ask() if ask else None
+        if at is None:
+            return False
+        self.ended_by = fault.operation.component
+        self._ended_at = min(max(at, self._time(fault)), self._time(fault, 1.0))
+        return True
 
     def _arrive(self, count: int, fault: Fault | None) -> None:
         """Count exchanges and the rows that were taken in them, up to a fault."""
@@ -178,7 +229,7 @@ class Master:
             self._slaves[name].messages.append((FATAL, "cannot be used any more"))
         if fault.status == NOT_FINITE:
             return RunFailed(name, self._plan.timing.seconds(fault.exchange + 1), self._lost(fault))
-        what = f"{self._what(fault)} ({STATUS_NAMES[fault.status]}): {said}"
+        what = f"{self._what(fault)} ({status_name(fault.status)}): {said}"
         return RunFailed(name, self._time(fault), what)
 
     def _what(self, fault: Fault) -> str:
@@ -189,8 +240,8 @@ class Master:
             Action.RECORD: "does not give its values",
         }[fault.operation.action]
 
-    def _time(self, fault: Fault) -> float:
-        """Return the time (s) at which an operation failed."""
+    def _time(self, fault: Fault, part: float = 0.0) -> float:
+        """Return the time (s) at which an operation failed, or after a part of a step."""
         schedule = self._plan.schedule
         timing = self._plan.timing
         if fault.operation.action is Action.RECORD:
@@ -198,7 +249,8 @@ class Master:
         if fault.operation.action is not Action.STEP:
             return timing.seconds(fault.exchange)
         period = fault.exchange // schedule.period * schedule.period
-        return to_seconds(timing.start + period * schedule.exchange + fault.operation.begin)
+        ticks = fault.operation.begin + round(part * fault.operation.length)
+        return to_seconds(timing.start + period * schedule.exchange + ticks)
 
     def _lost(self, fault: Fault) -> str:
         """Name the value that is no finite number, and say what may be done about it."""

@@ -1,6 +1,7 @@
 """Records of a run: rows of the time series, and frames of serialized states."""
 
 import time
+from collections import Counter
 from collections.abc import Mapping
 from typing import Protocol
 
@@ -8,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import RunFailed
-from ..fmu.slave import Slave, without_name
+from ..fmu.slave import WARNING, Slave, counts_of, times, without_name
 from ..results.run_folder import Column
 from .ledger import Accounts
 from .snapshots import Snapshots
 
+MOST_TEXTS = 5
+"""Different messages of a component during a run that are told."""
 _SECONDS_TOGETHER = 1.0
 """Time (s) after which rows are passed on: what a killed process may lose."""
 
@@ -40,6 +43,11 @@ class Recorder:
         Gives the columns of the energy accounts.
     sink : Sink
         Takes rows and frames.
+
+    Attributes
+    ----------
+    ended_at : float or None
+        Time (s) of the last row that waits, where a slave has ended the run within an exchange.
     """
 
     def __init__(
@@ -55,6 +63,7 @@ class Recorder:
         components = self._plan.system.components
         self._framed = [name for name in self._plan.order if components[name].record_states]
         self._flushed_at = time.monotonic()
+        self.ended_at: float | None = None
 
     @property
     def columns(self) -> list[Column]:
@@ -76,6 +85,8 @@ class Recorder:
         if waiting:
             rows = self._snapshots.rows[: len(waiting)]
             times = np.array([self._plan.timing.seconds(exchange) for exchange in waiting])
+            if self.ended_at is not None:
+                times[-1] = self.ended_at
             energies = self._accounts.values(rows, times)
             self._sink.rows(times, np.concatenate((rows[:, self._places], energies), axis=1))
             waiting.clear()
@@ -101,6 +112,7 @@ class Recorder:
         """
         if exchange % self._plan.timing.state_every == 0:
             at = self._plan.timing.seconds(exchange)
+            self.flush()  # rows come before states, which may fill the disk
             for name in self._framed:
                 self._sink.frame(name, at, self._serialized(name, at))
 
@@ -116,3 +128,50 @@ def last_words(slave: Slave) -> str:
     if not slave.messages:
         return "without a message"
     return without_name(slave.name, slave.messages[-1][1])
+
+
+class Hearing:
+    """Listens to what slaves say from now on.
+
+    Parameters
+    ----------
+    slaves : mapping of str to Slave
+        By component.
+    """
+
+    def __init__(self, slaves: Mapping[str, Slave]) -> None:
+        self._slaves = slaves
+        self._before = {name: counts_of(slave.messages) for name, slave in slaves.items()}
+
+    def warnings(self, warned: Mapping[str, int]) -> list[str]:
+        """Return the first texts of each slave with the number of times that they came.
+
+        Parameters
+        ----------
+        warned : mapping of str to int
+            How often calls of a component had the status Warning.
+
+        Returns
+        -------
+        list of str
+            At most :data:`MOST_TEXTS` for each component, and the number of those left out.
+        """
+        return [
+            text
+            for name, slave in self._slaves.items()
+            for text in self._of(slave, warned.get(name, 0))
+        ]
+
+    def _of(self, slave: Slave, warned: int) -> list[str]:
+        new = counts_of(slave.messages) - self._before[slave.name]
+        said: Counter[str] = Counter()
+        for (status, text), count in new.items():
+            if status >= WARNING:
+                said[without_name(slave.name, text)] += count
+        texts = [f"{slave.name}: {text}{times(count)}" for text, count in said.items()]
+        if len(texts) > MOST_TEXTS:
+            rest = sum(list(said.values())[MOST_TEXTS:])
+            texts[MOST_TEXTS:] = [f"{slave.name}: and {rest} other messages"]
+        if warned and not texts:
+            texts = [f"{slave.name}: returned Warning without a message{times(warned)}"]
+        return texts

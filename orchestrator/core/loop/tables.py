@@ -12,8 +12,9 @@ Records = NDArray[np.void]
 FloatTable = NDArray[np.float64]
 IntegerTable = NDArray[np.int64]
 
-NOT_FINITE = -1
-"""Status of an operation that brought a value that is no finite number."""
+NOT_FINITE = 1 << 40
+"""Status of an operation that brought a value that is no finite number; no FMU returns it, as a
+status has 32 bits."""
 
 
 def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
@@ -78,6 +79,8 @@ class Tables(NamedTuple):
         Rows of :class:`rockshed.core.loop.snapshots.Snapshots`, one after the other.
     journal : array of int64, shape (2,)
         Exchange and operation under way, -1 while none is.
+    warned : array of int64
+        For each operation, how often its status was Warning.
     """
 
     start: int
@@ -96,6 +99,7 @@ class Tables(NamedTuple):
     watched: Records
     snapshots: FloatTable
     journal: IntegerTable
+    warned: IntegerTable
 
 
 NUMBERS = ("start", "exchange", "every", "width", "row")
@@ -113,6 +117,7 @@ KINDS = {
     "watched": WATCHED,
     "snapshots": np.dtype(np.float64),
     "journal": np.dtype(np.int64),
+    "warned": np.dtype(np.int64),
 }
 """Types of the arrays among the :class:`Tables`, in their order."""
 

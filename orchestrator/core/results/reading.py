@@ -204,9 +204,13 @@ def read_run(folder: Path) -> StoredRun:
 
 
 def _place_of(folder: Path) -> Path:
-    for place in (folder, running_folder(folder.absolute())):
+    running = running_folder(folder)
+    for place in (folder, running):
         if (place / RUN).is_file():
             return place
+    if running.is_dir():
+        what = f"a run was killed before it computed anything; it has left {running}"
+        raise _refusal(folder, what, "run it again")
     raise _refusal(folder, f"is no folder of a run: there is no {RUN}", "give the folder of a run")
 
 
@@ -275,6 +279,7 @@ def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:
         One with a name that is there already replaces it.
     """
     path = folder / SUMMARY
-    entries = {entry["name"]: entry for entry in json.loads(path.read_text(encoding="utf-8"))}
+    known = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else []
+    entries = {entry["name"]: entry for entry in known}
     entries |= {metric.name: metric.as_entry() for metric in metrics}
     write_json(path, list(entries.values()))

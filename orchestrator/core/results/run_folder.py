@@ -1,12 +1,15 @@
 """Results of a run: a folder that appears as a whole and that can be read after a crash.
 
 While a run is going on, everything goes into ``NAME.running`` in the same place as the folder
-``NAME``; when the run ends, that takes the place of ``NAME`` as a whole. Rows and states are
+``NAME``; when the run ends, that takes the place of ``NAME`` as a whole. What is the user's in
+``NAME`` stays there. A run that was killed leaves ``NAME.running``: the next one writes into
+``NAME.running-2`` and removes it when it is complete. Rows and states are
 appended to Arrow streams, which can be read up to the last complete batch whatever happens, and are
 turned into the final files at the end.
 
 ==================  ================================================================================
-run.json            status (running, complete, interrupted, failed), error, warnings, provenance
+run.json            status (running, complete, interrupted, failed), error, warnings, provenance,
+                    list of the files of the run
 summary.json        list of {id, name, value, unit}, with {references} where there are any
 timeseries.parquet  columns ``time`` and ``component.variable``; unit and description in the
                     metadata of each field
@@ -18,11 +21,14 @@ states.h5           per component: ``time`` (n,), and serialized states ``state/
 """
 
 import csv
-import json
+import os
+import re
+import secrets
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
-from itertools import chain
+from itertools import chain, count
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -31,9 +37,10 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
-from ...files import write_json
+from ...files import naming, write_file, write_json
 from ..errors import InputRefused, Problem, refusing_unwritable
 from .metric import Metric
+from .own_files import FILES, MARK, content_of, foreign, is_marked, mark, read_data
 
 RUN = "run.json"
 SUMMARY = "summary.json"
@@ -43,6 +50,21 @@ CSV = "timeseries.csv"
 STATES = "states.h5"
 ROWS_STREAM = "timeseries.arrows"
 STATES_STREAM = "states.arrows"
+RESERVE = ".reserve"
+"""File that takes room on the disk, so that the end of a run can be written when there is none."""
+_RESERVED = 1 << 17
+"""Its length (bytes)."""
+_REPLACES = "replaces"
+"""Entry of ``run.json`` during a swap: name of the old folder."""
+_ASIDE = ".rockshed-old"
+_WORKING = (
+    *(MARK, RESERVE, RUN, SUMMARY, COLUMNS, PARQUET, CSV, STATES, ROWS_STREAM, STATES_STREAM),
+    *("journal.bin", "journal.json", "trials.parquet", "envelopes.parquet", "envelopes.csv"),
+    *("traces.parquet", "traces.csv", "bearing.parquet", "bearing.csv"),
+)
+"""Files of runs that have not ended."""
+_UNFINISHED = re.compile(r"\.[^.]+\.[0-9a-f]{8}\.\w+")
+"""Name of a file that was being written."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +110,8 @@ class RunFolder:
     """
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder.absolute()
+        self.folder = Path(os.path.realpath(folder))  # a link stays, and leads to the results
         self.running = running_folder(self.folder)
-        self._old = self.folder.parent / f".{self.folder.name}.old"
         above = (self.folder.parent, *self.folder.parent.parents)
         self._made = [parent for parent in above if not parent.exists()]
         self._lock = FileLock(self.folder.parent / f".{self.folder.name}.lock")
@@ -103,6 +124,8 @@ class RunFolder:
             raise self._refusal(
                 "is no folder of a run, and would be overwritten", "choose another folder"
             )
+        if os.path.ismount(self.folder):
+            raise self._refusal("cannot be replaced as a whole", "choose a folder in it")
         try:
             self._open()
         except InputRefused:
@@ -113,13 +136,23 @@ class RunFolder:
     def _open(self) -> None:
         with refusing_unwritable(self.folder, "choose another folder"):
             self.folder.parent.mkdir(parents=True, exist_ok=True)
-            try:
-                self._lock.acquire(timeout=0)
-            except Timeout:
-                raise self._taken() from None
-            for left in filter(Path.exists, (self.running, self._old)):  # by a run that was killed
-                shutil.rmtree(left)
+            self._take_lock()
+            recover(self.folder)
+            self.running = free_running_folder(self.folder)
             self.running.mkdir()
+            mark(self.running)
+
+    def _take_lock(self) -> None:
+        file = Path(self._lock.lock_file)
+        if file.is_dir() or (file.is_file() and file.stat().st_size):
+            raise self._refusal(
+                f"would be locked with the file {file}, which holds something else",
+                "rename that or choose another folder",
+            )
+        try:
+            self._lock.acquire(timeout=0)
+        except Timeout:
+            raise self._taken() from None
 
     def _taken(self) -> InputRefused:
         """Say why there is no lock."""
@@ -168,6 +201,7 @@ class RunFolder:
         import pyarrow as pa
 
         self.columns = [Column("time", "s", "simulated time"), *columns]
+        write_file(self.running / RESERVE, os.urandom(_RESERVED))
         self.write_provenance({"status": "running", **provenance})
         self._write_columns()
         self._rows = _Stream(self.running / ROWS_STREAM, schema(self.columns))
@@ -182,7 +216,8 @@ class RunFolder:
         write_json(self.running / RUN, self.provenance)
 
     def _write_columns(self) -> None:
-        with (self.running / COLUMNS).open("w", newline="", encoding="utf-8") as file:
+        place = self.running / COLUMNS
+        with naming(place), place.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, ["name", "unit", "description"])
             writer.writeheader()
             writer.writerows(map(asdict, self.columns))
@@ -234,18 +269,160 @@ class RunFolder:
         write_json(self.running / SUMMARY, [metric.as_entry() for metric in metrics])
         _convert_rows(self.running, self.columns)
         _convert_states(self.running)
+        (self.running / RESERVE).unlink(missing_ok=True)
         self.write_provenance({**self.provenance, "status": status, **facts})
-        self.swap()
+        self.swap(status == "complete")
 
-    def swap(self) -> None:
-        """Put the new folder in the place of the old one.
+    def give_up(self, error: str, **facts: Any) -> None:
+        """Mark what was written as the results of a run that failed, where the disk is full.
 
-        Renaming is one step each for the file system.
+        The streams stay as they are, in :attr:`running`: they can be read and drawn.
+
+        Parameters
+        ----------
+        error : str
+            Reason of the failure.
+        **facts
+            Added to the provenance.
         """
+        (self.running / RESERVE).unlink(missing_ok=True)
+        for stream_file, made in ((ROWS_STREAM, (PARQUET, CSV)), (STATES_STREAM, (STATES,))):
+            if (self.running / stream_file).is_file():
+                for file in made:
+                    (self.running / file).unlink(missing_ok=True)
+        for stream in filter(None, (self._rows, self._states)):
+            stream.abandon()
+        self.write_provenance({**self.provenance, "status": "failed", "error": error, **facts})
+
+    def amend(self, **facts: Any) -> None:
+        """Add facts to the provenance of a run that has been finished."""
+        self.provenance = {**read_data(self.folder / RUN), **facts}
+        write_json(self.folder / RUN, self.provenance)
+
+    def swap(self, is_complete: bool = True) -> None:
+        """Put the new folder in the place of the old one. What is the user's there stays.
+
+        Renaming is one step each for the file system; :func:`recover` goes on after a kill.
+
+        Parameters
+        ----------
+        is_complete : bool
+            Whether what killed runs have left is removed.
+        """
+        lost = leftovers(self.folder, self.running)
+        content = read_data(self.running / RUN)
+        entries = {**content, FILES: sorted(content_of(self.running))}
         if self.folder.exists():
-            self.folder.rename(self._old)
-        self.running.rename(self.folder)
-        shutil.rmtree(self._old, ignore_errors=True)
+            aside = self.folder.with_name(f".{secrets.token_hex(4)}{_ASIDE}")
+            write_json(self.running / RUN, {**entries, _REPLACES: aside.name})
+            self.folder.rename(aside)
+            self.running.rename(self.folder)
+        else:
+            write_json(self.running / RUN, entries)
+            self.running.rename(self.folder)
+        settle(self.folder)
+        if is_complete:
+            for folder in lost:
+                _remove_leftover(folder)
+
+
+def settle(folder: Path) -> None:
+    """End a swap: move what is the user's from the old folder to the new one, remove the rest.
+
+    Parameters
+    ----------
+    folder : Path
+        New results.
+    """
+    (folder / MARK).unlink(missing_ok=True)
+    content = read_data(folder / RUN)
+    aside = _aside(folder, content)
+    if aside is None:
+        return
+    if aside.is_dir():
+        for name in foreign(aside):
+            _carry(aside / name, folder / name)
+        shutil.rmtree(aside, ignore_errors=True)
+    write_json(folder / RUN, {key: value for key, value in content.items() if key != _REPLACES})
+
+
+def _aside(folder: Path, content: Mapping[str, Any]) -> Path | None:
+    """Return the place to which a swap moved the old folder."""
+    name = str(content.get(_REPLACES, ""))
+    return folder.with_name(name) if re.fullmatch(rf"\.[0-9a-f]{{8}}{_ASIDE}", name) else None
+
+
+def _carry(source: Path, target: Path) -> None:
+    """Move what is the user's to where it was; under another name if a new file is there."""
+    if source.is_dir() and target.is_dir() and not source.is_symlink():
+        for entry in list(source.iterdir()):
+            _carry(entry, target / entry.name)
+        return
+    target.parent.mkdir(parents=True, exist_ok=True)
+    names = (target.with_name(f"{target.stem}-{n}{target.suffix}") for n in count(2))
+    source.rename(next(path for path in chain([target], names) if not os.path.lexists(path)))
+
+
+def _remove_leftover(folder: Path) -> None:
+    """Remove what a killed run has left, but nothing that somebody else has put there."""
+    for entry in list(folder.iterdir()):
+        if entry.name == "figures" and not entry.is_symlink():
+            shutil.rmtree(entry, ignore_errors=True)
+        elif entry.name in _WORKING or _UNFINISHED.fullmatch(entry.name):
+            entry.unlink(missing_ok=True)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def leftovers(folder: Path, live: Path | None = None) -> list[Path]:
+    """Return the folders in which runs wrote that were killed or could not end, oldest first.
+
+    Parameters
+    ----------
+    folder : Path
+        Final place of the runs.
+    live : Path, optional
+        Folder of a run that goes on, which is left out.
+
+    Returns
+    -------
+    list of Path
+        Only folders that this program has made.
+    """
+    return [path for path in _numbered(folder).values() if path != live and is_marked(path)]
+
+
+def _numbered(folder: Path) -> dict[int, Path]:
+    """Return everything that is called like a folder in which a run writes, by number."""
+    pattern = re.compile(re.escape(folder.name) + r"\.running(?:-(\d+))?", re.DOTALL)
+    try:
+        names = map(pattern.fullmatch, os.listdir(folder.parent))
+    except OSError:
+        return {}
+    found = {int(name[1] or 1): folder.with_name(name[0]) for name in names if name}
+    return dict(sorted(found.items()))
+
+
+def free_running_folder(folder: Path) -> Path:
+    """Return the folder in which the next run may write: there is nothing yet."""
+    number = max(_numbered(folder), default=0) + 1
+    return folder.with_name(f"{folder.name}.running" + (f"-{number}" if number > 1 else ""))
+
+
+def recover(folder: Path) -> None:
+    """Go on with a swap that was killed. The folder has to be locked.
+
+    Parameters
+    ----------
+    folder : Path
+        Final place of a run.
+    """
+    for left in leftovers(folder):
+        aside = _aside(folder, read_data(left / RUN))
+        if aside is not None and aside.is_dir() and not folder.exists():
+            left.rename(folder)
+    if folder.is_dir() and _REPLACES in read_data(folder / RUN):
+        settle(folder)
 
 
 class _Stream:
@@ -255,23 +432,36 @@ class _Stream:
         import pyarrow as pa
 
         self._schema = schema
-        self._file = path.open("wb")
-        compressed = pa.ipc.IpcWriteOptions(compression="zstd")
-        self._writer = pa.ipc.new_stream(self._file, schema, options=compressed)
-        self._file.flush()
+        self._path = path
+        with naming(path):
+            self._file = path.open("wb")
+            compressed = pa.ipc.IpcWriteOptions(compression="zstd")
+            self._writer = pa.ipc.new_stream(self._file, schema, options=compressed)
+            self._file.flush()
+        self._whole = self._file.tell()
 
     def append(self, columns: Sequence[Any]) -> None:
         """Write a batch: columns of equal length."""
         import pyarrow as pa
 
         arrays = [_arrow(c, field.type) for c, field in zip(columns, self._schema, strict=True)]
-        self._writer.write_batch(pa.record_batch(arrays, schema=self._schema))
-        self._file.flush()
+        with naming(self._path):
+            self._writer.write_batch(pa.record_batch(arrays, schema=self._schema))
+            self._file.flush()
+        self._whole = self._file.tell()
 
     def close(self) -> None:
         """End the stream, so that it is complete."""
-        self._writer.close()
-        self._file.close()
+        with naming(self._path):
+            self._writer.close()
+            self._file.close()
+
+    def abandon(self) -> None:
+        """Let go of the file, and cut off a batch that was not written as a whole."""
+        with suppress(OSError):
+            self._file.close()
+        with suppress(OSError):
+            os.truncate(self._path, self._whole)
 
 
 def _arrow(values: Sequence[Any], kind: Any) -> Any:
@@ -290,15 +480,21 @@ def _arrow(values: Sequence[Any], kind: Any) -> Any:
     return pa.Array.from_buffers(kind, len(parts), content)
 
 
-def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:
+def keep_crashed(
+    folder: Path, running: Path, error: str, status: str = "failed", **facts: Any
+) -> bool:
     """Turn what a crashed run has left into the results of a run that failed.
 
     Parameters
     ----------
     folder : Path
         Final place of the run.
+    running : Path
+        Folder in which it wrote.
     error : str
         Reason of the crash.
+    status : str
+        ``failed``, or ``interrupted``.
     **facts
         Added to the provenance.
 
@@ -308,25 +504,36 @@ def keep_crashed(folder: Path, error: str, **facts: Any) -> bool:
         False if the run had not begun; then nothing is left.
     """
     results = RunFolder(folder)
-    (results.folder.parent / f".{results.folder.name}.lock").unlink(missing_ok=True)
-    for left in results.running.glob("journal.*"):
-        left.unlink()
-    if not (results.running / ROWS_STREAM).is_file():
-        shutil.rmtree(results.running, ignore_errors=True)
+    results.running = running
+    if not (running / ROWS_STREAM).is_file():
+        shutil.rmtree(running, ignore_errors=True)
         return False
-    results.provenance = json.loads((results.running / RUN).read_text(encoding="utf-8"))
-    results.columns = read_columns(results.running / COLUMNS)
-    results.complete("failed", [], error=error, **facts)
+    results.provenance = read_data(running / RUN)
+    results.columns = read_columns(running / COLUMNS)
+    try:
+        results.complete(status, [], error=error, **facts)
+    except OSError:  # the disk is full
+        results.give_up(error, **facts)
     return True
 
 
+def unlock(folder: Path) -> None:
+    """Remove the lock of a run whose process has crashed."""
+    place = Path(os.path.realpath(folder))
+    place.with_name(f".{place.name}.lock").unlink(missing_ok=True)
+
+
 def running_folder(folder: Path) -> Path:
-    """Return the folder in which a run writes before it has ended."""
-    return folder.parent / f"{folder.name}.running"
+    """Return the folder in which the newest run that has not ended writes, or would write."""
+    place = Path(os.path.realpath(folder))
+    known = [path for path in _numbered(place).values() if is_marked(path)]
+    return known[-1] if known else place.with_name(f"{place.name}.running")
 
 
 def _is_run_or_empty(folder: Path) -> bool:
-    return folder.is_dir() and ((folder / RUN).is_file() or not any(folder.iterdir()))
+    if not folder.is_dir():
+        return False
+    return "status" in read_data(folder / RUN) or not any(folder.iterdir())
 
 
 def read_columns(path: Path) -> list[Column]:
@@ -368,8 +575,10 @@ def _convert_rows(folder: Path, columns: Sequence[Column]) -> None:
     import pyarrow.parquet
 
     table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
-    pyarrow.parquet.write_table(table, folder / PARQUET, compression="zstd")
-    pyarrow.csv.write_csv(table, folder / CSV)
+    with naming(folder / PARQUET):
+        pyarrow.parquet.write_table(table, folder / PARQUET, compression="zstd")
+    with naming(folder / CSV):
+        pyarrow.csv.write_csv(table, folder / CSV)
     (folder / ROWS_STREAM).unlink()
 
 
@@ -377,7 +586,8 @@ def _convert_states(folder: Path) -> None:
     frames = streamed_frames(folder)
     first = next(frames, None)
     if first is not None:
-        _write_states(folder / STATES, chain([first], frames))
+        with naming(folder / STATES):
+            _write_states(folder / STATES, chain([first], frames))
     (folder / STATES_STREAM).unlink()
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused, Problem
 from ..fmu.description import Description, Port, UnitDefinition
-from ..fmu.fmu_slave import read_description
+from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import REAL, Source
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select
@@ -155,12 +155,8 @@ class _Planner:
                 self.problems += [
                     Problem(name, f"{p.where}: {p.what}", p.remedy) for p in refusal.problems
                 ]
-            except ValueError as error:
-                self._refuse(
-                    name,
-                    f"{self.system.components[name].fmu} {error}",
-                    "use an FMU of it for FMI 2.0",
-                )
+            except UnusableError as error:
+                self._refuse(name, f"{self.system.components[name].fmu} {error}", error.remedy)
         self._check_instances()
 
     def _check_instances(self) -> None:

@@ -1,0 +1,79 @@
+"""Requests to end: Ctrl-C, and the signals by which schedulers, containers and terminals end."""
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+from .supervisor import tell
+
+SIGNALS = tuple(
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
+    if hasattr(signal, name)
+)
+"""Signals that ask a process to end. SLURM, Docker and systemd send SIGTERM, a terminal that is
+closed SIGHUP, a limit of the time on a processor SIGXCPU."""
+HEARD = "heard"
+"""Word by which a supervisor learns that a request has reached Python code."""
+
+Handler = Callable[[int, FrameType | None], Any]
+"""Called with the number of a signal and the frame that it hits."""
+
+
+@contextmanager
+def asked_to_end(handler: Handler) -> Iterator[Callable[[], None]]:
+    """Handle every request to end by one function as long as the block lasts.
+
+    Threads other than the main one get no signals, and nothing is done there. SIGHUP stays
+    ignored where it is: that is what ``nohup`` does.
+
+    Parameters
+    ----------
+    handler : callable
+        Called with the number of the signal and the frame.
+
+    Yields
+    ------
+    callable
+        Puts the earlier handlers back before the block ends.
+    """
+    before: dict[int, Any] = {}
+
+    def put_back() -> None:
+        for number, earlier in before.items():
+            signal.signal(number, earlier)
+        before.clear()
+
+    def called(number: int, frame: FrameType | None) -> Any:
+        tell(HEARD)
+        return handler(number, frame)
+
+    if threading.current_thread() is threading.main_thread():
+        for number in SIGNALS:
+            if signal.getsignal(number) is not signal.SIG_IGN or number == signal.SIGINT:
+                before[number] = signal.signal(number, called)
+    try:
+        yield put_back
+    finally:
+        put_back()
+
+
+def interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise the exception of Ctrl-C, whatever the request was.
+
+    Parameters
+    ----------
+    number : int
+        Of the signal.
+    frame : frame
+        That it has hit.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Always.
+    """
+    raise KeyboardInterrupt(signal.Signals(number).name)

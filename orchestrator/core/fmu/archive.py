@@ -1,0 +1,163 @@
+"""The zip archive of an FMU, also one that was packed on Windows or by hand."""
+
+import posixpath
+import shutil
+import stat
+import zipfile
+import zlib
+from pathlib import Path
+from types import TracebackType
+from typing import IO
+
+MOST_UNPACKED = 2 << 30
+"""Largest size (bytes) of an unpacked FMU."""
+MOST_DESCRIPTION = 256 << 20
+"""Largest size (bytes) of a description in it."""
+MOST_MEMBERS = 100_000
+"""Largest number of files in it."""
+_UNREADABLE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    OverflowError,
+    ValueError,
+)
+"""Errors that the reader raises for members that are damaged, encrypted, or packed oddly."""
+
+
+class ArchiveError(Exception):
+    """An archive that cannot be read.
+
+    Attributes
+    ----------
+    remedy : str
+        Something to do about it.
+    """
+
+    def __init__(self, what: str, remedy: str = "export it again") -> None:
+        self.remedy = remedy
+        super().__init__(what)
+
+
+class Archive:
+    """An archive whose members have clean names. A context manager.
+
+    Backslashes count as slashes, and ``./`` in front of a name as nothing.
+
+    Parameters
+    ----------
+    file : Path or binary file
+        Of the FMU.
+
+    Raises
+    ------
+    ArchiveError
+        It is no zip archive, or has a member that would lie outside the FMU.
+    """
+
+    def __init__(self, file: Path | IO[bytes]) -> None:
+        try:
+            self._zip = zipfile.ZipFile(file)
+        except _UNREADABLE as error:
+            raise ArchiveError("is not an FMU: not a zip archive") from error
+        self._members = {_clean(info.filename): info for info in self._zip.infolist()}
+
+    def __enter__(self) -> "Archive":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._zip.close()
+
+    @property
+    def names(self) -> set[str]:
+        """Names of the files in the archive, in its order."""
+        return {name for name, info in self._members.items() if not _is_folder(info)}
+
+    def check_size(self) -> None:
+        """Refuse an archive that would fill the disk.
+
+        Raises
+        ------
+        ArchiveError
+            Too many files, or too large ones.
+        """
+        size = sum(info.file_size for info in self._members.values())
+        if size > MOST_UNPACKED or len(self._members) > MOST_MEMBERS:
+            what = (
+                f"unpacks to {size / 1e9:.2g} GB in {len(self._members):,} files, and at most "
+                f"{MOST_UNPACKED / 1e9:.2g} GB in {MOST_MEMBERS:,} are taken"
+            )
+            raise ArchiveError(what, "leave out of its resources what is not needed")
+
+    def read(self, name: str, most: int) -> bytes | None:
+        """Return the content of a member; None if there is none of this name.
+
+        Parameters
+        ----------
+        name : str
+            Of the member.
+        most : int
+            Largest size (bytes).
+
+        Raises
+        ------
+        ArchiveError
+            It is damaged or too large.
+        """
+        info = self._members.get(name)
+        if info is None:
+            return None
+        if info.file_size > most:
+            what = (
+                f"has a {name} of {info.file_size / 1e6:.3g} MB; at most {most / 1e6:.3g} are read"
+            )
+            raise ArchiveError(what)
+        try:
+            return self._zip.read(info)
+        except _UNREADABLE as error:
+            raise ArchiveError(f"cannot be unpacked: {name}: {error}") from error
+
+    def unpack(self, folder: Path) -> None:
+        """Write all files into a folder.
+
+        Parameters
+        ----------
+        folder : Path
+            Exists.
+
+        Raises
+        ------
+        ArchiveError
+            A member is damaged.
+        """
+        self.check_size()
+        for name, info in self._members.items():
+            target = folder / name
+            if _is_folder(info):
+                target.mkdir(parents=True, exist_ok=True)
+                continue
+            target.parent.mkdir(parents=True, exist_ok=True)
+            try:
+                with self._zip.open(info) as source, target.open("wb") as copy:
+                    shutil.copyfileobj(source, copy, 1 << 20)
+            except _UNREADABLE as error:
+                raise ArchiveError(f"cannot be unpacked: {name}: {error}") from error
+
+
+def _is_folder(info: zipfile.ZipInfo) -> bool:
+    return info.filename.endswith(("/", "\\")) or stat.S_ISDIR(info.external_attr >> 16)
+
+
+def _clean(name: str) -> str:
+    """Return the name of a member with slashes, without steps that lead nowhere."""
+    clean = posixpath.normpath(name.replace("\\", "/"))
+    if clean.startswith(("/", "../")) or clean == ".." or ":" in clean.split("/")[0]:
+        raise ArchiveError(f"has a member outside of it: {name!r}")
+    return clean
