@@ -21,7 +21,7 @@ from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
 from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
-from .units import is_joule, unit_text, units_agree
+from .units import is_force, is_joule, unit_text, units_agree
 from .values import value_for
 
 
@@ -459,6 +459,13 @@ class _Planner:
         self, where: str, force: list[End], position: list[End], work: list[End]
     ) -> None:
         for f, p in zip(force, position, strict=True):
+            if is_force(f.port.unit) is False:
+                self._refuse(
+                    where,
+                    f"{f.name} is in {f.port.unit_name}, and no force or torque",
+                    "name the forces first, then the positions",
+                )
+                return
             if is_joule(f.port.unit, p.port.unit) is False:
                 self._refuse(
                     where,

@@ -8,7 +8,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from ..errors import InputRefused, Problem
 from ..form_faults import UNKNOWN_KEY, sentences
@@ -17,6 +26,40 @@ from .names import matches, nearest
 
 Value = bool | int | float | str
 """Value of a parameter or input; of an enumeration, the name or the number of an item."""
+
+
+def plain_value(value: Any) -> Any:
+    """Return a number of numpy as one of Python; refuse a list.
+
+    Parameters
+    ----------
+    value : Any
+        Value for a parameter or input.
+
+    Returns
+    -------
+    Any
+        The value; its type is not checked.
+
+    Raises
+    ------
+    ValueError
+        It is a list, an array or a mapping.
+    """
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, list | tuple | dict | np.ndarray):
+        raise ValueError(ONE_VALUE)
+    return value
+
+
+ONE_VALUE = (
+    "takes one number, true or false, or a word; give array elements one by one as name[1], "
+    "name[2], ..., or all the same value as name[*]"
+)
+"""Why a list is refused as a value."""
+
+_PlainValue = Annotated[Value, BeforeValidator(plain_value)]
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
@@ -62,7 +105,7 @@ class ComponentSpec(_Data):
 
     fmu: str
     step: Seconds | None = None
-    parameters: dict[str, Value] = {}
+    parameters: dict[str, _PlainValue] = {}
     record_states: bool = False
     tolerance: Tolerance | None = None
 
@@ -96,7 +139,7 @@ class SharedValue(_Data):
     Targets are ``component.parameter``.
     """
 
-    value: Value
+    value: _PlainValue
     targets: list[str] = Field(min_length=1)
 
 
@@ -290,7 +333,12 @@ def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
     parameters = {name: dict(spec.parameters) for name, spec in system.components.items()}
     shared: dict[str, dict[str, Value]] = {}
     problems = []
-    for name, value in values.items():
+    for name, entry in values.items():
+        try:
+            value: Value = plain_value(entry)
+        except ValueError as error:
+            problems.append(Problem(name, str(error)))
+            continue
         component, _, parameter = name.partition(".")
         owner = _owner(system, name)
         if owner is not None:
