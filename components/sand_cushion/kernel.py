@@ -318,4 +318,4 @@ def step(t, h, w, x, k):
         collect_forces(1.0, True, w, x, k)
     publish_energies(kinetic, potential, w, view(x, k, A.sums))
     w[V.penetration] = penetration(h if linear else 0.0, w)
-    return OK if math.isfinite(kinetic + w[V.energy_elastic]) else DIVERGED
+    return OK if math.isfinite(w[V.energy_residual]) else DIVERGED

@@ -37,7 +37,7 @@ C_LIBRARY = set(
     re.findall(
         r"\w+",
         """
-    acos asin atan atan2 erfc exp expm1 log log1p pow sin sincos sqrt
+    acos asin atan atan2 bcmp erfc exp expm1 floor log log1p pow sin sincos sqrt
     calloc cos fabs free malloc memcmp memcpy memmove memset nextafter pthread_create pthread_join snprintf
     strcmp strcpy strlen strtol tan vsnprintf
     __cxa_finalize __gmon_start__ _ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __stack_chk_fail
