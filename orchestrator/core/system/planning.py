@@ -370,7 +370,7 @@ class _Planner:
                 self._refuse(
                     end.name,
                     f"{value!r}: {error}",
-                    f"set {end.name} ({end.port.description}) to another value",
+                    f"set {_described(end)} to another value",
                 )
         return starts
 
@@ -398,11 +398,11 @@ class _Planner:
         connected: set[str],
     ) -> None:
         for end in self._ends(target, *_split(target)):
-            if end.port.causality not in ("parameter", "input"):
+            if not end.port.can_be_set:
                 self._refuse(
                     end.name,
                     f"is of the causality {end.port.causality} and cannot be set",
-                    "set parameters and unconnected inputs only",
+                    "set parameters, unconnected inputs and variables with a start value only",
                 )
             elif end.name in connected:
                 self._refuse(end.name, f"is set in {giver} and is connected", "remove one of both")
@@ -486,6 +486,11 @@ class _Planner:
         where = "energy_alarm.reference"
         ends = self._of_causality(where, self._ends(where, *_split(alarm.reference)), "output")
         return ends[0] if ends else None
+
+
+def _described(end: End) -> str:
+    """Return the name of a port with its description, where it has one."""
+    return f"{end.name} ({end.port.description})" if end.port.description else end.name
 
 
 def _fed_by(links: _Links, component: str) -> dict[str, End]:

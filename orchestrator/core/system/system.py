@@ -62,6 +62,7 @@ ONE_VALUE = (
 _PlainValue = Annotated[Value, BeforeValidator(plain_value)]
 
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 
 RESERVED = ("time", "coupling")
@@ -93,16 +94,20 @@ class ComponentSpec(_Data):
     step : float, optional
         Communication step (s); without it, the exchange step.
     parameters : dict
-        Values of parameters and of unconnected inputs that differ from the FMU's start values.
+        Values of parameters and of unconnected inputs that differ from the FMU's start values, and
+        of outputs and local variables that begin with a start value (``initial`` exact or approx).
         ``name[*]`` sets a whole array.
     record_states : bool
         Keep serialized states every ``state_interval``.
+    tolerance : float, optional
+        Relative tolerance of the FMU's solver; without it, that of the system.
     """
 
     fmu: str
     step: Seconds | None = None
     parameters: dict[str, _PlainValue] = {}
     record_states: bool = False
+    tolerance: Tolerance | None = None
 
 
 class Connection(_Data):
@@ -216,6 +221,8 @@ class SystemSpec(_Data):
     watch : list of str
         Outputs whose extremes and integral over all exchanges go into the summary, in the same
         notation.
+    tolerance : float, optional
+        Relative tolerance of the solvers in FMUs; without it, the one that each FMU proposes.
     """
 
     name: str
@@ -234,6 +241,7 @@ class SystemSpec(_Data):
     state_interval: Seconds | None = None
     record: list[str] = ["*"]
     watch: list[str] = []
+    tolerance: Tolerance | None = None
 
     def step(self, component: str) -> float:
         """Return the communication step of a component (s)."""
