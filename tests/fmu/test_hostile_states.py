@@ -21,7 +21,7 @@ from .host import DISCARD, OK, Host
 SEAL, CLOCK, HEADER = 12, 12, 48
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 CALLS = int(os.environ.get("ROCKSHED_FUZZ_CALLS", "50000"))
-"""Calls of the long test; a million take an hour over all components."""
+"""Calls of the long test; a million take the sand many minutes."""
 STEPS = {"SlopeRockfall": 1e-2}
 """Steps (s) of the states in the long test, where 1e-5 s is no step."""
 
