@@ -214,7 +214,7 @@ class ComponentSlave(Fmi2Slave):
             status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
             if status != OK:
                 raise self._failed(current_time, instance.message(status))
-            if self._zeros.dot(instance.w) != 0.0 and (lost := instance.lost()):
+            if np.vdot(self._zeros, instance.w) != 0.0 and (lost := instance.lost()):
                 raise self._failed(current_time, lost)
             self._time = current_time + step_size
             return True

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -21,17 +22,32 @@ def probe():
     return component_in(HERE / "extra" / "probe")
 
 
-def built(runtime, probe, folder, fmi=Fmi.TWO):
-    """Files of the FMUs by name."""
-    return {name: build(name, destination=folder, runtime=runtime, fmi=fmi) for name in NAMES} | {
-        "Probe": build_component(probe, destination=folder, runtime=runtime, fmi=fmi)
-    }
+class Built(Mapping):
+    """Files of FMUs by the names of their components; each is built when it is asked for first."""
+
+    def __init__(self, runtime, probe, folder, fmi=Fmi.TWO):
+        self._probe = probe
+        self._options = {"destination": folder, "runtime": runtime, "fmi": fmi}
+        self._files = {}
+
+    def __getitem__(self, name):
+        if name not in self._files:
+            is_probe = name == self._probe.name
+            make, what = (build_component, self._probe) if is_probe else (build, name)
+            self._files[name] = make(what, **self._options)
+        return self._files[name]
+
+    def __iter__(self):
+        return iter((*NAMES, self._probe.name))
+
+    def __len__(self):
+        return len(NAMES) + 1
 
 
 @pytest.fixture(scope="session")
 def python_fmus(probe, tmp_path_factory):
     """FMUs with Python inside by name."""
-    return built(Runtime.PYTHON, probe, tmp_path_factory.mktemp("fmu dist"))
+    return Built(Runtime.PYTHON, probe, tmp_path_factory.mktemp("fmu dist"))
 
 
 @pytest.fixture(scope="session")
@@ -41,13 +57,13 @@ def native_fmus(probe, tmp_path_factory):
         compiler(own_platform())
     except BuildError as error:
         pytest.skip(str(error))
-    return built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("native dist"))
+    return Built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("native dist"))
 
 
 @pytest.fixture(scope="session")
 def fmi3_fmus(native_fmus, probe, tmp_path_factory):
     """Native FMUs of FMI 3.0 by name. The object code is that of the native ones of FMI 2.0."""
-    return built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("fmi3 dist"), Fmi.THREE)
+    return Built(Runtime.NATIVE, probe, tmp_path_factory.mktemp("fmi3 dist"), Fmi.THREE)
 
 
 @pytest.fixture(scope="session")

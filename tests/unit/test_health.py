@@ -1,12 +1,16 @@
-"""The doctor's look at kept code, leftovers and what is slow."""
+"""The doctor's look at kept code, leftovers and what is slow; nothing is taken from the working folder."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 
+from rockshed.commands.screen import Screen
 from rockshed.components.catalogue import component
 from rockshed.components.common import cache
 from rockshed.components.common.kept import keep
+from rockshed.fmus.native import fmu as native_fmu
 from rockshed.runs import health
 
 
@@ -57,3 +61,34 @@ def test_a_cache_that_cannot_be_used_is_told_with_what_to_set(tmp_path, monkeypa
     told = "\n".join(health.slow_reasons())
     assert "kernels are compiled at every start" in told
     assert "can be written by others: set ROCKSHED_CACHE_DIR" in told
+
+
+def test_a_command_says_once_that_no_kernels_are_kept(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "file" / "cache"))
+    (tmp_path / "file").write_text("no folder")
+    screen = Screen(quiet=True)
+    for _ in range(2):
+        with screen.busy("computing"), screen.progress("preparing"):
+            pass
+    told = capsys.readouterr().err
+    assert told.count("kernels are compiled at every start") == 1
+    assert "set ROCKSHED_CACHE_DIR to a folder" in " ".join(told.split())
+
+
+PLANTED = "open({trap!r}, 'w').close()\n"
+
+
+def test_nothing_is_imported_from_the_working_folder(tmp_path):
+    trap = tmp_path / "executed"
+    for name in ("json", "typer", "numba", "orchestrator"):
+        (tmp_path / f"{name}.py").write_text(PLANTED.format(trap=str(trap)))
+    command = [sys.executable, "-m", "rockshed", "list"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert not trap.exists()
+
+
+def test_compilers_of_kernels_import_nothing_from_the_working_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert str(tmp_path) not in native_fmu._import_folders()
