@@ -27,7 +27,7 @@ READMES = {
 """Pages by the file of the repository that they show."""
 
 CONTENTS = {
-    "Use": ("getting-started", "python", "command-line", "systems", "results", "fmus"),
+    "Use": ("getting-started", "python", "command-line", "systems", "results", "fmus", "security"),
     "Physics": ("components/index", "papers", "sonoda1993"),
     "Reference": ("api/index", "api/components", "api/core", "api/analyses", "api/papers"),
     "Project": ("glossary", "contributing", "changelog"),

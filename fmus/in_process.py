@@ -164,7 +164,7 @@ class InProcessSlave:
         """
         return self._call(self._slave.set_string, [reference], [text])[1]
 
-    def setup_experiment(self, start: float, stop: float) -> int:
+    def setup_experiment(self, start: float, stop: float, tolerance: float | None = None) -> int:
         """Tell start and end of the run (s), and return the status.
 
         Parameters
@@ -173,13 +173,15 @@ class InProcessSlave:
             Start of the run (s).
         stop : float
             End of the run (s).
+        tolerance : float, optional
+            Relative tolerance; no component has a use for it.
 
         Returns
         -------
         int
             Status of FMI 2.0.
         """
-        return self._call(self._slave.setup_experiment, start, stop, None)[1]
+        return self._call(self._slave.setup_experiment, start, stop, tolerance)[1]
 
     def enter_initialisation(self) -> int:
         """Enter the initialization mode; return the status."""
@@ -244,9 +246,9 @@ class InProcessSlave:
         """Do nothing: Python gives back by itself what is held."""
 
     def _call(self, function: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
-        """Return the result of a call, and the worst status it has logged."""
+        """Return the result of a call, and the worst status logged, save that of steps to come."""
         result = function(*arguments)
         logged = [(int(entry.status), entry.msg) for entry in self._slave.log_queue]
         self._slave.log_queue.clear()
         self.messages += logged
-        return result, max((status for status, _ in logged), default=OK)
+        return result, max((status for status, _ in logged if status != DISCARD), default=OK)

@@ -1,4 +1,8 @@
-"""The program ``rockshed``, also as ``python -m rockshed``: who ends it early gets no traceback."""
+"""The program ``rockshed``, also as ``python -m rockshed``: who ends it early gets no traceback.
+
+Python puts the working folder first where modules are looked for. What lies there is a user's, or
+somebody else's, and is not imported.
+"""
 
 import os
 import signal
@@ -27,4 +31,6 @@ def _end(_number: int, _frame: FrameType | None) -> None:
 
 
 if __name__ == "__main__":
+    if not sys.flags.safe_path:
+        del sys.path[0]
     main()

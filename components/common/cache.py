@@ -20,6 +20,8 @@ from inspect import getfile
 from pathlib import Path
 from typing import Any
 
+from .kept import folder_problem, make_private
+
 CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
 """Environment variable that names the folder of compiled kernels; by default it is ``rockshed``
 in the user's cache folder."""
@@ -31,22 +33,46 @@ _TAG_LENGTH = 16
 """Characters of a stamp that name a folder of the cache."""
 
 
-@cache
 def cache_directory() -> Path | None:
     """Make the folder of compiled kernels if need be, and return it.
 
     Returns
     -------
     Path or None
-        The folder; None where none can be written: then nothing is kept.
+        The folder; None where none can be used: then nothing is kept, see :func:`cache_problem`.
+    """
+    return None if cache_problem() else cache_path()
+
+
+def cache_problem() -> str:
+    """Return why no compiled code is kept.
+
+    Returns
+    -------
+    str
+        The reason in words, with a remedy; empty where code is kept.
     """
     try:
         folder = cache_path()
-        folder.mkdir(parents=True, exist_ok=True)
+    except RuntimeError:
+        return f"the user has no home: set {CACHE_VARIABLE} to a folder of yours"
+    problem = _use_problem(folder)
+    if not problem:
+        return ""
+    return f"{problem}: set {CACHE_VARIABLE} to a folder that you alone can write"
+
+
+@cache
+def _use_problem(folder: Path) -> str:
+    """Return why a folder can be neither trusted nor written; it is made if it is not there."""
+    if problem := folder_problem(folder):
+        return problem
+    try:
+        make_private(folder)
         tempfile.TemporaryFile(dir=folder).close()
-    except (OSError, RuntimeError):
-        return None
-    return folder
+    except OSError as error:
+        return f"{folder} cannot be written ({error.strerror or error})"
+    return folder_problem(folder)
 
 
 def cache_path() -> Path:
@@ -174,7 +200,7 @@ class SourceLocator:
 
     def ensure_cache_path(self) -> None:
         """Make the folder of this function's code."""
-        self._folder.mkdir(parents=True, exist_ok=True)
+        make_private(self._folder)
 
     def get_cache_path(self) -> str:
         """Return the folder of this function's code."""

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ports import Bond, Causality, Kind, Layout, NextEvent, Variable
+from .restoring import state_problem
 from .shown import Picture
 
 OK = 0
@@ -34,10 +35,13 @@ MAGIC = b"rockshed"
 
 NOT_FINITE = "%s = %s: must be a finite number (%s)"
 OUT_OF_RANGE = "%s = %s%s: allowed is %s (%s)"
+NOT_WHOLE = "%s = %s: must be a whole number (%s)"
 UNKNOWN_STATUS = "stopped with the unknown status %d"
 FOREIGN_STATE = "this is no serialized state of this component with these sizes"
+IMPOSSIBLE_STATE = "this state is damaged: %s; restore another one"
+LOST = "%s became %s, which is no finite number: a value of the inputs or parameters is too large"
 """Sentences that a native FMU says too, as formats of printf: of a variable's name, value, unit,
-range and description; of a status; of a state."""
+range and description; of a status; of a state; of an output's name and value."""
 
 
 class ComponentError(Exception):
@@ -54,6 +58,10 @@ class ComponentError(Exception):
     def __init__(self, component: str, problems: list[str]) -> None:
         self.component, self.problems = component, problems
         super().__init__(f"{component}: " + "; ".join(problems))
+
+
+class DeferredError(ComponentError):
+    """Inputs that the first step will refuse if they are not put right before."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +111,9 @@ class Component:
     faults : mapping of int to str
         Message of each status other than OK; ``{name}`` stands for the value of the scalar
         variable ``name``.
+    deferred : frozenset of int
+        Statuses of ``evaluate`` that blame inputs: an FMU leaves its initialisation nevertheless,
+        as inputs may change before the first step, and ``step`` refuses while they hold.
     default_step, default_stop_time : float
         Proposal for a simulation (s).
     bonds : tuple of Bond
@@ -123,6 +134,7 @@ class Component:
     folder: Path
     sizes: Mapping[str, Size] = field(default_factory=dict)
     faults: Mapping[int, str] = field(default_factory=dict)
+    deferred: frozenset[int] = frozenset()
     default_step: float = 1e-4
     default_stop_time: float = 0.02
     bonds: tuple[Bond, ...] = ()
@@ -342,12 +354,22 @@ class Instance:
         list of str
             Values that are not finite or out of range; if there are none, those refused together.
         """
+        return self.value_problems() or self.component.refusals(self)
+
+    def value_problems(self) -> list[str]:
+        """Return every present parameter or input that is no number or out of its range.
+
+        Returns
+        -------
+        list of str
+            The reasons in words.
+        """
         found = []
         names = list(self.references)
         for index, (variable, _) in enumerate(self._elements()):
             if variable.causality is not Causality.OUTPUT:
                 found += value_problems(variable, names[index], float(self.w[index]))
-        return found or self.component.refusals(self)
+        return found
 
     def initialise(self) -> None:
         """Check the parameters, compute the state and the outputs at the start.
@@ -367,10 +389,17 @@ class Instance:
 
         Raises
         ------
+        DeferredError
+            The inputs do not fit the state; they may still change before the first step.
         ComponentError
-            The inputs do not fit the state.
+            There are no outputs.
         """
-        self._check(self.component.evaluate(self.w, self.x, self.k))
+        status = self.component.evaluate(self.w, self.x, self.k)
+        if status in self.component.deferred:
+            raise DeferredError(self.component.name, [self.message(status)])
+        self._check(status)
+        if lost := self.lost():
+            raise ComponentError(self.component.name, [lost])
 
     def step(self, time: float, step: float) -> None:
         """Advance in time.
@@ -386,6 +415,8 @@ class Instance:
             The component cannot go on.
         """
         self._check(self.component.step(time, step, self.w, self.x, self.k), time)
+        if lost := self.lost():
+            raise ComponentError(self.component.name, [f"at t = {time:.9g} s {lost}"])
 
     def _check(self, status: int, time: float | None = None) -> None:
         if status != OK:
@@ -427,30 +458,47 @@ class Instance:
         header = HEADER.pack(MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         return header + self.w.tobytes() + self.x.tobytes() + self.k.tobytes()
 
-    def from_bytes(self, content: bytes) -> None:
+    def from_bytes(self, content: bytes, computed: bool = True) -> None:
         """Take over a state that :meth:`to_bytes` wrote, in this process or another.
 
         Parameters
         ----------
         content : bytes
             The serialized state.
+        computed : bool
+            Whether its instance was initialised; before, the hidden arrays are not looked at.
 
         Raises
         ------
         ComponentError
-            Not such a state, of another component or size, or cut short.
+            Not such a state, of another component or size, cut short, or with numbers in it that
+            no state of this component has. Nothing is taken over then.
         """
         expected = HEADER.pack(MAGIC, self.kind, self.w.size, self.x.size, self.k.size)
         if content[: HEADER.size] != expected or len(content) != len(expected) + 8 * (
             self.w.size + self.x.size + self.k.size
         ):
-            raise ComponentError(
-                self.component.name,
-                [FOREIGN_STATE],
-            )
+            raise ComponentError(self.component.name, [FOREIGN_STATE])
         values = np.frombuffer(content, np.float64, self.w.size + self.x.size, len(expected))
+        integers = np.frombuffer(content, np.int64, self.k.size, len(expected) + values.nbytes)
+        layout = self.component.layout
+        if problem := state_problem(layout, self.sizes, values, integers, computed):
+            raise ComponentError(self.component.name, [IMPOSSIBLE_STATE % problem])
         self.w[:], self.x[:] = values[: self.w.size], values[self.w.size :]
-        self.k[:] = np.frombuffer(content, np.int64, self.k.size, len(expected) + values.nbytes)
+        self.k[:] = integers
+
+    def lost(self) -> str:
+        """Return why the present values are no result: one of them is no finite number.
+
+        Returns
+        -------
+        str
+            The first such value in words; empty if there is none.
+        """
+        where = np.flatnonzero(~np.isfinite(self.w))
+        if not where.size:
+            return ""
+        return LOST % (list(self.references)[where[0]], f"{self.w[where[0]]:.6g}")
 
 
 def _on_cache_lines(length: int) -> Buffer:
@@ -490,7 +538,7 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
             OUT_OF_RANGE % (name, f"{value:.6g}", _suffix(variable), words, variable.description)
         ]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
-        return [f"{name} = {value}: must be a whole number ({variable.description})"]
+        return [NOT_WHOLE % (name, f"{value:.6g}", variable.description)]
     return []
 
 

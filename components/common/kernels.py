@@ -4,14 +4,19 @@ A component names its module of kernels, and it is imported when the first of th
 reads declarations only, or runs native FMUs, needs no numba.
 """
 
+import pickle
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from threading import RLock
 from typing import Any
 
 from numba import config, njit
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.serialize import dumps
 
 from .cache import SourceLocator, cache_directory
+from .kept import keep, kept
 
 _LOCATOR = f"{SourceLocator.__module__}.{SourceLocator.__qualname__}"
 _locating = RLock()
@@ -71,10 +76,48 @@ def released(function: Callable[..., Any]) -> Any:
 
 
 def _compiled(function: Callable[..., Any], **options: Any) -> Any:
-    with _cache_by_sources():
-        return njit(
-            error_model="numpy", cache=cache_directory() is not None, _nrt=False, **options
-        )(function)
+    dispatcher = njit(error_model="numpy", _nrt=False, **options)(function)
+    if cache_directory() is not None and hasattr(dispatcher, "_cache"):
+        with _cache_by_sources():
+            dispatcher._cache = _KernelCache(function)
+    return dispatcher
+
+
+class _KernelCache(FunctionCache):
+    """Numba's cache of a function, over files that are looked at before they are taken."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._cache_file = _KeptFiles(
+            self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp()
+        )
+
+
+class _KeptFiles(IndexDataCacheFile):
+    """Index and code of a function; a file that was damaged or planted counts as not there.
+
+    Numba unpickles both, which can execute anything.
+    """
+
+    def _load_index(self) -> Any:
+        content = kept(Path(self._index_path))
+        if content is None:
+            return {}
+        version, stamp, overloads = pickle.loads(content)
+        fits = (version, stamp) == (self._version, self._source_stamp)
+        return overloads if fits else {}
+
+    def _save_index(self, overloads: Any) -> None:
+        keep(Path(self._index_path), dumps((self._version, self._source_stamp, overloads)))
+
+    def _load_data(self, name: str) -> Any:
+        content = kept(Path(self._data_path(name)))
+        if content is None:
+            raise FileNotFoundError(name)  # numba compiles anew then
+        return pickle.loads(content)
+
+    def _save_data(self, name: str, data: Any) -> None:
+        keep(Path(self._data_path(name)), dumps(data))
 
 
 @contextmanager

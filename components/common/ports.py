@@ -377,12 +377,70 @@ class NextEvent:
 
 
 @dataclass(frozen=True, slots=True)
+class Indices:
+    """Numbers of a hidden array that kernels use as indices.
+
+    A restored state is refused where one of them is out of its range.
+
+    Attributes
+    ----------
+    high : callable
+        Largest allowed value, a function of the sizes.
+    low : callable or int
+        Smallest allowed value.
+    first, every : int
+        Place of the first such number in the array, and the distance to the next.
+    multiple : int
+        Each is a multiple of this number.
+    bits : tuple of int, optional
+        Where an integer holds several numbers: the lowest bit of this one, and how many it has.
+    ascending : bool
+        None is less than the one before it.
+    """
+
+    high: Callable[[Sizes], int]
+    low: Callable[[Sizes], int] | int = 0
+    first: int = 0
+    every: int = 1
+    multiple: int = 1
+    bits: tuple[int, int] = (0, 64)
+    ascending: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class IndexRange:
+    """Indices at their place in a buffer.
+
+    Attributes
+    ----------
+    array : str
+        Name of the hidden array.
+    integer : bool
+        Whether the buffer is ``k``; else ``x``.
+    places : slice
+        Places in the buffer.
+    low, high : int
+        Range, ends included.
+    declared : Indices
+        The declaration.
+    """
+
+    array: str
+    integer: bool
+    places: slice
+    low: int
+    high: int
+    declared: Indices
+
+
+@dataclass(frozen=True, slots=True)
 class State:
-    """A hidden array: its name, and its length as a function of the sizes."""
+    """A hidden array: its name, its length as a function of the sizes, and the indices in it."""
 
     name: str
     length: Callable[[Sizes], int]
     integer: bool = False
+    indices: tuple[Indices, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -467,6 +525,37 @@ class Layout:
             else:
                 x += length
         return entries, w, x, k
+
+    def index_ranges(self, sizes: Sizes) -> list[IndexRange]:
+        """Return all indices in hidden arrays, with their places and ranges.
+
+        Parameters
+        ----------
+        sizes : mapping of str to int
+            Sizes that the component is built with.
+
+        Returns
+        -------
+        list of IndexRange
+        """
+        entries = self.table(sizes)[0]
+        begins = dict(zip(reversed(self.states), entries[-2::-2]))
+        return [
+            IndexRange(
+                state.name,
+                state.integer,
+                slice(
+                    begins[state] + indices.first,
+                    begins[state] + state.length(sizes),
+                    indices.every,
+                ),
+                indices.low(sizes) if callable(indices.low) else indices.low,
+                indices.high(sizes),
+                indices,
+            )
+            for state in self.states
+            for indices in state.indices
+        ]
 
 
 def _constants(title: str, names: list[str], stride: int) -> Any:

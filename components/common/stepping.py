@@ -3,6 +3,17 @@
 from .ports import Variable, out, param
 from .roles import Role
 
+MOST_STEPS = 10_000_000
+"""Internal steps that a component makes in one communication step, at most: it cannot be
+interrupted there."""
+TOO_MANY_STEPS = 1000
+"""Status of a kernel whose communication step holds more internal steps."""
+STEPPING_FAULTS = {
+    TOO_MANY_STEPS: f"the communication step holds more than {MOST_STEPS:,} internal steps of "
+    "internal_step = {internal_step} s: reduce the communication step, or raise internal_step"
+}
+"""Messages of the statuses that all components with an internal step share."""
+
 
 def internal_step(start: float) -> Variable:
     """Declare the component's own time step.

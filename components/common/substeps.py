@@ -3,6 +3,7 @@
 import math
 
 from .kernels import kernel
+from .stepping import MOST_STEPS
 
 _ROUNDING = 1e-9
 """A quotient of two steps that exceeds a whole number by less than this is that number."""
@@ -23,6 +24,23 @@ def substep_count(step, longest):
         At least 1.
     """
     return max(1, math.ceil(step / longest - _ROUNDING))
+
+
+@kernel
+def are_too_many(step, longest):
+    """Tell whether a step holds more internal steps than a component makes at once.
+
+    Parameters
+    ----------
+    step, longest : float
+        Communication step and internal step (s).
+
+    Returns
+    -------
+    bool
+        True also where a length is no positive number.
+    """
+    return not 0.0 < step <= MOST_STEPS * longest
 
 
 @kernel

@@ -5,7 +5,8 @@ import math
 from ..common.component import OK
 from ..common.kernels import kernel
 from ..common.rigid_body import Load, Motion, moved
-from ..common.substeps import substep_count, substep_length
+from ..common.stepping import TOO_MANY_STEPS
+from ..common.substeps import are_too_many, substep_count, substep_length
 from .declarations import DISC, DRIVEN, LAYOUT, SPHERE
 from .faults import DIVERGED
 
@@ -151,6 +152,8 @@ def step(t, h, w, x, k):
     int
         Status, OK or DIVERGED.
     """
+    if are_too_many(h, w[V.internal_step]):
+        return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     moment_of_inertia = inertia(w)

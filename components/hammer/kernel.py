@@ -4,7 +4,8 @@ import math
 
 from ..common.component import OK
 from ..common.kernels import kernel, view
-from ..common.substeps import substep_count, substep_length
+from ..common.stepping import TOO_MANY_STEPS
+from ..common.substeps import are_too_many, substep_count, substep_length
 from ..common.wave_port import End, Ram, struck
 from .cushion import cushion_force, met, steeper
 from .declarations import KINEMATICS, LAYOUT, WAVES
@@ -84,6 +85,8 @@ def step(t, h, w, x, k):
         return NO_IMPEDANCE
     if w[V.port] == KINEMATICS:
         _place_head(w, x, k)
+    if are_too_many(h, w[V.internal_step]):
+        return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     impulse = 0.0

@@ -1,5 +1,7 @@
 """Statuses of the ground other than OK."""
 
+from ..common.stepping import STEPPING_FAULTS
+
 PLATE_OUTSIDE, NO_MASS, NO_RESISTANCE, OVERLOADED, NO_IMPEDANCE, MOVING_AT_START = range(1, 7)
 DIVERGED = 20
 REFUSALS = {
@@ -21,6 +23,7 @@ REFUSALS = {
 variable."""
 
 FAULTS = {
+    **STEPPING_FAULTS,
     **REFUSALS,
     DIVERGED: "settlement or work is no longer a finite number (force.y = {force.y} N, "
     "toe.velocity = {toe.velocity} m/s, toe.wave = {toe.wave} N): reduce the exchange step or the "

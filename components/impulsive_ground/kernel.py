@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 from ..common.component import OK
 from ..common.kernels import kernel, view
-from ..common.substeps import substep_count, substep_length
+from ..common.stepping import TOO_MANY_STEPS
+from ..common.substeps import are_too_many, substep_count, substep_length
 from .declarations import BODY, KINEMATICS, LAYOUT, MOGAMI, SETTLEMENT, SMITH, WAVE
 from .faults import (
     DIVERGED,
@@ -228,6 +229,8 @@ def step(t, h, w, x, k):
     if w[V.port] == WAVE and not w[V.toe_impedance] > 0.0:
         return NO_IMPEDANCE
     jump(g, w, b)
+    if are_too_many(h, w[V.internal_step]):
+        return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     impulse = 0.0

@@ -3,7 +3,7 @@
 from collections import namedtuple
 
 from ..common.component import Size
-from ..common.ports import Layout, Sizes, State, choice, inp, out, param
+from ..common.ports import Indices, Layout, Sizes, State, choice, inp, out, param
 from ..common.roles import Role
 from ..common.shown import Reported, Statistic
 from ..common.stepping import internal_step, stable_step
@@ -498,7 +498,16 @@ LAYOUT = Layout(
         State("mass", _nodes),
         State("spring", _nodes),
         State("toe.soil", lambda sizes: 1),
-        State("free", lambda sizes: 3, integer=True),
+        State(
+            "free",
+            lambda sizes: 3,
+            integer=True,
+            indices=(
+                Indices(_segments, first=0, every=3),
+                Indices(_segments, first=1, every=3),
+                Indices(lambda sizes: _nodes(sizes) - 1, first=2),
+            ),
+        ),
     ),
 )
 """Variables and hidden arrays of the pile rod.

@@ -5,6 +5,7 @@ beforehand.
 """
 
 from ..common.kernels import kernel, view
+from ..common.substeps import are_too_many
 from . import chain, characteristics
 from .declarations import CHARACTERISTICS, CLOCK, LAYOUT, PARALLEL, PORT, WAVES
 from .segments import head_sign
@@ -24,6 +25,15 @@ def gives_waves(w):
 def lies_behind(w):
     """Return whether forces are known only after the step to which they belong."""
     return gives_waves(w) and w[V.exchange] == PARALLEL
+
+
+@kernel
+def holds_too_much(h, w, x, k):
+    """Whether more time waits to be gone through than fits into the internal steps of one call."""
+    clock = view(x, k, A.clock)
+    waiting, behind = clock[CLOCK.waiting], clock[CLOCK.behind]
+    known = waiting >= 0.0 and behind >= 0.0
+    return not known or are_too_many(waiting + behind + h, w[V.time_step])
 
 
 @kernel

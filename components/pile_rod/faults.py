@@ -1,5 +1,7 @@
 """Statuses of the pile rod other than OK."""
 
+from ..common.stepping import MOST_STEPS, TOO_MANY_STEPS
+
 (
     WAVES_NEED_CHARACTERISTICS,
     WAVES_AND_RAM,
@@ -12,6 +14,8 @@
 _LIMITS = "(head {head.step_limit} s, toe {toe.step_limit} s)"
 
 FAULTS = {
+    TOO_MANY_STEPS: f"the communication step holds more than {MOST_STEPS:,} internal steps of "
+    "time_step = {time_step} s: reduce the communication step, the segments or the modulus",
     WAVES_NEED_CHARACTERISTICS: "a port of waves needs the scheme characteristics; masses and "
     "springs have ports of kinematics: change scheme or the port",
     WAVES_AND_RAM: "ram.mass = {ram.mass} kg takes the place of what acts through a head.port of "

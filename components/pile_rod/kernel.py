@@ -5,11 +5,12 @@ import math
 from ..common.component import OK
 from ..common.kernels import kernel, view
 from ..common.smith_soil import static, stored, stretched
+from ..common.stepping import TOO_MANY_STEPS
 from ..common.substeps import substep_count
 from .bookkeeping import shaft_soil, toe_soil
 from .chain import spring_energy, spring_force
 from .declarations import CHARACTERISTICS, LAYOUT, RAM, SOIL, WAVES
-from .exchange import gives_waves, publish_waves, run, waves_known
+from .exchange import gives_waves, holds_too_much, publish_waves, run, waves_known
 from .faults import (
     DIVERGED,
     GAUGE_BELOW_TOE,
@@ -125,6 +126,8 @@ def step(t, h, w, x, k):
     w[V.exchange_step] = h
     if h > w[V.step_limit] * (1.0 + 1e-9):
         return STEP_TOO_LONG
+    if holds_too_much(h, w, x, k):
+        return TOO_MANY_STEPS
     run(t, h, w, x, k)
     if not waves_known(h, w, x, k):
         return WAVES_UNKNOWN

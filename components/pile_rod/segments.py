@@ -105,7 +105,7 @@ def gauge_segment(w, k):
         time += part * math.sqrt(density[s] / modulus[s])
         left -= part
     n = k[A.impedance + 1]
-    return min(n - 1, int(time / w[V.travel_time] * n + _EQUAL))
+    return min(n - 1, max(0, int(time / w[V.travel_time] * n + _EQUAL)))
 
 
 @kernel

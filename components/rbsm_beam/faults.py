@@ -1,8 +1,11 @@
 """Statuses of the beam other than OK."""
 
+from ..common.stepping import STEPPING_FAULTS
+
 DIVERGED, BOX_OFF_BEAM = range(1, 3)
 
 FAULTS = {
+    **STEPPING_FAULTS,
     BOX_OFF_BEAM: "the box, from box.left = {box.left} m on, {box.width} m wide, does not stand "
     "within the span from axis.x = {axis.x} m on, {span} m long, and has mass or sand in it: give "
     "box.left and box.width, or box.mass = 0 and cushion.weight = 0",

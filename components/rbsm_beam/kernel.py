@@ -2,7 +2,8 @@
 
 from ..common.component import OK
 from ..common.kernels import kernel, view
-from ..common.substeps import substep_count, substep_length
+from ..common.stepping import TOO_MANY_STEPS
+from ..common.substeps import are_too_many, substep_count, substep_length
 from .chain import (
     axial_energy,
     bending_energy,
@@ -105,6 +106,8 @@ def step(t, h, w, x, k):
     int
         Status, OK or DIVERGED.
     """
+    if are_too_many(h, w[V.internal_step]):
+        return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
     advance(n, substep_length(h, n, w[V.internal_step]), w, x, k)
     return publish(w, x, k)

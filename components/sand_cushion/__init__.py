@@ -5,7 +5,7 @@ from pathlib import Path
 from ..common.component import Component
 from ..common.ports import Bond
 from .declarations import LAYOUT, SIZES
-from .faults import FAULTS
+from .faults import DEFERRED, FAULTS
 
 COMPONENT = Component(
     name="SandCushion",
@@ -15,6 +15,7 @@ COMPONENT = Component(
     folder=Path(__file__).parent,
     sizes=SIZES,
     faults=FAULTS,
+    deferred=DEFERRED,
     default_step=1e-5,
     bonds=(
         Bond("rock", "motion of the rock, force on it", "rock."),

@@ -261,7 +261,9 @@ def touch_disc(i, b, bodies):
     """
     dx, dy = bodies.x[b] - bodies.x[i], bodies.y[b] - bodies.y[i]
     distance = math.sqrt(dx * dx + dy * dy)
-    nx, ny = dx / distance, dy / distance
+    nx, ny = 0.0, -1.0
+    if distance > 0.0:
+        nx, ny = dx / distance, dy / distance
     turning = bodies.spin[b]  # the contact lies at -n * radius from b's centre
     return Surface(
         nx,

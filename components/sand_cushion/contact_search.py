@@ -93,7 +93,7 @@ def part_count(k):
     """
     part = view(k, k, A.part)
     parts = 1
-    while part[parts] < disc_count(k):
+    while parts < part.size - 1 and part[parts] < disc_count(k):
         parts += 1
     return parts
 
@@ -572,6 +572,15 @@ def forget(x, k):
         across[i] = 0
     for i in range(edge_row.size):
         edge_row[i] = 0
+
+
+@kernel
+def clear_partners(k):
+    """Let every place in the lists of boundaries name one, also those that are not in use."""
+    partner, before = view(k, k, A.edge_partner), view(k, k, A.edge_partner_before)
+    for p in range(partner.size):
+        partner[p] = disc_count(k)
+        before[p] = disc_count(k)
 
 
 @kernel

@@ -7,7 +7,7 @@ import math
 from collections import namedtuple
 
 from ..common.component import Size
-from ..common.ports import Layout, Sizes, State, choice, count, inp, out, param
+from ..common.ports import Indices, Layout, Sizes, State, choice, count, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, deg, kgf
@@ -110,11 +110,12 @@ Sum = namedtuple(
     "Sum",
     "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam "
     "transmitted "
-    "travelled beam_key",
+    "travelled beam_key unready",
 )
-SUM = Sum(*range(12))
+SUM = Sum(*range(13))
 """Places of the sums that go on from step to step in ``sums``: energies and works (J), transmitted
-force (N), way of the fastest disc since the list was made (m), key of the beam's place."""
+force (N), way of the fastest disc since the list was made (m), key of the beam's place, and the
+status of the start, which is not OK until rock and beam are where they may be."""
 
 
 def _bodies(sizes: Sizes) -> int:
@@ -140,6 +141,28 @@ def _edges(sizes: Sizes) -> int:
 
 def _cells(sizes: Sizes) -> int:
     return 4 * sizes["discs"] + 64
+
+
+def _discs(sizes: Sizes) -> int:
+    return sizes["discs"]
+
+
+def _planes(sizes: Sizes) -> int:
+    """Return the number of the last boundary."""
+    return sizes["discs"] + sizes["elements"] + PLANES
+
+
+_ROWS = (Indices(lambda sizes: _pairs(sizes) // BLOCK * BLOCK, ascending=True),)
+_EDGE_ROWS = (Indices(_edges, ascending=True),)
+_PARTNERS = (Indices(_planes, _discs),)
+_PAIRS = (
+    Indices(lambda sizes: ROW * (sizes["discs"] - 1), multiple=ROW, bits=(0, 32)),
+    Indices(lambda sizes: ROW * (_bodies(sizes) - 1), multiple=ROW, bits=(32, 32)),
+)
+_KINDS = tuple(
+    Indices(lambda sizes: len(KIND) - 1, first=first, every=BOUNDARY_ROW) for first in (1, 2)
+)
+"""Indices that hidden arrays hold; the last are kinds of contact in the table of boundaries."""
 
 
 def _beam_x(number: int, sizes: Sizes) -> float:
@@ -633,21 +656,31 @@ LAYOUT = Layout(
         State("law", lambda n: len(KIND) * len(LAW)),
         State("sums", lambda n: len(SUM)),
         State("boundary_reference", lambda n: 2 * (n["elements"] + 1)),
-        State("boundary", lambda n: BOUNDARY_ROW * (n["elements"] + 1 + PLANES), True),
-        State("part", lambda n: _parts(n) + 1, integer=True),
-        State("row", lambda n: n["discs"] + 1, integer=True),
-        State("row_before", lambda n: n["discs"] + 1, integer=True),
-        State("across", lambda n: n["discs"] + 1, integer=True),
-        State("across_before", lambda n: n["discs"] + 1, integer=True),
-        State("pair", _pairs, integer=True),
-        State("pair_before", _pairs, integer=True),
-        State("edge_row", lambda n: n["discs"] + 2, integer=True),
-        State("edge_row_before", lambda n: n["discs"] + 2, integer=True),
-        State("edge_body", _edges, integer=True),
-        State("edge_partner", _edges, integer=True),
-        State("edge_partner_before", _edges, integer=True),
-        State("cell_start", lambda n: _cells(n) + 1, integer=True),
-        State("cell_disc", lambda n: n["discs"], integer=True),
-        State("disc_cell", lambda n: n["discs"], integer=True),
+        State(
+            "boundary",
+            lambda n: BOUNDARY_ROW * (n["elements"] + 1 + PLANES),
+            integer=True,
+            indices=_KINDS,
+        ),
+        State(
+            "part",
+            lambda n: _parts(n) + 1,
+            integer=True,
+            indices=(Indices(_discs, ascending=True),),
+        ),
+        State("row", lambda n: n["discs"] + 1, integer=True, indices=_ROWS),
+        State("row_before", lambda n: n["discs"] + 1, integer=True, indices=_ROWS),
+        State("across", lambda n: n["discs"] + 1, integer=True, indices=_ROWS),
+        State("across_before", lambda n: n["discs"] + 1, integer=True, indices=_ROWS),
+        State("pair", _pairs, integer=True, indices=_PAIRS),
+        State("pair_before", _pairs, integer=True, indices=_PAIRS),
+        State("edge_row", lambda n: n["discs"] + 2, integer=True, indices=_EDGE_ROWS),
+        State("edge_row_before", lambda n: n["discs"] + 2, integer=True, indices=_EDGE_ROWS),
+        State("edge_body", _edges, integer=True, indices=(Indices(_discs),)),
+        State("edge_partner", _edges, integer=True, indices=_PARTNERS),
+        State("edge_partner_before", _edges, integer=True, indices=_PARTNERS),
+        State("cell_start", lambda n: _cells(n) + 1, integer=True, indices=(Indices(_discs),)),
+        State("cell_disc", lambda n: n["discs"], integer=True, indices=(Indices(_discs),)),
+        State("disc_cell", lambda n: n["discs"], integer=True, indices=(Indices(_cells),)),
     ),
 )

@@ -1,5 +1,7 @@
 """Faults that stop a sand cushion, and what they mean in words."""
 
+from ..common.stepping import MOST_STEPS, STEPPING_FAULTS
+
 (
     LIST_FULL,
     DIVERGED,
@@ -12,9 +14,15 @@
     TOO_LOOSE,
     TOO_DENSE,
     SMOOTH_BUT_COHESIVE,
-) = range(1, 12)
+    SETTLING_TOO_LONG,
+) = range(1, 13)
 
 FAULTS = {
+    **STEPPING_FAULTS,
+    SETTLING_TOO_LONG: (
+        f"the sand would settle in more than {MOST_STEPS:,} steps: reduce settling.time "
+        "({settling.time} s), or raise gravity ({gravity} m/s2) for a prepared layer"
+    ),
     LIST_FULL: (
         "there is no more room for contact candidates (12 a disc): reduce disc.spread "
         "({disc.spread}) or the overlap of the discs"
@@ -66,3 +74,6 @@ FAULTS = {
     ),
 }
 """Message of each fault; a name in braces stands for the value of that variable."""
+
+DEFERRED = frozenset({ROCK_INSIDE, ROCK_BESIDE, BEAM_UNORDERED, BEAM_GAPS, BEAM_TOO_NARROW})
+"""Faults of inputs, which may still change before the first step."""

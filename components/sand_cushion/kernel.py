@@ -4,23 +4,16 @@ import math
 
 from ..common.component import OK
 from ..common.kernels import kernel, view
-from ..common.substeps import substep_count, substep_length
+from ..common.stepping import TOO_MANY_STEPS
+from ..common.substeps import are_too_many, substep_count, substep_length
 from .bodies import bodies_of
 from .boundaries import boundary_of, touch
 from .contact_search import rebuild
-from .declarations import BEAM_DISCS, FLOOR, LAYOUT, LINEAR, MEAN, SUM
-from .faults import (
-    BEAM_GAPS,
-    BEAM_TOO_NARROW,
-    BEAM_UNORDERED,
-    DIVERGED,
-    LIST_FULL,
-    ROCK_BESIDE,
-    ROCK_INSIDE,
-)
+from .declarations import FLOOR, LAYOUT, LINEAR, MEAN, SUM
+from .faults import DIVERGED, LIST_FULL, ROCK_BESIDE, ROCK_INSIDE
 from .forces import contact_forces, forget_forces
 from .motion import collect_forces, set_boundaries
-from .start import GAP, INSTANT, advance, beam_key, initialise
+from .start import INSTANT, advance, beam_fault, beam_key, initialise
 
 __all__ = ["evaluate", "initialise", "step"]
 
@@ -60,34 +53,6 @@ def surface_under_rock(w, x, k):
 
 
 @kernel
-def beam_fault(w, k):
-    """Return the fault of a beam that does not carry the whole cushion, or 0.
-
-    Parameters
-    ----------
-    w, k : ndarray
-        Variables and integers of the instance.
-
-    Returns
-    -------
-    int
-        Status.
-    """
-    px = view(w, k, A.beam_position_x)
-    widest = 0.0
-    for b in range(px.size - 1):
-        if px[b + 1] <= px[b]:
-            return BEAM_UNORDERED
-        widest = max(widest, px[b + 1] - px[b])
-    if w[V.base] == BEAM_DISCS and widest > 2.0 * w[V.beam_radius] * (1.0 + GAP):
-        return BEAM_GAPS
-    reach = w[V.beam_radius] * (1.0 + 1e-6)
-    if px[0] - reach > w[V.box_left] or px[px.size - 1] + reach < w[V.box_left] + w[V.box_width]:
-        return BEAM_TOO_NARROW
-    return OK
-
-
-@kernel
 def rock_fault(w, x, k):
     """Return the fault of a rock inside the sand or in a side wall, or 0.
 
@@ -118,6 +83,9 @@ def rock_fault(w, x, k):
 def evaluate(w, x, k):
     """Compute the outputs at the start; packs anew when the beam was moved since.
 
+    A place of rock or beam that is refused may still change before the first step, which asks
+    again.
+
     Parameters
     ----------
     w, x : ndarray of float64
@@ -130,6 +98,14 @@ def evaluate(w, x, k):
     int
         Status, 0 or one of the faults.
     """
+    status = begin(w, x, k)
+    view(x, k, A.sums)[SUM.unready] = status
+    return status
+
+
+@kernel
+def begin(w, x, k):
+    """Bring sand, rock and beam to the start, with the inputs as they are; returns the status."""
     sums = view(x, k, A.sums)
     if w[V.base] != FLOOR:
         status = beam_fault(w, k)
@@ -320,6 +296,12 @@ def step(t, h, w, x, k):
     int
         Status, 0 or one of the faults.
     """
+    if are_too_many(h, w[V.internal_step]):
+        return TOO_MANY_STEPS
+    if view(x, k, A.sums)[SUM.unready] != OK:
+        status = evaluate(w, x, k)
+        if status != OK:
+            return status
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     linear, mean = w[V.kinematics] == LINEAR, w[V.forces] == MEAN
@@ -336,4 +318,4 @@ def step(t, h, w, x, k):
         collect_forces(1.0, True, w, x, k)
     publish_energies(kinetic, potential, w, view(x, k, A.sums))
     w[V.penetration] = penetration(h if linear else 0.0, w)
-    return OK if math.isfinite(kinetic + w[V.energy_elastic]) else DIVERGED
+    return OK if math.isfinite(w[V.energy_residual]) else DIVERGED

@@ -10,13 +10,17 @@ from .contact_search import first_of, part_count, second_of
 from .declarations import (
     BLOCK,
     COLUMN,
+    FORCE_ROW,
     FREE,
     KIND,
     LANES,
     LAW,
     LAYOUT,
     MOTION,
+    RADIUS,
     ROLL,
+    ROW,
+    SPIN,
     SUM,
     TALLY,
 )
@@ -178,20 +182,22 @@ def roll_block(begin, dt, bodies, pairs):
         Pairs of a part, with their contacts.
     """
     law = law_of(KIND.sand, 1.0, pairs.law)
+    rows, loads = bodies.rows, bodies.loads  # columns would cost 3 % of a step here
     for q in range(BLOCK):
         normal = pairs.block[3 * BLOCK + q]
         if normal <= 0.0:
             pairs.roll[begin + q] = 0.0
             continue
-        i, j = first_of(pairs.pair[begin + q]), second_of(pairs.pair[begin + q])
-        ri, rj = bodies.radius[i], bodies.radius[j]
-        speed, radius = bodies.spin[j] / rj - bodies.spin[i] / ri, ri * rj / (ri + rj)
+        first, second = first_of(pairs.pair[begin + q]), second_of(pairs.pair[begin + q])
+        i, j = ROW * first, ROW * second
+        ri, rj = rows[i + RADIUS], rows[j + RADIUS]
+        speed, radius = rows[j + SPIN] / rj - rows[i + SPIN] / ri, ri * rj / (ri + rj)
         rolling = rolling_response(pairs.roll[begin + q], speed, radius, normal, law, dt)
         pairs.roll[begin + q] = rolling.moment
         pairs.rolling[ROLL.lost] += rolling.dissipated
         pairs.rolling[ROLL.elastic] += rolling.elastic
-        bodies.turn[i] += rolling.moment / ri
-        bodies.turn[j] -= rolling.moment / rj
+        loads[FORCE_ROW * first + 2] += rolling.moment / ri
+        loads[FORCE_ROW * second + 2] -= rolling.moment / rj
 
 
 @kernel
@@ -252,7 +258,7 @@ def move_discs(begin, end, model, bodies, pairs):
     move_rows(rows, loads, begin, end, dt, model.gravity, turning, pairs.motion)
     if model.turns:
         for i in range(begin, end):
-            pairs.angle[i] += bodies.spin[i] / bodies.radius[i] * dt
+            pairs.angle[i] += rows[ROW * i + SPIN] / rows[ROW * i + RADIUS] * dt
 
 
 @kernel

@@ -4,11 +4,22 @@ import math
 
 from ..common.component import OK
 from ..common.kernels import kernel, view
+from ..common.substeps import are_too_many
 from .bodies import bodies_of
 from .boundaries import describe_boundaries
-from .contact_search import divide, forget, is_stale, rebuild
-from .declarations import KIND, LAW, LAYOUT, PREPARED, SUM
-from .faults import DISC_TOO_WIDE, LIST_FULL, SMOOTH_BUT_COHESIVE, TOO_DENSE, TOO_LOOSE
+from .contact_search import clear_partners, divide, forget, is_stale, rebuild
+from .declarations import BEAM_DISCS, FLOOR, KIND, LAW, LAYOUT, PREPARED, SUM
+from .faults import (
+    BEAM_GAPS,
+    BEAM_TOO_NARROW,
+    BEAM_UNORDERED,
+    DISC_TOO_WIDE,
+    LIST_FULL,
+    SETTLING_TOO_LONG,
+    SMOOTH_BUT_COHESIVE,
+    TOO_DENSE,
+    TOO_LOOSE,
+)
 from .forces import advance_discs, contact_forces, forget_forces
 from .laws import boundary_stiffness, sand_stiffness, set_laws, stable_step_of
 from .motion import set_boundaries
@@ -146,6 +157,8 @@ def come_to_rest(duration, dt, rate, rest, w, x, k):
     int
         Status.
     """
+    if are_too_many(max(duration, dt), dt):
+        return SETTLING_TOO_LONG
     for s in range(int(duration / dt)):
         status, _, _ = advance(dt, w, x, k)
         if status != OK:
@@ -321,6 +334,11 @@ def initialise(w, x, k):
     for q in range(x.size):
         x[q] = 0.0
     divide(k)
+    forget(x, k)
+    clear_partners(k)
+    if w[V.base] != FLOOR and beam_fault(w, k) != OK:
+        view(x, k, A.sums)[SUM.beam_key] = beam_key(w, k) - 1.0  # packed on no beam yet
+        return OK
     set_laws(w, x, k)
     describe_boundaries(w, k)
     size_boundaries(w, x, k)
@@ -342,6 +360,23 @@ def initialise(w, x, k):
         sums[q] = 0.0
     sums[SUM.beam_key] = beam_key(w, k)
     return status
+
+
+@kernel
+def beam_fault(w, k):
+    """Return the fault of a beam that does not carry the whole cushion, or 0."""
+    px = view(w, k, A.beam_position_x)
+    widest = 0.0
+    for b in range(px.size - 1):
+        if px[b + 1] <= px[b]:
+            return BEAM_UNORDERED
+        widest = max(widest, px[b + 1] - px[b])
+    if w[V.base] == BEAM_DISCS and widest > 2.0 * w[V.beam_radius] * (1.0 + GAP):
+        return BEAM_GAPS
+    reach = w[V.beam_radius] * (1.0 + 1e-6)
+    if px[0] - reach > w[V.box_left] or px[px.size - 1] + reach < w[V.box_left] + w[V.box_width]:
+        return BEAM_TOO_NARROW
+    return OK
 
 
 @kernel

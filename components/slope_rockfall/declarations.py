@@ -6,7 +6,19 @@ Equations, frame, signs and sources are in README.md of this folder.
 from collections import namedtuple
 
 from ..common.component import Size
-from ..common.ports import Kind, Layout, Sizes, State, choice, count, inp, out, param, switch
+from ..common.ports import (
+    Indices,
+    Kind,
+    Layout,
+    Sizes,
+    State,
+    choice,
+    count,
+    inp,
+    out,
+    param,
+    switch,
+)
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import kN
@@ -94,6 +106,14 @@ def _node(number: int, sizes: Sizes, axis: int) -> float:
     first = min(int(place), len(EXAMPLE) - 2)
     low, high = EXAMPLE[first][axis], EXAMPLE[first + 1][axis]
     return low + (place - first) * (high - low)
+
+
+def _last_cell(sizes: Sizes) -> int:
+    return sizes["cells"] - 1
+
+
+def _last_line(sizes: Sizes) -> int:
+    return JOINTS * sizes["cells"] - 1
 
 
 def _end_x(number: int, sizes: Sizes) -> float:
@@ -447,13 +467,30 @@ LAYOUT = Layout(
         out("fault.locking", "mu tan(phi) of that cell with its largest roughness"),
     ),
     states=(
-        State("path", lambda sizes: JOINTS * sizes["cells"] * len(PATH)),
+        State(
+            "path",
+            lambda sizes: JOINTS * sizes["cells"] * len(PATH),
+            indices=(Indices(_last_cell, first=PATH.cell, every=len(PATH)),),
+        ),
         State("ground", lambda sizes: sizes["cells"] * len(GROUND)),
-        State("body", lambda sizes: len(BODY)),
+        State(
+            "body",
+            lambda sizes: len(BODY),
+            indices=(
+                Indices(_last_line, first=BODY.line, every=len(BODY)),
+                Indices(_last_line, first=BODY.next_line, every=len(BODY)),
+                Indices(lambda sizes: 1, -1, first=BODY.direction, every=len(BODY)),
+            ),
+        ),
         State("clock", lambda sizes: len(CLOCK)),
         State("order.begin", lambda sizes: sizes["cells"] + 1),
-        State("order", lambda sizes: sizes["cells"], integer=True),
-        State("lines", lambda sizes: 1, integer=True),
-        State("started", lambda sizes: 1, integer=True),
+        State("order", lambda sizes: sizes["cells"], integer=True, indices=(Indices(_last_cell),)),
+        State(
+            "lines",
+            lambda sizes: 1,
+            integer=True,
+            indices=(Indices(lambda sizes: JOINTS * sizes["cells"], 1),),
+        ),
+        State("started", lambda sizes: 1, integer=True, indices=(Indices(lambda sizes: 1),)),
     ),
 )

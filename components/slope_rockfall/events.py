@@ -810,7 +810,7 @@ def pass_node(world, source, b):
     """
     old = int(b[BODY.line])
     d = b[BODY.direction]
-    new = old + int(d)
+    new = min(max(old + int(d), 0), world.lines - 1)
     u, _ = components(world, old, b)
     b[BODY.x] = world.path[old * len(PATH) + (PATH.right if d > 0.0 else PATH.left)]
     b[BODY.y] = path_y(old, b[BODY.x], world.path)

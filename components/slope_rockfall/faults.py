@@ -1,5 +1,7 @@
 """Statuses of the rock on a slope other than OK."""
 
+from ..common.stepping import STEPPING_FAULTS
+
 FOLDED, STEEP, ROUGH, LOCKED, ROUGHNESS_SIGN, TILT_SIGN = range(1, 7)
 """Faults of a cell, by number."""
 LIMIT_SIGN, RECEIVER_EMPTY, START_BELOW = range(7, 10)
@@ -29,9 +31,10 @@ _FACTS = {
     "{fault.roughness}, mu tan(phi) = {fault.locking}",
 }
 
-FAULTS = {
+_OF_CELLS = {
     fault: f"cell {{fault.cell}} ({_FACTS[fault]}): {rule}" for fault, rule in RULES.items()
-} | {
+}
+_OF_THE_ROCK = {
     LIMIT_SIGN: "limit_speed.mean = {limit_speed.mean} m/s: only a positive one has a lognormal "
     "distribution: choose another limit_speed.distribution",
     RECEIVER_EMPTY: "the receiver is empty: receiver.left = {receiver.left} m must be less than "
@@ -52,4 +55,5 @@ FAULTS = {
     RESTLESS: "a million events in one step, at ({position.x}, {position.y}) m: give cell {cell} "
     "some roughness, or hardening below 1",
 }
+FAULTS = STEPPING_FAULTS | _OF_CELLS | _OF_THE_ROCK
 """Message of each status; a name in braces stands for the value of that variable."""

@@ -124,7 +124,7 @@ def landing(j, x, y, vx, vy, gravity, lines, path):
             leaves = (path[at + PATH.left] - x) / vx
         else:
             return meets, j
-        if meets <= leaves or j == (lines - 1 if vx > 0.0 else 0):
+        if meets <= leaves or (j >= lines - 1 if vx > 0.0 else j <= 0):
             return meets, j
         entered = max(entered, leaves)
         j += 1 if vx > 0.0 else -1

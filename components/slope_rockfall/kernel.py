@@ -9,7 +9,8 @@ from ..common.component import OK
 from ..common.counter_random import stream
 from ..common.kernels import kernel, view
 from ..common.rigid_body import Load, Motion, moved
-from ..common.substeps import substep_count, substep_length
+from ..common.stepping import TOO_MANY_STEPS
+from ..common.substeps import are_too_many, substep_count, substep_length
 from .declarations import BODY, CLOCK, GROUND, LAYOUT, LEAVE, NEVER, PATH, RECEIVED
 from .events import begin, happen, inertia, losses, plan, world
 from .faults import (
@@ -336,6 +337,8 @@ def push(world, now, end, h, w, b):
         Status: OK or DIVERGED.
     """
     move(b, now)
+    if are_too_many(h, w[V.internal_step]):
+        return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
     load = Load(w[V.force_x], w[V.force_y], w[V.torque])

@@ -16,6 +16,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -23,8 +24,8 @@ from pathlib import Path
 
 from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import Component
+from rockshed.components.common.kept import keep, kept
 from rockshed.components.common.ports import Sizes
-from rockshed.files import write_file
 from rockshed.versions import version_of
 
 from ..description.documentation import documentation
@@ -156,19 +157,44 @@ def native_files(
     compilers = {name: compiler(name) for name in platforms}
     guid = stamp(component, sizes, fmi)
     files = _described(component, sizes, guid, fmi)
-    objects = _objects(component, sizes, platforms)
-    header = model_header(component, sizes, guid, CPU)
-    for name in platforms:
+    for name, sources in library_sources(component, sizes, platforms, fmi).items():
         path = _library(component, name, fmi)
-        sources = {
-            "model.h": header,
-            "kernels.o": objects[name],
-            **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])},
-        }
         files[path] = _linked(
             component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources
         )
     return files
+
+
+def library_sources(
+    component: Component, sizes: Sizes, platforms: Sequence[str], fmi: Fmi = Fmi.TWO
+) -> dict[str, Files]:
+    """Return the files that a library is made of: the shim, what it includes, and the kernels.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        Sizes to build it with.
+    platforms : sequence of str
+        Keys of :data:`PLATFORMS`.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to Files
+        By platform: ``model.h``, ``slave.h``, the shim and ``kernels.o``.
+
+    Raises
+    ------
+    BuildError
+        A kernel needs Python.
+    """
+    header = model_header(component, sizes, stamp(component, sizes, fmi), CPU)
+    shared = {"model.h": header, **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
+    objects = _objects(component, sizes, platforms)
+    return {name: {**shared, "kernels.o": objects[name]} for name in platforms}
 
 
 def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:
@@ -266,31 +292,42 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
     stamp = digest(
         made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()}
     )[:24]
-    folder = cache_directory()
-    kept = (
-        {name: folder / f"{component.name}-{name}-{stamp}.o" for name in platforms}
-        if folder
-        else {}
-    )
-    if kept and all(path.is_file() for path in kept.values()):
-        return {name: path.read_bytes() for name, path in kept.items()}
+    files = _object_files(f"{component.name}-%s-{stamp}.o", platforms)
+    found = {name: kept(path) for name, path in files.items()}
+    sound = {name: content for name, content in found.items() if content is not None}
+    if sound.keys() == set(platforms):
+        return sound
     with tempfile.TemporaryDirectory(prefix="rockshed_") as work:
-        if problems := _compile(component, sizes, platforms, Path(work)):
-            if any(UNKNOWN_PLACE in problem for problem in problems):
-                # once more from the sources, for the lines
-                settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
-                problems = _compile(component, sizes, platforms, Path(work), **settings)
-            raise BuildError(
-                f"{component.name}: its kernels need more than the C library and cannot run "
-                f"without Python: "
-                + "; ".join(problems)
-                + ". Kernels keep to explicit loops, scalar arithmetic, slices and other "
-                f"kernels. No native FMU was built. {_PYTHON_REMAINS}"
-            )
+        _compile_or_refuse(component, sizes, platforms, Path(work))
         objects = {name: (Path(work) / f"{name}.o").read_bytes() for name in platforms}
-        for name, path in kept.items():
-            write_file(path, objects[name])
+    for name, path in files.items():
+        with suppress(OSError):  # then it is compiled again next time
+            keep(path, objects[name])
     return objects
+
+
+def _object_files(name: str, platforms: Sequence[str]) -> dict[str, Path]:
+    """Return the files in which object code is kept, by platform; none where nothing is kept."""
+    folder = cache_directory()
+    return {platform: folder / (name % platform) for platform in platforms} if folder else {}
+
+
+def _compile_or_refuse(
+    component: Component, sizes: Sizes, platforms: Sequence[str], work: Path
+) -> None:
+    """Write ``PLATFORM.o`` into a folder, or raise a BuildError with everything that is wrong."""
+    problems = _compile(component, sizes, platforms, work)
+    if not problems:
+        return
+    if any(UNKNOWN_PLACE in problem for problem in problems):
+        # once more from the sources, for the lines
+        settings = {"NUMBA_DEBUGINFO": "1", CACHE_VARIABLE: f"{work}/cache"}
+        problems = _compile(component, sizes, platforms, work, **settings)
+    raise BuildError(
+        f"{component.name}: its kernels need more than the C library and cannot run without "
+        "Python: " + "; ".join(problems) + ". Kernels keep to explicit loops, scalar arithmetic, "
+        f"slices and other kernels. No native FMU was built. {_PYTHON_REMAINS}"
+    )
 
 
 def _compile(
@@ -307,14 +344,13 @@ def _compile(
         "cpu": CPU.name,
     }
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
-    folders = [os.path.abspath(folder) for folder in sys.path]
     settings = {
         "NUMBA_CPU_NAME": CPU.name,
         "NUMBA_CPU_FEATURES": "",
-        "PYTHONPATH": os.pathsep.join(folders),
+        "PYTHONPATH": os.pathsep.join(_import_folders()),
     }
     done = subprocess.run(
-        [sys.executable, "-m", f"{__package__}.kernels"],
+        [sys.executable, "-P", "-m", f"{__package__}.kernels"],
         input=json.dumps(order),
         cwd=work,
         text=True,
@@ -332,11 +368,27 @@ def _compile(
     return problems
 
 
+def _import_folders() -> list[str]:
+    """Return the folders from which another process imports what this one does.
+
+    The working folder is somebody's: what lies there is imported only if this library does.
+    """
+    here, ours = Path.cwd(), Path(_HERE.parents[1])
+    return [
+        folder
+        for folder in map(os.path.abspath, filter(None, sys.path))
+        if Path(folder) != here or ours.is_relative_to(here)
+    ]
+
+
 # --- the C compiler
 
 
 def compiler(platform: str) -> list[str]:
     """Return the command of a compiler for a platform.
+
+    For Linux, zig comes before the compilers of this machine: its libraries run with a C library as
+    old as :data:`PLATFORMS` says, theirs with one as old as this machine's.
 
     Parameters
     ----------
@@ -346,30 +398,22 @@ def compiler(platform: str) -> list[str]:
     Returns
     -------
     list of str
-        Program and options.
+        Words of the command.
 
     Raises
     ------
     BuildError
         There is none.
     """
-    zig = [
-        sys.executable,
-        "-m",
-        "ziglang",
-        "cc",
-        "-target",
-        PLATFORMS[platform].zig,
-        "-mcpu=x86_64",
-    ]
-    if platform == "linux64" and machine.system() == "Linux":
-        found = os.environ.get("CC") or next(
-            filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None
-        )
-        if found:
-            return [*shlex.split(found), "-march=x86-64"]
+    is_own = platform == "linux64" and machine.system() == "Linux"
+    if is_own and (chosen := os.environ.get("CC")):
+        return [*shlex.split(chosen), "-march=x86-64"]
     if find_spec("ziglang"):
-        return zig
+        target = ("-target", PLATFORMS[platform].zig, "-mcpu=x86_64")
+        return [sys.executable, "-m", "ziglang", "cc", *target]
+    found = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+    if is_own and found:
+        return [found, "-march=x86-64"]
     others = "environment variable CC, cc, gcc, clang, " if platform == "linux64" else ""
     raise BuildError(
         f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip "

@@ -9,7 +9,10 @@ from pathlib import Path
 from rockshed.components.common.component import (
     FOREIGN_STATE,
     HEADER,
+    IMPOSSIBLE_STATE,
+    LOST,
     NOT_FINITE,
+    NOT_WHOLE,
     OUT_OF_RANGE,
     UNKNOWN_STATUS,
     Component,
@@ -17,6 +20,7 @@ from rockshed.components.common.component import (
     allowed_range,
 )
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
+from rockshed.components.common.restoring import INDEX_WRONG, NUMBER_NOT_FINITE, TABLE_DIFFERS
 
 from ..python import conduct
 
@@ -26,6 +30,12 @@ _OF_COMPONENTS = {
     "OUT_OF_RANGE": OUT_OF_RANGE,
     "UNKNOWN_STATUS": UNKNOWN_STATUS,
     "FOREIGN": FOREIGN_STATE,
+    "NOT_WHOLE": NOT_WHOLE,
+    "LOST": LOST,
+    "IMPOSSIBLE": IMPOSSIBLE_STATE,
+    "TABLE_DIFFERS": TABLE_DIFFERS,
+    "NUMBER_NOT_FINITE": NUMBER_NOT_FINITE,
+    "INDEX_WRONG": INDEX_WRONG,
 }
 """Sentences of components by their name in C."""
 
@@ -106,13 +116,15 @@ def _tables(component: Component, sizes: Sizes) -> dict[str, object]:
         "stable_step": references.get("stable_step", -1),
         "event_time": references[event.time] if event else -1,
         "zero_until_event": [references[name] for name in event.while_zero] if event else [],
-        "table": component.layout.table(sizes)[0] or [0],
+        "table": component.layout.table(sizes)[0],
+        "indices": list(_indices(component, sizes)),
         "read_only": [*sizes, TIME],
         "header": instance.to_bytes()[: HEADER.size],
         "variables": list(_variables(component, sizes)),
         "variable_of": [i for i, length in enumerate(lengths) for _ in range(length)],
         "traits": traits,
         "alike": _alike(traits),
+        "deferred": sorted(component.deferred),
         "faults": _numbered_faults(component, instance),
     }
 
@@ -131,6 +143,21 @@ def _variables(component: Component, sizes: Sizes) -> Iterator[dict[str, object]
             "range": allowed_range(variable),
         }
         first += len(variable.element_names(sizes))
+
+
+def _indices(component: Component, sizes: Sizes) -> Iterator[dict[str, object]]:
+    for indices in component.layout.index_ranges(sizes):
+        declared, places = indices.declared, indices.places
+        lowest, width = declared.bits
+        yield {
+            "array": indices.array,
+            "is_integer": int(indices.integer),
+            "places": [places.start, places.stop, places.step],
+            "lowest": lowest,
+            "mask": hex((1 << width) - 1),
+            "range": [indices.low, indices.high, declared.multiple],
+            "ascending": int(declared.ascending),
+        }
 
 
 def _traits(variable: Variable) -> str:

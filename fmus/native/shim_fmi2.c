@@ -63,7 +63,7 @@ static int is_block(const Reference r[], size_t n, int trait) {
 }
 
 static int get_block(const Slave *m, const Reference r[], size_t n, double v[]) {
-  if (m->s.phase == INITIALISING || !is_block(r, n, IS_REAL)) return 0;
+  if (m->s.phase == INITIALISING || m->s.phase == FAILED || !is_block(r, n, IS_REAL)) return 0;
   memcpy(v, m->s.w + r[0], n * sizeof *v);
   return 1;
 }

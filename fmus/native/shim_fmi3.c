@@ -86,7 +86,7 @@ static int event_is_known(const Slave *m) { /* what the component tells of its n
 
 static double stop_at(const Slave *m, double time, double end) { /* the next event if the importer may be told of it, or the end */
   if (!m->host.takes_early_return || !event_is_known(m)) return end;
-  double event = m->s.w[EVENT_TIME] + (m->s.time == m->s.start ? m->s.start : 0.0); /* kernels do not know the start */
+  double event = m->s.w[EVENT_TIME < 0 ? 0 : EVENT_TIME] + (m->s.time == m->s.start ? m->s.start : 0.0); /* kernels do not know the start */
   double rounding = 4.0 * (nextafter(fabs(end), INFINITY) - fabs(end));
   return event > time && event < end - rounding ? event : end;
 }
@@ -114,7 +114,7 @@ static int is_first(Reference r) { return r < NW && VARIABLES[VARIABLE_OF[r]].fi
    there is, is for the functions below. */
 static int get_slices(const Slave *m, const Reference r[], size_t n, double v[], size_t values) {
   size_t at = 0;
-  if (m->s.phase == INITIALISING) return 0;
+  if (m->s.phase == INITIALISING || m->s.phase == FAILED) return 0;
   for (size_t i = 0; i < n; at += length_of(r[i++])) if (!is_first(r[i]) || !(TRAITS[r[i]] & IS_REAL)) return 0;
   if (at != values) return 0;
   for (size_t i = at = 0; i < n; at += length_of(r[i++])) memcpy(v + at, m->s.w + r[i], length_of(r[i]) * sizeof *v);
@@ -136,13 +136,19 @@ static void check_variable(Slave *m, Reference r, int type) {
   because(m, "value reference %u is %s: an array is read and set as a whole, by the reference %d", r, name_of(r).text, v->first);
 }
 
+static void add_counted(Slave *m, Text before, Reference r) { /* a name; of an array, with the number of its elements */
+  int length = r < NW ? VARIABLES[VARIABLE_OF[r]].length : 0;
+  add(m, "%s%s", before, r < NW ? VARIABLES[VARIABLE_OF[r]].name : READ_ONLY[r - NW]);
+  if (length) add(m, "[%d]", length);
+}
+
 static void check_number(Slave *m, const Reference r[], size_t n, size_t values) {
   size_t expected = 0;
   for (size_t i = 0; i < n; i++) expected += length_of(r[i]);
   if (expected == values) return;
   because(m, "%zu values are passed for the %zu of ", values, expected);
   for (size_t i = 0; i < n; i++)
-    add(m, "%s%s[%zu]", i ? ", " : "", r[i] < NW ? VARIABLES[VARIABLE_OF[r[i]]].name : READ_ONLY[r[i] - NW], length_of(r[i]));
+    add_counted(m, i ? ", " : "", r[i]);
   add(m, ": pass as many as these have elements");
 }
 

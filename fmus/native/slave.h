@@ -23,6 +23,8 @@ enum { IS_REAL = 1, IS_FREE = 2 }; /* traits of a reference; free: a real input 
 /* length: 0 for a scalar. low, high: largest finite numbers where there is no bound. range: both in words. */
 typedef struct { Text name; int first, length, type, causality; double low, high; Text unit, range, description; } Variable;
 typedef struct { int64_t status; Text text; } Fault; /* {5} in the text: the value of reference 5 */
+typedef struct { Text array; int is_integer; size_t begin, end, every; int lowest; uint64_t mask; int64_t low, high, multiple;
+                 int ascending; } Indices;
 #include "model.h"
 enum { TIME = NW + NC }; /* value reference of the time, behind those of the sizes */
 
@@ -31,7 +33,8 @@ typedef struct { uint64_t mark; uint32_t phase; double start, time, unused[4], x
 _Static_assert(offsetof(State, x) == LINE, "x does not begin with a cache line");
 typedef struct { void (*logger)(void); void *environment; int takes_early_return; } Host; /* what the importer gave to an instance */
 typedef struct { State s; Host host; void *block; char *name; double stop; int stale, previewed, told[ERROR + 1];
-                 size_t length; char text[16384]; } Slave;
+                 size_t length, begin; char text[16384]; } Slave; /* begin: of the reasons, behind the name */
+enum { LONGEST_NAME = 1024 }; /* bytes of an instance's name that messages show */
 
 extern int64_t rockshed_initialise(double *w, double *x, int64_t *k);
 extern int64_t rockshed_evaluate(double *w, double *x, int64_t *k);
@@ -52,7 +55,7 @@ int pthread_join(uint64_t thread, void **result) { return 1; }
 static void deliver(Slave *m, Status status, Text category); /* the message m->text to the importer */
 
 static const Text TYPES[] = TYPE_NAMES;
-static const Text CATEGORIES[] = { "", "logStatusWarning", "", "logStatusError" };
+static const Text CATEGORIES[] = { "", "logStatusWarning", "logStatusWarning", "logStatusError" };
 
 /* --- messages: the reasons of one call are collected in m->text and told together */
 
@@ -74,13 +77,22 @@ static void add(Slave *m, Text format, ...) {
 static void because(Slave *m, Text format, ...) {
   va_list values;
   va_start(values, format);
-  if (m->length) add(m, "; "); else add(m, "%s (" NAME "): ", m->name);
+  if (m->length) add(m, "; ");
+  else {
+    add(m, "%.*s (" NAME "): ", LONGEST_NAME, m->name);
+    m->begin = m->length;
+  }
   add_all(m, format, values);
   va_end(values);
 }
 
+static void take_reasons(Slave *m, char reasons[], size_t n) { /* without the name before them; none are left */
+  snprintf(reasons, n, "%s", m->text + m->begin);
+  m->length = 0;
+}
+
 static void tell(Slave *m, Status status) {
-  if (m->told[status]) deliver(m, status, CATEGORIES[status]);
+  if (m->told[status == DISCARD ? WARNING : status]) deliver(m, status, CATEGORIES[status]);
   m->length = 0;
   m->text[0] = 0;
 }
@@ -98,6 +110,12 @@ static Short number(double value) { /* as Python writes it */
   return s;
 }
 
+static Long formatted(Text format, Text value) {
+  Long s;
+  snprintf(s.text, sizeof s.text, format, value);
+  return s;
+}
+
 static Short name_of(Reference r) {
   const Variable *v = &VARIABLES[VARIABLE_OF[r]];
   Short s;
@@ -108,11 +126,23 @@ static Short name_of(Reference r) {
 
 /* --- what the declarations allow */
 
+static int are_finite(const double v[], size_t n) {
+  const uint64_t exponent = 0x7FFull << 52, last = 1ull << 52; /* all bits of the exponent are set: the sum reaches the first bit */
+  uint64_t sums = 0, bits;
+  for (size_t i = 0; i < n; i++) { memcpy(&bits, v + i, 8); sums |= (bits & exponent) + last; }
+  return !(sums >> 63);
+}
+
 static int in_range(const Variable *v, double value) { return v->low <= value && value <= v->high; } /* false for NaN and inf */
+
+static int is_whole(const Variable *v, double value) { return v->type == REAL || value == floor(value); }
 
 static Long problem(Reference r, double value) {
   const Variable *v = &VARIABLES[VARIABLE_OF[r]];
   Long s;
+  if (isfinite(value) && in_range(v, value))
+    snprintf(s.text, sizeof s.text, SAYS_NOT_WHOLE, name_of(r).text, number(value).text, v->description);
+  else
   if (isfinite(value))
     snprintf(s.text, sizeof s.text, SAYS_OUT_OF_RANGE, name_of(r).text, number(value).text, v->unit, v->range, v->description);
   else snprintf(s.text, sizeof s.text, SAYS_NOT_FINITE, name_of(r).text, number(value).text, v->description);
@@ -169,6 +199,14 @@ static int has_failed(Slave *m, int64_t status) {
   return status != 0;
 }
 
+static int is_lost(Slave *m) { /* whether a value is no finite number; tells the first one */
+  Reference r = 0;
+  if (are_finite(m->s.w, NW)) return 0;
+  while (isfinite(m->s.w[r])) r++;
+  because(m, SAYS_LOST, name_of(r).text, number(m->s.w[r]).text);
+  return 1;
+}
+
 /* --- life cycle */
 
 static int cpu_fits(void) {
@@ -192,11 +230,25 @@ static void start_anew(Slave *m) {
   m->previewed = 0;
 }
 
-static int compute(Slave *m) { /* outputs at the start; the state, which may be expensive, only if a parameter has changed */
+static int64_t deferred(int64_t status) { /* the status, if it blames inputs only, which may change before the first step */
+  for (const int64_t *s = DEFERRED; *s; s++) if (*s == status) return status;
+  return 0;
+}
+
+static int64_t evaluated(Slave *m) { /* a deferred status; otherwise, what is wrong becomes a reason */
+  int64_t status = rockshed_evaluate(m->s.w, m->s.x, m->s.k);
+  if (deferred(status)) return status;
+  if (!has_failed(m, status)) is_lost(m);
+  return 0;
+}
+
+static int compute(Slave *m, int64_t *put_off) { /* outputs at the start; the state, which may be expensive, only if a parameter has changed */
+  *put_off = 0;
   if (m->stale != NOTHING && values_are_wrong(m)) return 0;
   if (m->stale == STATE && has_failed(m, rockshed_initialise(m->s.w, m->s.x, m->s.k))) return 0;
-  if (m->stale != NOTHING && has_failed(m, rockshed_evaluate(m->s.w, m->s.x, m->s.k))) return 0;
-  m->stale = NOTHING;
+  if (m->stale != NOTHING) *put_off = evaluated(m);
+  if (m->length) return 0;
+  m->stale = *put_off ? OUTPUTS : NOTHING;
   return 1;
 }
 
@@ -244,8 +296,14 @@ static Status enter_initialisation(Slave *m) {
 
 static Status exit_initialisation(Slave *m) {
   if (!is_legal(m, CALL_EXIT)) return not_now(m, CALL_EXIT);
-  if (!compute(m)) return refused(m);
+  int64_t put_off;
+  if (!compute(m, &put_off)) return refused(m);
+  m->stale = NOTHING;
   m->s.phase = RUNNING;
+  if (put_off) {
+    because(m, SAYS_DEFERRED, fault(m, put_off).text);
+    tell(m, DISCARD);
+  }
   if (INTERNAL_STEP < 0 || STABLE_STEP < 0 || !(m->s.w[INTERNAL_STEP] > m->s.w[STABLE_STEP])) return OK;
   Short stable = number(m->s.w[STABLE_STEP]);
   because(m, SAYS_UNSTABLE, number(m->s.w[INTERNAL_STEP]).text, stable.text, stable.text);
@@ -281,31 +339,36 @@ static int may_step(Slave *m, double time, double step) {
 
 static Status advance(Slave *m, double time, double step, double end, Status failure) {
   int64_t status = rockshed_step(time, step, m->s.w, m->s.x, m->s.k);
-  if (!status) { m->s.time = end; return OK; }
-  because(m, SAYS_STEP_FAILED, time, fault(m, status).text);
+  if (!status && are_finite(m->s.w, NW)) { m->s.time = end; return OK; }
+  if (status) because(m, SAYS_STEP_FAILED, time, fault(m, status).text);
+  else {
+    char reason[sizeof(Long)];
+    is_lost(m);
+    take_reasons(m, reason, sizeof reason);
+    because(m, SAYS_STEP_FAILED, time, reason);
+  }
   refused(m);
   return failure;
 }
 
 /* --- values */
 
+static void forget_lost(Slave *m) { /* outputs that are no finite numbers count as not yet computed ones, which are 0 */
+  for (Reference r = 0; r < NW; r++)
+    if (VARIABLES[VARIABLE_OF[r]].causality == OUTPUT && !isfinite(m->s.w[r])) m->s.w[r] = 0.0;
+}
+
 static void preview(Slave *m) { /* what is wrong with the inputs may still be put right */
-  if (!m->previewed && !compute(m)) {
+  int64_t put_off = 0;
+  if (!m->previewed && (!compute(m, &put_off) || put_off)) {
     char reasons[sizeof m->text];
-    Text behind_name = m->text + strlen(m->name) + strlen(" (" NAME "): ");
-    strcpy(reasons, behind_name);
-    m->length = 0;
+    if (put_off) because(m, "%s", fault(m, put_off).text);
+    take_reasons(m, reasons, sizeof reasons);
+    forget_lost(m);
     because(m, SAYS_NOT_VALID_YET, reasons);
     tell(m, WARNING);
   }
   m->previewed = 1;
-}
-
-static int are_finite(const double v[], size_t n) {
-  const uint64_t exponent = 0x7FFull << 52, last = 1ull << 52; /* all bits of the exponent are set: the sum reaches the first bit */
-  uint64_t sums = 0, bits;
-  for (size_t i = 0; i < n; i++) { memcpy(&bits, v + i, 8); sums |= (bits & exponent) + last; }
-  return !(sums >> 63);
 }
 
 typedef enum { DOUBLES, INTS, LONGS, BYTES } Form; /* how a call holds its values */
@@ -327,11 +390,14 @@ static int is_read_only(Reference r, int type) { /* a size, or the time */
 }
 
 static Status get(Slave *m, int type, const Reference r[], size_t n, void *v, Form form) {
-  int outputs = 0;
+  int outputs = 0, lost = 0;
   for (size_t i = 0; i < n; i++)
     if (!is_read_only(r[i], type) && is_known(m, r[i], type)) outputs |= VARIABLES[VARIABLE_OF[r[i]]].causality == OUTPUT;
   if (m->length) return refused(m);
   if (outputs && m->s.phase == INITIALISING) preview(m);
+  for (size_t i = 0; i < n; i++)
+    if (m->s.phase == FAILED && r[i] < NW && !isfinite(m->s.w[r[i]])) lost = 1;
+  if (lost) { is_lost(m); tell(m, WARNING); return DISCARD; }
   for (size_t i = 0; i < n; i++)
     give(v, form, i, r[i] < NW ? type == BOOLEAN ? m->s.w[r[i]] != 0.0 : m->s.w[r[i]] : r[i] < TIME ? SIZES[r[i] - NW] : m->s.time);
   return OK;
@@ -421,13 +487,62 @@ static Status serialize(Slave *m, void *state, char bytes[], size_t n) {
   return OK;
 }
 
+static int is_index(const Indices *c, double number, int64_t index) { /* number: of a real array, which must be whole */
+  return number == (double)index && c->low <= index && index <= c->high && index % c->multiple == 0;
+}
+
+static int are_indices(const State *s, const Indices *c) {
+  int64_t before = INT64_MIN;
+  for (size_t i = c->begin; i < c->end; i += c->every) {
+    double number = c->is_integer ? 0.0 : s->x[i];
+    if (!(fabs(number) < 1e15)) return 0;
+    int64_t index = c->is_integer ? (int64_t)(((uint64_t)s->k[i] >> c->lowest) & c->mask) : (int64_t)number;
+    if (!is_index(c, c->is_integer ? (double)index : number, index) || (c->ascending && index < before)) return 0;
+    before = index;
+  }
+  return 1;
+}
+
+static int values_are_possible(Slave *m, const State *s) {
+  for (const Indices *c = INDICES; c->array; c++)
+    if (!are_indices(s, c)) { because(m, SAYS_IMPOSSIBLE, formatted(SAYS_INDEX_WRONG, c->array).text); return 0; }
+  for (Reference r = 0; r < NW; r++) {
+    const Variable *v = &VARIABLES[VARIABLE_OF[r]];
+    if (v->causality == OUTPUT || (in_range(v, s->w[r]) && is_whole(v, s->w[r]))) continue;
+    because(m, SAYS_IMPOSSIBLE, problem(r, s->w[r]).text);
+    return 0;
+  }
+  return 1;
+}
+
+static int clock_is_possible(Slave *m, const State *s) {
+  int unknown = (s->phase == INSTANTIATED || s->phase == FAILED) && isnan(s->time);
+  if (s->phase < INSTANTIATED || s->phase > FAILED) {
+    char phase[64];
+    snprintf(phase, sizeof phase, SAYS_IMPOSSIBLE_PHASE, s->phase);
+    because(m, SAYS_IMPOSSIBLE, phase);
+  } else if (!isfinite(s->time) && !unknown)
+    because(m, SAYS_IMPOSSIBLE, formatted(SAYS_IMPOSSIBLE_TIME, number(s->time).text).text);
+  return !m->length;
+}
+
+static int is_possible(Slave *m, const State *s) { /* kernels do not look again at what they use as an index */
+  if (!clock_is_possible(m, s)) return 0;
+  if (memcmp(s->k, TABLE, 8 * TABLE_LENGTH)) { because(m, SAYS_IMPOSSIBLE, SAYS_TABLE_DIFFERS); return 0; }
+  if (!are_finite(s->w, NW) || !are_finite(s->x, NX)) { because(m, SAYS_IMPOSSIBLE, SAYS_NUMBER_NOT_FINITE); return 0; }
+  return (s->phase != RUNNING && s->phase != TERMINATED) || values_are_possible(m, s);
+}
+
 static Status deserialize(Slave *m, const char bytes[], size_t n, void **state) {
   uint32_t sum = n < SEAL + CLOCK ? 0 : checksum((unsigned char *)bytes + SEAL, n - SEAL);
   if (n < SEAL + CLOCK || memcmp(bytes, "rockslav", 8) || memcmp(bytes + 8, &sum, 4)) return refuse(m, SAYS_DAMAGED);
   if (n != SERIALIZED || memcmp(bytes + SEAL + CLOCK, HEADER, sizeof HEADER)) return refuse(m, SAYS_FOREIGN);
-  if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
-  ((State *)*state)->mark = MARK;
-  ((State *)*state)->start = 0.0;
-  carry_fields(*state, (char *)bytes + SEAL, 0);
+  State *s = calloc(1, sizeof(State));
+  if (!s) return refuse(m, "there is no memory for another state");
+  s->mark = MARK;
+  carry_fields(s, (char *)bytes + SEAL, 0);
+  if (!is_possible(m, s)) { free(s); return refused(m); }
+  if (*state) { memcpy(*state, s, sizeof *s); free(s); }
+  else *state = s;
   return OK;
 }

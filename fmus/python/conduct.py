@@ -97,7 +97,10 @@ SENTENCES = {
     "FIXED": "%s = %s is refused: a parameter is fixed after the initialisation; reset the slave "
     "to change it",
     "BAD_INPUT": "at t = %.9g s: %s; correct what sends this value",
+    "DEFERRED": "%s; the first step is refused while that holds",
     "NOT_VALID_YET": "the outputs are not valid yet: %s",
+    "IMPOSSIBLE_PHASE": "its phase is %u",
+    "IMPOSSIBLE_TIME": "its time is %s s",
     "DAMAGED": "this is no serialized state of a rockshed FMU, or it is damaged: restore another "
     "one",
 }

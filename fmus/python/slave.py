@@ -32,10 +32,12 @@ from .conduct import (
     say,
 )
 from .foundations import (
+    IMPOSSIBLE_STATE,
     OK,
     Causality,
     Component,
     ComponentError,
+    DeferredError,
     Fmi2Slave,
     Fmi2Status,
     Instance,
@@ -116,12 +118,15 @@ class ComponentSlave(Fmi2Slave):
         self._compiled = False
         self._time, self._stop_time = math.nan, math.inf
         self._advance: Callable[..., int] = self.component.step
+        self._zeros = np.zeros_like(instance.w)
+        """As many zeros as values: their product is 0 while all values are finite."""
         self._values: Any = (ctypes.c_double * len(instance.w)).from_buffer(instance.w)  # type: ignore[arg-type]
         self._table = [
             (name, variable)
             for variable in self.component.layout.ordered
             for name in variable.element_names(self.sizes)
         ]
+        self._are_outputs = np.array([v.causality is Causality.OUTPUT for _, v in self._table])
         self._constants = {
             len(self._table) + i: value for i, value in enumerate(self.sizes.values())
         }
@@ -164,7 +169,12 @@ class ComponentSlave(Fmi2Slave):
     def exit_initialization_mode(self) -> None:
         """Fix the parameters and be ready to step."""
         self._expect(EXIT)
-        self._compute()
+        try:
+            self._compute()
+        except DeferredError as error:
+            text = say("DEFERRED", "; ".join(error.problems))
+            self._log(text, Fmi2Status.discard, "logStatusWarning")
+            self._stale = Stale.NOTHING
         self._compile_step()
         self._phase = Phase.RUNNING
         self._warn_of_unstable_step()
@@ -203,15 +213,17 @@ class ComponentSlave(Fmi2Slave):
             instance = self._instance
             status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
             if status != OK:
-                raise ComponentError(
-                    self.component.name,
-                    [say("STEP_FAILED", current_time, instance.message(status))],
-                )
+                raise self._failed(current_time, instance.message(status))
+            if self._zeros.dot(instance.w) != 0.0 and (lost := instance.lost()):
+                raise self._failed(current_time, lost)
             self._time = current_time + step_size
             return True
         except BaseException as error:
             self._fail(error)
             return False
+
+    def _failed(self, time: float, reason: str) -> ComponentError:
+        return ComponentError(self.component.name, [say("STEP_FAILED", time, reason)])
 
     def _why_not(self, time: float, step: float) -> str:
         if self._phase not in STEP.phases:
@@ -407,8 +419,14 @@ class ComponentSlave(Fmi2Slave):
             if not self._previewed:
                 self._compute()
         except ComponentError as error:
+            self._forget_lost()
             self._log(say("NOT_VALID_YET", "; ".join(error.problems)), Fmi2Status.warning)
         self._previewed = True
+
+    def _forget_lost(self) -> None:
+        """Take outputs that are no finite numbers for not yet computed ones, which are 0."""
+        w = self._instance.w
+        w[~np.isfinite(w) & self._are_outputs] = 0.0
 
     def _set(self, kind: Kind, vrs: list[int], values: list[Any]) -> None:
         self._expect(SET)
@@ -468,9 +486,24 @@ class ComponentSlave(Fmi2Slave):
 
         It is refused if it is damaged or of another component or size.
         """
-        self._instance.from_bytes(component_state(state))
+        content = component_state(state)
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
-        self._phase = Phase(phase)
+        if problem := _clock_problem(phase, time):
+            raise ComponentError(self.component.name, [IMPOSSIBLE_STATE % problem])
+        computed = phase in (Phase.RUNNING, Phase.TERMINATED)
+        restored = Instance(self.component, self.sizes)
+        restored.from_bytes(content, computed)
+        if computed and (problems := restored.value_problems()):
+            raise ComponentError(self.component.name, [IMPOSSIBLE_STATE % problems[0]])
+        self._take_over(restored, Phase(phase), time)
+
+    def _take_over(self, restored: Instance, phase: Phase, time: float) -> None:
+        """Continue from the values of an instance."""
+        own = self._instance
+        own.w[:] = restored.w
+        own.x[:] = restored.x
+        own.k[:] = restored.k
+        self._phase = phase
         self._time = time
         self._previewed = False
         self._stale = (
@@ -501,14 +534,13 @@ class ComponentSlave(Fmi2Slave):
             text = f"unexpected {type(error).__name__}: {error}"
         self._log(text, Fmi2Status.error)
 
-    def _log(self, text: str, status: Fmi2Status) -> None:
+    def _log(self, text: str, status: Fmi2Status, category: str | None = None) -> None:
         """Log with the instance's name.
 
         FMI takes a message for a printf format, some tools do not: no percent sign is safe.
         """
-        self.log(
-            f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent"), status
-        )
+        said = f"{self.instance_name} ({self.component.name}): {text}".replace("%", "percent")
+        self.log(said, status, category)
 
 
 def component_state(state: bytes) -> bytes:
@@ -537,6 +569,16 @@ def component_state(state: bytes) -> bytes:
     ):
         raise ComponentError("FMU state", [say("DAMAGED")])
     return state[_SEAL.size + _CLOCK.size :]
+
+
+def _clock_problem(phase: int, time: float) -> str:
+    """Return what no phase or time of a slave can be; empty if they can."""
+    if phase not in [*Phase]:
+        return say("IMPOSSIBLE_PHASE", phase)
+    may_be_unknown = phase in (Phase.INSTANTIATED, Phase.FAILED) and math.isnan(time)
+    if not math.isfinite(time) and not may_be_unknown:
+        return say("IMPOSSIBLE_TIME", number(time))
+    return ""
 
 
 def _is_block(references: list[int]) -> bool:

@@ -160,7 +160,7 @@ _START = ("run", "lab-impact", "--stop-time", "0.02", "--no-figures", "--quiet",
 
 def _timed_start(folder: Path) -> tuple[float, float]:
     """Run the command; return the times (s) to the first exchange and to its end."""
-    command = [sys.executable, "-m", "rockshed.commands.app", *_START, str(folder)]
+    command = [sys.executable, "-P", "-m", "rockshed.commands.app", *_START, str(folder)]
     # a warm start has bytecode
     kept = {name: text for name, text in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     began = time.time()

@@ -240,7 +240,7 @@ def _same(one: Value, other: Value | None) -> bool:
     """Tell whether two values are equal as numbers, or else as texts."""
     try:
         return other is not None and math.isclose(float(one), float(other), rel_tol=1e-9)
-    except ValueError:
+    except (TypeError, ValueError):
         return str(one) == str(other)
 
 

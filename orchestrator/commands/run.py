@@ -48,6 +48,13 @@ _Master = Annotated[
         metavar="sequential|jacobi", help="One component after the other, or all at once."
     ),
 ]
+_Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="NUMBER",
+        help="Relative tolerance of the solvers in FMUs; default is what each of them proposes.",
+    ),
+]
 _AllowUnstable = Annotated[
     bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")
 ]
@@ -82,6 +89,7 @@ def command(
     output_interval: _OutputInterval = None,
     state_interval: _StateInterval = None,
     master: _Master = None,
+    tolerance: _Tolerance = None,
     model: ModelName = None,
     coupling: CouplingScheme = None,
     allow_unstable: _AllowUnstable = False,
@@ -105,6 +113,7 @@ def command(
         output_interval=output_interval,
         state_interval=state_interval,
         master=master,
+        tolerance=tolerance,
     )
     request = Request(
         target, values, sizes, coupling, options, in_process, load_cell, model, runtime

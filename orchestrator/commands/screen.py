@@ -20,6 +20,8 @@ from rich.markup import escape
 from rich.padding import Padding
 from rich.text import Text
 
+from rockshed.components.common.cache import cache_problem
+
 from ..core.ending import asked_to_end, interrupt
 from ..core.errors import InputRefused, Problem
 from ..tables import Table
@@ -214,6 +216,7 @@ class Screen:
 
     def __init__(self, quiet: bool = False, as_json: bool = False) -> None:
         self.quiet, self.as_json = quiet, as_json
+        self._knows_cache = False
         self.out = Console(highlight=False, emoji=False)
         if not self.out.is_terminal and "COLUMNS" not in os.environ:
             self.out.width = WIDTH_ELSEWHERE
@@ -229,6 +232,13 @@ class Screen:
     def warn(self, text: str) -> None:
         """Say something that the user should know although it went on."""
         self._marked("yellow", "warning:", text)
+
+    def _tell_of_cache(self) -> None:
+        """Say once that no compiled code is kept, and why, before something is computed."""
+        problem = "" if self._knows_cache else cache_problem()
+        self._knows_cache = True
+        if problem:
+            self.warn(f"kernels are compiled at every start, about a minute: {problem}")
 
     def fail(self, text: str) -> None:
         """Say why the command did not go on."""
@@ -254,6 +264,7 @@ class Screen:
     @contextmanager
     def busy(self, text: str) -> Iterator[None]:
         """Show a spinner while something goes on that cannot tell how far it is."""
+        self._tell_of_cache()
         if self.quiet or not self.err.is_terminal:
             self.note(f"{text} ...")
             yield
@@ -275,6 +286,7 @@ class Screen:
         Bar
             Shows nothing where nobody looks.
         """
+        self._tell_of_cache()
         estimate = Estimate()
         if self.quiet or not self.err.is_terminal:
             yield Bar(self.note, self._told(estimate))
@@ -331,6 +343,7 @@ class Screen:
         callable
             Called with the number done and the number of all.
         """
+        self._tell_of_cache()
         if self.quiet or not self.err.is_terminal:
             tenths = 0
 

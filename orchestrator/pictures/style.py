@@ -9,7 +9,9 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 
 from ..core.results.reading import StoredRun
@@ -26,6 +28,7 @@ _LETTERS = 20
 _LONGEST_NAME = 80
 """Letters of a name in a picture, at most."""
 _LOOK = {
+    "text.parse_math": False,  # names of variables are text, whatever signs are in them
     "font.family": "sans-serif",
     "font.size": 9.0,
     "axes.titlesize": 9.0,
@@ -143,6 +146,12 @@ def over_time(axes: Axes, time: NDArray[np.float64]) -> None:
     """Let the axis of time reach from the first to the last row, if there are several."""
     if time[-1] > time[0]:
         axes.set_xlim(time[0], time[-1])
+
+
+def plain_powers(axis: Axis) -> None:
+    """Write the numbers of a logarithmic axis as text: formulas are not set in pictures."""
+    axis.set_major_formatter(lambda value, place: f"{value:g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def legend(axes: Axes, **options: Any) -> None:

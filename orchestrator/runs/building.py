@@ -13,7 +13,7 @@ from ..cases.registry import Case
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from .request import AUTO
-from .subsystem import component_of
+from .subsystem import component_of, is_whole, whole_sizes
 
 BOTH = "both"
 """In the place of a runtime: every one."""
@@ -84,17 +84,13 @@ def case_sizes(
             problems.append(
                 Problem(f"--size {name}", "there is no such size", nearest(name, known))
             )
-        elif not _is_whole(value):
+        elif not is_whole(value):
             problems.append(_not_whole(name, value))
         else:
-            sizes[owner][size] = value
+            sizes[owner][size] = int(value)
     for owner, model in chosen.models.items():
         problems += range_problems(f"--size, {owner}", model, sizes[owner])
     return sizes
-
-
-def _is_whole(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def _not_whole(name: str, value: object) -> Problem:
@@ -403,14 +399,16 @@ def build_fmu(
     built = component_of(name)
     problems = [] if runtime != BOTH else [Problem("runtime", "one at a time", "name one")]
     problems += _export_problems(export)
+    chosen: dict[str, int] = {}
     try:
-        built.with_sizes(sizes)
+        whole_sizes(built, sizes)
+        chosen = {name: int(number) for name, number in (sizes or {}).items()}
     except ComponentError as error:
         problems += [Problem(f"{built.name}: sizes", text) for text in error.problems]
     if problems:
         raise InputRefused(problems)
     place = Path(folder) if folder is not None else None
-    (file,) = _build([built], sizes or {}, {Runtime(export.chosen_runtime): place}, export)
+    (file,) = _build([built], chosen, {Runtime(export.chosen_runtime): place}, export)
     return file
 
 
@@ -449,7 +447,7 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Probl
         for size in sizes
         if size not in known
     ]
-    problems += [_not_whole(name, value) for name, value in sizes.items() if not _is_whole(value)]
+    problems += [_not_whole(name, value) for name, value in sizes.items() if not is_whole(value)]
     if problems:
         return problems
     for name in names:

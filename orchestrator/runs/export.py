@@ -85,7 +85,10 @@ def _store(name: str, fmu: str, folder: Path, sources: Mapping[str, Source]) -> 
     if isinstance(source, InProcess):
         from rockshed.fmus.build import build_component
 
-        return build_component(source.component, source.sizes, folder).name
+        try:
+            return build_component(source.component, source.sizes, folder).name
+        finally:
+            (folder / ".lock").unlink(missing_ok=True)  # nobody else builds into this new folder
     file = Path(fmu)
     copy = folder / file.name
     if copy.exists() and copy.read_bytes() != file.read_bytes():  # of the other runtime

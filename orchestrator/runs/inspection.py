@@ -91,7 +91,8 @@ def describe_fmu(path: Path) -> Overview:
             parts.append(_ports(f"{causality}s", ports))
     others = sum(port.causality not in _CAUSALITIES for port in description.ports.values())
     if others:
-        parts.append(f"and {others} variables of other causality")
+        noun = "variable" if others == 1 else "variables"
+        parts.append(f"and {others} {noun} of other causality")
     parts += _terminals(file.content(_TERMINALS))
     return Overview([*parts, *(f"warning: {text}" for text in description.warnings)])
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rockshed.components.catalogue import component
+from rockshed.components.common.ports import Kind
 from rockshed.components.common.units import ms
 
 from ..cases.registry import Case, ComponentSizes, case, differences, model_changes, references
@@ -17,7 +18,7 @@ from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.renaming import with_present_names
-from ..core.system.system import SystemSpec, load_system, system_from, with_values
+from ..core.system.system import ONE_VALUE, SystemSpec, load_system, system_from, with_values
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import Note, case_fmus, case_sizes, own_sizes, silent
 from .request import AUTO, Request
@@ -83,6 +84,9 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
         raise InputRefused([_not_an_fmu(request.target)])
     known = list(problems)
     request, warnings = _with_present_names(request)
+    asked = request
+    if not request.is_file:
+        request = _without_foreign_values(request, known)
     if request.is_file:
         job = _from_file(request, known)
     else:
@@ -93,7 +97,7 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
         raise InputRefused(known + plan_problems(system, job.sources))
     if "case" in job.facts:
         system = _with_derived(system, request, job.facts)
-    facts: dict[str, Any] = {**job.facts, "request": request.as_data()}
+    facts: dict[str, Any] = {**job.facts, "request": asked.as_data()}
     if request.load_cell:
         facts["load_cell"] = request.load_cell
     if warnings:
@@ -112,6 +116,40 @@ def _with_present_names(request: Request) -> tuple[Request, list[str]]:
     renamed = {name: component(model).layout.renamed for name, model in models.items()}
     values, warnings = with_present_names(request.values, renamed)
     return replace(request, values=values), warnings
+
+
+def _without_foreign_values(request: Request, problems: list[Problem]) -> Request:
+    """Return the request for a case without texts and lists in the place of numbers.
+
+    A case computes with its values before its FMUs are asked.
+    """
+    models = case(request.target).models
+    kept = {}
+    for name, value in request.values.items():
+        owner, _, key = name.partition(".")
+        variables = component(models[owner]).layout.variables if owner in models else ()
+        declared = {v.name: v for v in variables}.get(key.partition("[")[0])
+        is_word = declared is not None and declared.kind is not Kind.REAL
+        reason = "" if is_word else _why_no_number(value)
+        if reason:
+            what = f" ({declared.description})" if declared else ""
+            remedy = f"set {name}{what} to another value"
+            problems.append(Problem(name, f"{value!r}: {reason}", remedy))
+        else:
+            kept[name] = value
+    return replace(request, values=kept)
+
+
+def _why_no_number(value: object) -> str:
+    if isinstance(value, list | tuple | dict):
+        return ONE_VALUE
+    try:
+        float(value)  # type: ignore[arg-type]
+    except ValueError:
+        return "must be a number"
+    except TypeError:
+        return ONE_VALUE
+    return ""
 
 
 def _not_an_fmu(target: str) -> Problem:

@@ -4,10 +4,31 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+import numpy as np
+
 from ..core.system.system import Value
 
 AUTO = "auto"
 """In the place of a runtime: native FMUs where all are there and up to date, else Python."""
+
+
+def plain(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values with numbers of numpy as those of Python, which files can hold.
+
+    Parameters
+    ----------
+    entries : mapping of str to Any
+        Values, sizes or options by name.
+
+    Returns
+    -------
+    dict of str to Any
+        The same in the same order.
+    """
+    return {
+        name: value.item() if isinstance(value, np.generic) else value
+        for name, value in entries.items()
+    }
 
 
 @dataclass(frozen=True)

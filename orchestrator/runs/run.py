@@ -69,6 +69,8 @@ class Run(reading.StoredRun):
         ------
         UnknownName
             The run has no variable of a name.
+        InputRefused
+            No name is there.
 
         Examples
         --------
@@ -78,6 +80,9 @@ class Run(reading.StoredRun):
         >>> [axes.get_ylabel() for axes in figure.axes]
         ['m/s', 'N']
         """
+        if not names:
+            remedy = f"name some, {', '.join([*self][1:4])} for instance; * stands for any text"
+            raise InputRefused([Problem("plot", "there is no variable to draw", remedy)])
         from ..pictures.variables import draw  # imports matplotlib
 
         chosen = dict.fromkeys(

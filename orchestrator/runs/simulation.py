@@ -4,7 +4,7 @@ import weakref
 from contextlib import suppress
 from pathlib import Path
 
-from ..core.errors import RunFailed
+from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
 from ..core.results.reading import add_metrics
@@ -12,11 +12,11 @@ from ..core.run import simulate as simulate_spec
 from ..metrics import comparison
 from ..temporary import TemporaryFolder
 from .run import Run, read_run
-from .system import System
+from .system import System, case
 
 
 def simulate(
-    system: System,
+    system: System | str,
     folder: str | Path | None = None,
     *,
     progress: Progress | None = None,
@@ -28,8 +28,8 @@ def simulate(
 
     Parameters
     ----------
-    system : System
-        From :func:`rockshed.case`, ``System.load`` or ``System.new``.
+    system : System or str
+        From :func:`rockshed.case`, ``System.load`` or ``System.new``; or the name of a case.
     folder : str or Path, optional
         Folder of the results, new, empty or that of an earlier run, which is replaced. By default
         a temporary folder that is removed when nothing refers to the run any more;
@@ -63,6 +63,8 @@ def simulate(
     >>> run.metrics["simulated_time"].value
     0.001
     """
+    system = _system(system)
+    system.refuse_empty()
     temporary = TemporaryFolder("rockshed-") if folder is None else None
     place = Path(temporary.name) / system.name if temporary else Path(str(folder))
     try:
@@ -75,6 +77,17 @@ def simulate(
             temporary.cleanup()
         raise
     return _kept(measured(place), temporary)
+
+
+def _system(system: System | str) -> System:
+    """Return a system, or that of a case by its name."""
+    if isinstance(system, str):
+        return case(system)
+    if not isinstance(system, System):
+        reason = f"cannot be made of {type(system).__name__}"
+        remedy = "give a System (rockshed.case, System.load, System.new) or the name of a case"
+        raise InputRefused([Problem("simulation", reason, remedy)])
+    return system
 
 
 def _carry_out(

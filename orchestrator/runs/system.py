@@ -6,7 +6,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from rockshed.components.common.component import Component
+from rockshed.components.common.component import Component, ComponentError
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
@@ -20,11 +20,11 @@ from ..core.system.system import (
 )
 from ..tables import Table
 from .building import Note, silent
-from .export import export_system
+from .export import SYSTEM, export_system
 from .inspection import Overview, describe_system
 from .job import Job, plan_problems, prepare
-from .request import Request
-from .subsystem import component_of
+from .request import Request, plain
+from .subsystem import Subsystem, component_of, whole_sizes
 
 _OF_REQUEST = ("load_cell", "runtime", "in_process")
 """Options of a case that are no keys of its system."""
@@ -55,8 +55,8 @@ class System:
         Parameters
         ----------
         path : str or Path
-            A TOML file, as ``rockshed info CASE --toml`` shows one. Relative paths of FMUs count
-            from its folder.
+            A TOML file, as ``rockshed info CASE --toml`` shows one, or a folder that :meth:`save`
+            wrote. Relative paths of FMUs count from the folder of the file.
 
         Returns
         -------
@@ -69,6 +69,8 @@ class System:
             There is no such file, or its content is not in order; with every reason.
         """
         file = Path(path)
+        if file.is_dir():
+            file = file / SYSTEM
         return cls.prepared(Request(str(file if file.suffix == ".toml" else file.absolute())))
 
     @classmethod
@@ -158,9 +160,9 @@ class System:
             There is no such component, or a shared value is given several values.
         """
         if self.request is not None:
-            merged = {**self.request.values, **values}
+            merged = {**self.request.values, **plain(values)}
             return System.prepared(replace(self.request, values=merged))
-        return self._with(with_values(self.spec, values), values)
+        return self._with(with_values(self.spec, values), plain(values))
 
     def with_sizes(self, sizes: Mapping[str, int]) -> "System":
         """Return the case of this system, made again in other sizes.
@@ -184,7 +186,8 @@ class System:
             reason = "is not made from a case, and only cases are made again in other sizes"
             remedy = "give the sizes when a component is added, or build its FMU in them"
             raise InputRefused([Problem(self.name, reason, remedy)])
-        return System.prepared(replace(self.request, sizes={**self.request.sizes, **sizes}))
+        merged = {**self.request.sizes, **plain(sizes)}
+        return System.prepared(replace(self.request, sizes=merged))
 
     def with_options(self, **options: Any) -> "System":
         """Return the system with other keys: steps, times, master, what is recorded.
@@ -207,14 +210,14 @@ class System:
             Keys that do not exist, values that do not fit.
         """
         if self.request is not None:
-            merged = {**self.request.options, **options}
+            merged = {**self.request.options, **plain(options)}
             return System.prepared(replace(self.request, options=merged))
-        return self._with(self._checked(options), options)
+        return self._with(self._checked(plain(options)), plain(options))
 
     def add(
         self,
         name: str,
-        component: str | Path | Component,
+        component: str | Path | Component | Subsystem,
         values: Mapping[str, Value] | None = None,
         *,
         sizes: Mapping[str, int] | None = None,
@@ -226,9 +229,10 @@ class System:
         ----------
         name : str
             Name of the component in the system.
-        component : str, Path or Component
+        component : str, Path, Component or Subsystem
             Name of a component of the catalogue, a component of one's own, or the path of an FMU
-            file (``.fmu``). Components run in this process, without an FMU.
+            file (``.fmu``). Components run in this process, without an FMU. Of a subsystem its
+            component is taken in its sizes, not its values and state.
         values : mapping of str to Value, optional
             Parameters that differ from the component's start values (SI units).
         sizes : mapping of str to int, optional
@@ -244,7 +248,7 @@ class System:
         Raises
         ------
         InputRefused
-            The name is taken or no name, or an FMU file is given sizes.
+            The name is taken or no name, or sizes that do not fit or go with an FMU file.
         UnknownName
             The catalogue has no component of this name.
         """
@@ -252,6 +256,9 @@ class System:
             remedy = "choose another name"
             raise InputRefused([Problem(name, "is there already", remedy)])
         sources = dict(self.job.sources)
+        if isinstance(component, Subsystem):
+            sizes = {**component.instance.sizes, **(sizes or {})}
+            component = component.component
         if str(component).endswith(".fmu") and not isinstance(component, Component):
             fmu = str(component)
             if sizes:
@@ -259,7 +266,7 @@ class System:
                 raise InputRefused([Problem(f"{name}: sizes", reason, "leave them out")])
         else:
             made = component_of(component if isinstance(component, Component) else str(component))
-            sources[name] = _in_process(made, sizes)
+            sources[name] = _in_process(name, made, sizes)
             fmu = f"{made.name} (in process)"
         spec = {"fmu": fmu, "step": step, "parameters": dict(values or {})}
         entries: dict[str, Any] = {"components": {**self._data()["components"], name: spec}}
@@ -341,6 +348,34 @@ class System:
         )
         return self._detached({"bonds": {**self._data()["bonds"], name: bond.model_dump()}})
 
+    def share(self, name: str, value: Value, targets: str | Sequence[str]) -> "System":
+        """Return the system with one value that several parameters take.
+
+        Parameters
+        ----------
+        name : str
+            Name of the value, for :meth:`with_values` and ``--set``.
+        value : bool, int, float or str
+            In SI units.
+        targets : str or sequence of str
+            Parameters that take it, ``component.parameter``; they have no value of their own.
+
+        Returns
+        -------
+        System
+            No longer tied to the case or file that it came from.
+
+        Raises
+        ------
+        InputRefused
+            The name is taken or no name, or there is no target.
+        """
+        if name in self.spec.shared:
+            raise InputRefused([Problem(name, "is shared already", "with_values changes it")])
+        takers = [targets] if isinstance(targets, str) else list(targets)
+        shared = {**self._data()["shared"], name: {"value": value, "targets": takers}}
+        return self._detached({"shared": shared})
+
     def _detached(self, entries: Mapping[str, Any]) -> "System":
         """Return the system with other entries, no longer compared with what others found."""
         facts = dict(self.job.facts)
@@ -380,9 +415,22 @@ class System:
         list of Problem
             Everything that is wrong with it; empty if it can be run.
         """
-        if not self.spec.components:
-            return [Problem(self.name, "has no component", "add one")]
+        try:
+            self.refuse_empty()
+        except InputRefused as refusal:
+            return refusal.problems
         return plan_problems(self.spec, self.job.sources)
+
+    def refuse_empty(self) -> None:
+        """Refuse a system without components.
+
+        Raises
+        ------
+        InputRefused
+            There is no component yet.
+        """
+        if not self.spec.components:
+            raise InputRefused([Problem(self.name, "has no component", "add one")])
 
     def describe(self) -> Overview:
         """Describe components, values that differ from the components' own, and connections.
@@ -395,8 +443,9 @@ class System:
         Raises
         ------
         InputRefused
-            The system does not fit its FMUs.
+            There is no component, or the system does not fit its FMUs.
         """
+        self.refuse_empty()
         return describe_system(self.job)
 
     def save(self, folder: str | Path) -> Path:
@@ -415,8 +464,9 @@ class System:
         Raises
         ------
         InputRefused
-            The folder holds something, or cannot be written.
+            There is no component, or the folder holds something or cannot be written.
         """
+        self.refuse_empty()
         return export_system(self.spec, Path(folder), self.job.sources)
 
     def __repr__(self) -> str:
@@ -433,10 +483,14 @@ class System:
         return f"<p>{escape(repr(self)[1:-1])}</p>{table._repr_html_()}"
 
 
-def _in_process(made: Component, sizes: Mapping[str, int] | None) -> Source:
+def _in_process(name: str, made: Component, sizes: Mapping[str, int] | None) -> Source:
     from rockshed.fmus.in_process import InProcess  # imports pythonfmu, which FMU files do not need
 
-    return InProcess(made, sizes)
+    try:
+        return InProcess(made, whole_sizes(made, sizes))
+    except ComponentError as error:
+        problems = [Problem(f"{name}: sizes", text) for text in error.problems]
+        raise InputRefused(problems) from error
 
 
 def _ends(bond: str, names: str | Sequence[str]) -> tuple[str, list[str]]:
@@ -501,7 +555,15 @@ def case(
     <System lab-impact: sand, rock, beam; 0.01 s in exchanges of 1e-05 s>
     """
     own = {key: options.pop(key) for key in _OF_REQUEST if key in options}
-    request = Request(name, values or {}, sizes or {}, coupling, options, model=model, **own)
+    request = Request(
+        name,
+        plain(values or {}),
+        plain(sizes or {}),
+        coupling,
+        plain(options),
+        model=model,
+        **own,
+    )
     if request.is_file:
         remedy = "System.load reads system files"
         raise InputRefused([Problem(name, "is a file, and not the name of a case", remedy)])

@@ -128,7 +128,7 @@ class MockSlave:
         self.values[self.names[reference]] = text
         return 0
 
-    def setup_experiment(self, start, stop) -> int:
+    def setup_experiment(self, start, stop, tolerance=None) -> int:
         return 0
 
     def enter_initialisation(self) -> int:

@@ -115,7 +115,7 @@ def test_an_input_driven_twice():
         (
             "speed",
             1.0,
-            "body.speed: is of the causality output and cannot be set; set parameters and unconnected inputs only",
+            "body.speed: is of the causality output and cannot be set; set parameters, unconnected inputs and variables with a start value only",
         ),
     ],
 )

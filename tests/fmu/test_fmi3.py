@@ -200,7 +200,7 @@ VALUES = {
     ),
     "too many values of several": (
         lambda t: t.fmu.setFloat64([reference(t, "inflow"), reference(t, "extra")], [0.0] * 5),
-        r"5 values are passed for the 4 of inflow\[1\], extra\[3\]",
+        r"5 values are passed for the 4 of inflow, extra\[3\]",
     ),
     "no room for all": (
         lambda t: t.fmu.getFloat64([reference(t, "level")], 2),

@@ -111,7 +111,9 @@ def heavier_rock(tmp_path_factory):
     folder = tmp_path_factory.mktemp("changed") / "falling_rock"
     shutil.copytree(rock.folder, folder)
     kernel = folder / "kernel.py"
-    kernel.write_text(kernel.read_text().replace("- gravity)", "- 2.0 * gravity)"))
+    own, changed = "w[V.gravity], dt)", "2.0 * w[V.gravity], dt)"
+    assert own in kernel.read_text()
+    kernel.write_text(kernel.read_text().replace(own, changed))
     return build_component(
         dataclasses.replace(rock, folder=folder), destination=tmp_path_factory.mktemp("other")
     )

@@ -37,7 +37,7 @@ C_LIBRARY = set(
     re.findall(
         r"\w+",
         """
-    acos asin atan atan2 erfc exp expm1 log log1p pow sin sincos sqrt
+    acos asin atan atan2 bcmp erfc exp expm1 floor log log1p pow sin sincos sqrt
     calloc cos fabs free malloc memcmp memcpy memmove memset nextafter pthread_create pthread_join snprintf
     strcmp strcpy strlen strtol tan vsnprintf
     __cxa_finalize __gmon_start__ _ITM_deregisterTMCloneTable _ITM_registerTMCloneTable __stack_chk_fail
@@ -224,6 +224,18 @@ def test_zig_builds_what_runs_here(monkeypatch, probe, tmp_path):
     with Host(build_component(probe, destination=tmp_path, runtime=Runtime.NATIVE)) as host:
         host.start(inflow=1.0).steps(3, 0.1)
         assert not host.messages
+
+
+@needs_zig
+@linux
+def test_a_library_for_linux_runs_with_the_c_library_of_2012(monkeypatch, probe, tmp_path):
+    monkeypatch.delenv("CC", raising=False)
+    file = build_component(probe, destination=tmp_path, runtime=Runtime.NATIVE)
+    with zipfile.ZipFile(file) as archive:
+        library = archive.read("binaries/linux64/Probe.so")
+    needed = {tuple(map(int, v.split(b"."))) for v in re.findall(rb"GLIBC_([0-9.]+)\0", library)}
+    assert needed
+    assert max(needed) <= (2, 17)
 
 
 # ------------------------------------------------------------------ the shim

@@ -59,3 +59,41 @@ def test_an_fmu_is_built_in_a_size_and_taken_into_a_system(tmp_path):
     assert run.provenance["components"]["beam"]["model"] == "RBSMBeam"
     assert "beam.force.y[4]" not in run
     assert "beam.position.y[4]" in run
+
+
+def test_a_component_is_stepped_only_when_it_can_be():
+    rock = rockshed.component("FallingRock")
+    with pytest.raises(rockshed.ComponentError, match=r"call initialise\(\) first"):
+        rock.step(1e-3)
+    rock.initialise()
+    for step in (0.0, -1e-3, float("nan"), float("inf")):
+        with pytest.raises(rockshed.ComponentError, match="must be a positive number"):
+            rock.step(step)
+    rock.step(1e-3)
+    assert rock.time == 1e-3
+
+
+def test_a_component_that_failed_steps_no_more():
+    rock = rockshed.component("FallingRock")
+    rock.initialise()
+    rock.instance.step = lambda time, step: 1 / 0
+    with pytest.raises(ZeroDivisionError):
+        rock.step(1e-3)
+    with pytest.raises(rockshed.ComponentError, match="an earlier step has failed"):
+        rock.step(1e-3)
+
+
+def test_values_that_a_component_does_not_take_are_refused():
+    rock = rockshed.component("FallingRock")
+    with pytest.raises(rockshed.ComponentError, match=r"mass = 'heavy': must be a number"):
+        rock["mass"] = "heavy"
+    with pytest.raises(rockshed.ComponentError, match="takes one number"):
+        rock["mass"] = [1.0, 2.0]
+    with pytest.raises(rockshed.ComponentError, match="is an output"):
+        rock["velocity.y"] = 1.0
+    rock.initialise()
+    with pytest.raises(rockshed.ComponentError, match="is fixed after initialise"):
+        rock["mass"] = 5.0
+    with pytest.raises(rockshed.ComponentError, match="must be a finite number"):
+        rock["force.y"] = float("nan")
+    rock["force.y"] = 3.0

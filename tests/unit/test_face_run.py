@@ -82,6 +82,14 @@ def test_any_variables_are_drawn_in_a_panel_for_each_unit(run):
         run.plot("rock.velocity.q")
 
 
+def test_a_series_is_calculated_with(run):
+    height = run["rock.position.y"]
+    assert (2.0 * height - height == height.values).all()
+    assert height.max() == height.values.max() >= height.min()
+    with pytest.raises(rockshed.InputRefused, match="no variable to draw"):
+        run.plot()
+
+
 def test_pictures_are_files_by_name(run, tmp_path):
     drawn = run.figures(tmp_path / "drawn")
     assert {"forces", "energy"} <= set(drawn)

@@ -1,5 +1,8 @@
 """``rockshed.System``: made from a case, a file or nothing, and changed without changing the first."""
 
+import json
+
+import numpy as np
 import pytest
 
 import rockshed
@@ -90,6 +93,62 @@ def test_a_system_from_nothing_is_the_case(tmp_path):
     one, other = rockshed.simulate(static), rockshed.simulate(made)
     for name in ("sand.rock.force.y", "coupling.sand_rock.energy"):
         assert (one[name].values == other[name].values).all()
+
+
+def test_numbers_of_numpy_are_taken_and_lists_are_refused(recwarn):
+    system = lab(values={"sand.modulus": np.int64(300000)}, sizes={"sand.discs": np.int64(740)})
+    system = system.with_values({"sand.damping": np.float64(0.3)}).with_options(
+        stop_time=np.float64(0.001)
+    )
+    assert json.dumps(dict(system.job.facts["request"]))
+    assert value(system, "sand", "modulus") == 300000
+    with pytest.raises(
+        rockshed.InputRefused, match=r"sand\.damping: \[0\.1, 0\.2\]: takes one number"
+    ):
+        system.with_values({"sand.damping": [0.1, 0.2]})
+    with pytest.raises(rockshed.InputRefused, match="'abc': must be a number"):
+        rockshed.simulate(lab(values={"sand.damping": "abc"}))
+    assert not [warning for warning in recwarn if "Pydantic" in str(warning.message)]
+
+
+def test_a_value_is_shared():
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    with pytest.raises(rockshed.InputRefused, match="takes one number"):
+        fall.add("rock", "FallingRock", {"mass": [1.0, 2.0]})
+    fall = fall.add("rock", "FallingRock").add("other", rockshed.component("FallingRock"))
+    shared = fall.share("mass", 8.0, ["rock.mass", "other.mass"])
+    assert shared.validate() == []
+    assert shared.with_values({"rock.mass": 9.0}).spec.shared["mass"].value == 9.0
+    with pytest.raises(rockshed.InputRefused, match="is shared already"):
+        shared.share("mass", 8.0, "rock.mass")
+
+
+def test_a_saved_folder_is_read_under_the_name_in_its_file(tmp_path):
+    saved(tmp_path)
+    again = rockshed.System.load(tmp_path / "fall")
+    assert again.name == "fall"
+    assert sorted(file.name for file in (tmp_path / "fall").iterdir()) == [
+        "FallingRock.fmu",
+        "system.toml",
+    ]
+
+
+def test_a_bond_takes_forces_before_positions():
+    static = rockshed.case("static-test", in_process=True)
+    problems = static.bond("b", "rock.position.x", "sand.rock.force.x").validate()
+    assert any("is in m, and no force or torque" in str(problem) for problem in problems)
+
+
+def test_an_empty_system_is_refused_and_a_case_is_run_by_name(tmp_path):
+    empty = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.01)
+    for use in (rockshed.simulate, rockshed.System.describe, lambda it: it.save(tmp_path / "a")):
+        with pytest.raises(rockshed.InputRefused, match="has no component"):
+            use(empty)
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(rockshed.InputRefused, match="did you mean lab-impact"):
+        rockshed.simulate("lab-impakt")
+    with pytest.raises(rockshed.InputRefused, match="or the name of a case"):
+        rockshed.simulate(3)
 
 
 def test_connections_are_texts_or_two_names():

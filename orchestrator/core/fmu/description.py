@@ -69,6 +69,9 @@ class Port:
         In words.
     annotation : Annotation
         Role, older names and figures, where the description has them.
+    has_own_start : bool
+        Whether an output or a local variable begins with a start value that may be set (FMI:
+        ``initial`` is exact or approx).
     """
 
     name: str
@@ -82,6 +85,12 @@ class Port:
     start: str | None = None
     description: str = ""
     annotation: Annotation = NOTHING
+    has_own_start: bool = False
+
+    @property
+    def can_be_set(self) -> bool:
+        """Tell whether a value can be given before the initialisation."""
+        return self.has_own_start or self.causality in ("parameter", "input")
 
     @property
     def unit_name(self) -> str:
@@ -114,6 +123,8 @@ class Description:
         Kind of data in a serialized state; empty where the description does not tell.
     pictures : tuple of mapping
         Pictures of the outputs, as data.
+    tolerance : float, optional
+        Relative tolerance that the description proposes (FMI: DefaultExperiment).
     """
 
     model: str
@@ -126,6 +137,7 @@ class Description:
     warnings: tuple[str, ...] = ()
     contents: str = ""
     pictures: tuple[Mapping[str, Any], ...] = ()
+    tolerance: float | None = None
 
     @cached_property
     def renamed_bases(self) -> dict[str, str]:

@@ -242,7 +242,17 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         warnings,
         told.contents,
         told.pictures,
+        _tolerance(model.defaultExperiment),
     )
+
+
+def _tolerance(experiment: Any) -> float | None:
+    """Return the tolerance of a DefaultExperiment; None where there is no positive one."""
+    try:
+        value = float(getattr(experiment, "tolerance", None) or 0.0)
+    except ValueError:
+        return None
+    return value if 0.0 < value < 1.0 else None
 
 
 def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
@@ -369,6 +379,16 @@ def _port(variable: ModelVariable, units: dict[str, UnitDefinition]) -> Port:
         {item.name: int(item.value) for item in items},
         variable.start,
         variable.description or "",
+        has_own_start=_has_own_start(variable),
+    )
+
+
+def _has_own_start(variable: ModelVariable) -> bool:
+    """Tell whether an output or a local variable takes a start value."""
+    return (
+        variable.causality in ("output", "local")
+        and variable.initial in ("exact", "approx")
+        and variable.variability != "constant"
     )
 
 
@@ -538,9 +558,9 @@ class FmuSlave:
         """Set one variable of the kind String."""
         return self._status(self._fmu.setString, [reference], [text])
 
-    def setup_experiment(self, start: float, stop: float) -> int:
-        """Tell start and end of the run (s)."""
-        return self._status(self._fmu.setupExperiment, None, start, stop)
+    def setup_experiment(self, start: float, stop: float, tolerance: float | None = None) -> int:
+        """Tell start and end of the run (s), and the relative tolerance of the FMU's solver."""
+        return self._status(self._fmu.setupExperiment, tolerance, start, stop)
 
     def enter_initialisation(self) -> int:
         """Enter the initialisation mode of the FMU."""

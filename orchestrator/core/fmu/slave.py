@@ -122,8 +122,8 @@ class Slave(Protocol):
     def set_text(self, reference: int, text: str) -> int:
         """Set one variable of the kind String."""
 
-    def setup_experiment(self, start: float, stop: float) -> int:
-        """Tell the time (s) at which the run starts and the time at which it ends."""
+    def setup_experiment(self, start: float, stop: float, tolerance: float | None = None) -> int:
+        """Tell the times (s) at which the run starts and ends, and the solver's tolerance."""
 
     def enter_initialisation(self) -> int:
         """Enter the initialisation mode: parameters are set, inputs may still change."""

@@ -10,7 +10,17 @@ import numpy as np
 
 from ..errors import InputRefused, Problem
 from ..fmu.description import Port
-from ..fmu.slave import ERROR, OK, WARNING, Slave, Source, status_name, times, without_name, worst
+from ..fmu.slave import (
+    DISCARD,
+    OK,
+    WARNING,
+    Slave,
+    Source,
+    status_name,
+    times,
+    without_name,
+    worst,
+)
 from ..system.plan import Plan
 from .buses import Buses
 
@@ -102,7 +112,7 @@ def initialise(
     """
     plan = buses.plan
     span = (plan.timing.seconds(0), plan.timing.seconds(plan.timing.exchanges))
-    _phase(slaves, lambda slave: _begin(slave, plan.starts[slave.name], *span), entering)
+    _phase(slaves, lambda slave: _begin(plan, slave, *span), entering)
     before = _settle(buses, slaves, entering)
     _phase(slaves, lambda slave: slave.exit_initialisation(), entering)
     unsettled = _settle(buses, slaves, entering) or before
@@ -137,15 +147,16 @@ def _refuse_lost(buses: Buses) -> None:
         raise InputRefused(problems)
 
 
-def _begin(slave: Slave, starts: list[tuple[Port, float | str]], start: float, stop: float) -> int:
+def _begin(plan: Plan, slave: Slave, start: float, stop: float) -> int:
     status = OK
-    for port, value in starts:
+    for port, value in plan.starts[slave.name]:
         if isinstance(value, str):
             status = worst(status, slave.set_text(port.reference, value))
         else:
             reference = np.array([port.reference], np.uint32)
             status = worst(status, slave.set(reference, np.array([value]), port.kind))
-    return worst(status, slave.setup_experiment(start, stop), slave.enter_initialisation())
+    told = slave.setup_experiment(start, stop, plan.tolerance(slave.name))
+    return worst(status, told, slave.enter_initialisation())
 
 
 def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: Entering) -> None:
@@ -163,8 +174,11 @@ def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: 
 
 
 def _refusals(slave: Slave, status: int) -> list[Problem]:
-    """Return what a slave refused, by its status or by a message with the status Error."""
-    errors = [text for severity, text in slave.messages if severity >= ERROR]
+    """Return what a slave refused, by its status or by a message with the status Error.
+
+    A message with the status Discard tells that the first step will be refused.
+    """
+    errors = [text for severity, text in slave.messages if severity >= DISCARD]
     if OK <= status <= WARNING and not errors:
         return []
     silence = [f"returned {status_name(status)} without a message"]

@@ -5,7 +5,6 @@ It is compiled by numba once, kept on this computer, and from then on loaded wit
 
 import ctypes
 import hashlib
-import os
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -13,15 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
-from platformdirs import user_cache_path
 
-from ...files import write_file
+from rockshed.components.common.cache import cache_directory
+from rockshed.components.common.kept import is_sound, keep, kept
+
 from ...versions import version_of
 from .tables import ENTRY, IntegerTable
-
-CACHE_VARIABLE = "ROCKSHED_CACHE_DIR"
-"""Environment variable that names the folder in which machine code is kept; by default it is
-``rockshed`` in the user's cache folder, as for compiled kernels."""
 
 Advance = Callable[[IntegerTable, int, int], tuple[int, int, int]]
 """The function :func:`rockshed.core.loop.compiled.advance`, with the :func:`~.tables.head` of the
@@ -77,27 +73,35 @@ def _features() -> str:
 
 def _code(target: llvm.TargetMachine) -> bytes:
     """Return object code from the cache, or compile and keep it."""
-    file = _file()
-    with suppress(OSError):
-        return file.read_bytes()
+    file = kept_file()
+    code = kept(file) if file else None
+    if code is not None:
+        return code
     from .compiled import object_code
 
     code = object_code(target)
-    with suppress(OSError):  # then it is compiled again next time
-        file.parent.mkdir(parents=True, exist_ok=True)
-        write_file(file, code)
+    if file:
+        with suppress(OSError):  # then it is compiled again next time
+            keep(file, code)
     return code
 
 
 def is_kept() -> bool:
     """Tell whether the loop has been compiled for this computer already."""
-    return _file().is_file()
+    file = kept_file()
+    return file is not None and is_sound(file)
 
 
-def _file() -> Path:
-    chosen = os.environ.get(CACHE_VARIABLE)
-    folder = Path(chosen).expanduser() if chosen else user_cache_path("rockshed", appauthor=False)
-    return folder / f"loop-{_stamp()}.o"
+def kept_file() -> Path | None:
+    """Return the file of the machine code.
+
+    Returns
+    -------
+    Path or None
+        None where nothing is kept.
+    """
+    folder = cache_directory()
+    return folder and folder / f"loop-{_stamp()}.o"
 
 
 @cache

@@ -313,7 +313,7 @@ class RunFolder:
         content = read_data(self.running / RUN)
         entries = {**content, FILES: sorted(content_of(self.running))}
         if self.folder.exists():
-            aside = self.folder.with_name(f".{secrets.token_hex(4)}{_ASIDE}")
+            aside = _beside(self.folder, f".{secrets.token_hex(4)}{_ASIDE}")
             write_json(self.running / RUN, {**entries, _REPLACES: aside.name})
             self.folder.rename(aside)
             self.running.rename(self.folder)
@@ -349,7 +349,7 @@ def settle(folder: Path) -> None:
 def _aside(folder: Path, content: Mapping[str, Any]) -> Path | None:
     """Return the place to which a swap moved the old folder."""
     name = str(content.get(_REPLACES, ""))
-    return folder.with_name(name) if re.fullmatch(rf"\.[0-9a-f]{{8}}{_ASIDE}", name) else None
+    return _beside(folder, name) if re.fullmatch(rf"\.[0-9a-f]{{8}}{_ASIDE}", name) else None
 
 
 def _carry(source: Path, target: Path) -> None:
@@ -359,7 +359,7 @@ def _carry(source: Path, target: Path) -> None:
             _carry(entry, target / entry.name)
         return
     target.parent.mkdir(parents=True, exist_ok=True)
-    names = (target.with_name(f"{target.stem}-{n}{target.suffix}") for n in count(2))
+    names = (_beside(target, f"{target.stem}-{n}{target.suffix}") for n in count(2))
     source.rename(next(path for path in chain([target], names) if not os.path.lexists(path)))
 
 
@@ -392,6 +392,11 @@ def leftovers(folder: Path, live: Path | None = None) -> list[Path]:
     return [path for path in _numbered(folder).values() if path != live and is_marked(path)]
 
 
+def _beside(path: Path, name: str) -> Path:
+    """Return the place of another name in the same folder; a root has no name that could change."""
+    return path.parent / name
+
+
 def _numbered(folder: Path) -> dict[int, Path]:
     """Return everything that is called like a folder in which a run writes, by number."""
     pattern = re.compile(re.escape(folder.name) + r"\.running(?:-(\d+))?", re.DOTALL)
@@ -399,14 +404,14 @@ def _numbered(folder: Path) -> dict[int, Path]:
         names = map(pattern.fullmatch, os.listdir(folder.parent))
     except OSError:
         return {}
-    found = {int(name[1] or 1): folder.with_name(name[0]) for name in names if name}
+    found = {int(name[1] or 1): _beside(folder, name[0]) for name in names if name}
     return dict(sorted(found.items()))
 
 
 def free_running_folder(folder: Path) -> Path:
     """Return the folder in which the next run may write: there is nothing yet."""
     number = max(_numbered(folder), default=0) + 1
-    return folder.with_name(f"{folder.name}.running" + (f"-{number}" if number > 1 else ""))
+    return _beside(folder, f"{folder.name}.running" + (f"-{number}" if number > 1 else ""))
 
 
 def recover(folder: Path) -> None:
@@ -520,14 +525,14 @@ def keep_crashed(
 def unlock(folder: Path) -> None:
     """Remove the lock of a run whose process has crashed."""
     place = Path(os.path.realpath(folder))
-    place.with_name(f".{place.name}.lock").unlink(missing_ok=True)
+    _beside(place, f".{place.name}.lock").unlink(missing_ok=True)
 
 
 def running_folder(folder: Path) -> Path:
     """Return the folder in which the newest run that has not ended writes, or would write."""
     place = Path(os.path.realpath(folder))
     known = [path for path in _numbered(place).values() if is_marked(path)]
-    return known[-1] if known else place.with_name(f"{place.name}.running")
+    return known[-1] if known else _beside(place, f"{place.name}.running")
 
 
 def _is_run_or_empty(folder: Path) -> bool:

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Series:
-    """A recorded variable over time. numpy and matplotlib take it as its values.
+class Series(NDArrayOperatorsMixin):
+    """A recorded variable over time. Arithmetic, numpy and matplotlib take it as its values.
 
     Attributes
     ----------
@@ -34,6 +35,18 @@ class Series:
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         return np.array(self.values, dtype) if copy else np.asarray(self.values, dtype)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        plain = [entry.values if isinstance(entry, Series) else entry for entry in inputs]
+        return getattr(ufunc, method)(*plain, **options)
+
+    def max(self, **options: Any) -> Any:
+        """Return the largest value, in ``unit``; numpy passes its options."""
+        return self.values.max(**options)
+
+    def min(self, **options: Any) -> Any:
+        """Return the least value, in ``unit``; numpy passes its options."""
+        return self.values.min(**options)
 
     def __len__(self) -> int:
         return int(self.values.size)

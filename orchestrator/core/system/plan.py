@@ -105,3 +105,19 @@ class Plan:
     watched: NDArray[np.int64]
     reference: float | End | None
     warnings: tuple[str, ...] = ()
+
+    def tolerance(self, component: str) -> float | None:
+        """Return the relative tolerance that the solver of a component is told.
+
+        Parameters
+        ----------
+        component : str
+            Its own value comes before that of the system and the one that its FMU proposes.
+
+        Returns
+        -------
+        float or None
+            None where nobody gives one.
+        """
+        own = self.system.components[component].tolerance
+        return own or self.system.tolerance or self.descriptions[component].tolerance

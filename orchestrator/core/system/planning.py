@@ -21,7 +21,7 @@ from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
 from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
-from .units import is_joule, unit_text, units_agree
+from .units import is_force, is_joule, unit_text, units_agree
 from .values import value_for
 
 
@@ -370,7 +370,7 @@ class _Planner:
                 self._refuse(
                     end.name,
                     f"{value!r}: {error}",
-                    f"set {end.name} ({end.port.description}) to another value",
+                    f"set {_described(end)} to another value",
                 )
         return starts
 
@@ -398,11 +398,11 @@ class _Planner:
         connected: set[str],
     ) -> None:
         for end in self._ends(target, *_split(target)):
-            if end.port.causality not in ("parameter", "input"):
+            if not end.port.can_be_set:
                 self._refuse(
                     end.name,
                     f"is of the causality {end.port.causality} and cannot be set",
-                    "set parameters and unconnected inputs only",
+                    "set parameters, unconnected inputs and variables with a start value only",
                 )
             elif end.name in connected:
                 self._refuse(end.name, f"is set in {giver} and is connected", "remove one of both")
@@ -459,6 +459,13 @@ class _Planner:
         self, where: str, force: list[End], position: list[End], work: list[End]
     ) -> None:
         for f, p in zip(force, position, strict=True):
+            if is_force(f.port.unit) is False:
+                self._refuse(
+                    where,
+                    f"{f.name} is in {f.port.unit_name}, and no force or torque",
+                    "name the forces first, then the positions",
+                )
+                return
             if is_joule(f.port.unit, p.port.unit) is False:
                 self._refuse(
                     where,
@@ -479,6 +486,11 @@ class _Planner:
         where = "energy_alarm.reference"
         ends = self._of_causality(where, self._ends(where, *_split(alarm.reference)), "output")
         return ends[0] if ends else None
+
+
+def _described(end: End) -> str:
+    """Return the name of a port with its description, where it has one."""
+    return f"{end.name} ({end.port.description})" if end.port.description else end.name
 
 
 def _fed_by(links: _Links, component: str) -> dict[str, End]:

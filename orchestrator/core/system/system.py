@@ -8,7 +8,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from ..errors import InputRefused, Problem
 from ..form_faults import UNKNOWN_KEY, sentences
@@ -18,7 +27,42 @@ from .names import matches, nearest
 Value = bool | int | float | str
 """Value of a parameter or input; of an enumeration, the name or the number of an item."""
 
+
+def plain_value(value: Any) -> Any:
+    """Return a number of numpy as one of Python; refuse a list.
+
+    Parameters
+    ----------
+    value : Any
+        Value for a parameter or input.
+
+    Returns
+    -------
+    Any
+        The value; its type is not checked.
+
+    Raises
+    ------
+    ValueError
+        It is a list, an array or a mapping.
+    """
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, list | tuple | dict | np.ndarray):
+        raise ValueError(ONE_VALUE)
+    return value
+
+
+ONE_VALUE = (
+    "takes one number, true or false, or a word; give array elements one by one as name[1], "
+    "name[2], ..., or all the same value as name[*]"
+)
+"""Why a list is refused as a value."""
+
+_PlainValue = Annotated[Value, BeforeValidator(plain_value)]
+
 Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 
 RESERVED = ("time", "coupling")
@@ -50,16 +94,20 @@ class ComponentSpec(_Data):
     step : float, optional
         Communication step (s); without it, the exchange step.
     parameters : dict
-        Values of parameters and of unconnected inputs that differ from the FMU's start values.
+        Values of parameters and of unconnected inputs that differ from the FMU's start values, and
+        of outputs and local variables that begin with a start value (``initial`` exact or approx).
         ``name[*]`` sets a whole array.
     record_states : bool
         Keep serialized states every ``state_interval``.
+    tolerance : float, optional
+        Relative tolerance of the FMU's solver; without it, that of the system.
     """
 
     fmu: str
     step: Seconds | None = None
-    parameters: dict[str, Value] = {}
+    parameters: dict[str, _PlainValue] = {}
     record_states: bool = False
+    tolerance: Tolerance | None = None
 
 
 class Connection(_Data):
@@ -91,7 +139,7 @@ class SharedValue(_Data):
     Targets are ``component.parameter``.
     """
 
-    value: Value
+    value: _PlainValue
     targets: list[str] = Field(min_length=1)
 
 
@@ -173,6 +221,8 @@ class SystemSpec(_Data):
     watch : list of str
         Outputs whose extremes and integral over all exchanges go into the summary, in the same
         notation.
+    tolerance : float, optional
+        Relative tolerance of the solvers in FMUs; without it, the one that each FMU proposes.
     """
 
     name: str
@@ -191,6 +241,7 @@ class SystemSpec(_Data):
     state_interval: Seconds | None = None
     record: list[str] = ["*"]
     watch: list[str] = []
+    tolerance: Tolerance | None = None
 
     def step(self, component: str) -> float:
         """Return the communication step of a component (s)."""
@@ -282,7 +333,12 @@ def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
     parameters = {name: dict(spec.parameters) for name, spec in system.components.items()}
     shared: dict[str, dict[str, Value]] = {}
     problems = []
-    for name, value in values.items():
+    for name, entry in values.items():
+        try:
+            value: Value = plain_value(entry)
+        except ValueError as error:
+            problems.append(Problem(name, str(error)))
+            continue
         component, _, parameter = name.partition(".")
         owner = _owner(system, name)
         if owner is not None:

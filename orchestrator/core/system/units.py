@@ -36,6 +36,20 @@ def unit_text(unit: UnitDefinition | None) -> str:
     return f"{unit.name} ({unit.factor:g} {'.'.join(powers) or '1'}{offset})"
 
 
+def is_force(one: UnitDefinition | None) -> bool | None:
+    """Tell whether a unit is that of a force or a torque; None where that cannot be known.
+
+    Parameters
+    ----------
+    one : UnitDefinition or None
+        An angle counts as a number.
+    """
+    if one is None or one.base is None:
+        return None
+    exponents = {s: n for s, n in one.base.items() if n and s != "rad"}
+    return exponents.pop("m", 0) in (1, 2) and exponents == {"kg": 1, "s": -2}
+
+
 def is_joule(one: UnitDefinition | None, other: UnitDefinition | None) -> bool | None:
     """Tell whether the product of two units is the joule; None where that cannot be known.
 

@@ -291,7 +291,7 @@ def _orders(outcomes: Outcomes, file: Path) -> Path:
 
 def _draw_errors(axes: "Axes", name: str, outcomes: Outcomes) -> None:
     """Draw an error over the exchange step, a line for each scheme."""
-    from ...pictures.style import BEAM, INK, ROCK, TRANSMITTED
+    from ...pictures.style import BEAM, INK, ROCK, TRANSMITTED, plain_powers
 
     colours = (INK, TRANSMITTED, ROCK, BEAM)
     for scheme, colour, mark in zip(SCHEMES, colours, "osD^", strict=True):
@@ -307,6 +307,7 @@ def _draw_errors(axes: "Axes", name: str, outcomes: Outcomes) -> None:
     axes.set(ylabel=f"{name} (%)")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter("")
+    plain_powers(axes.yaxis)
 
 
 STUDY = Study(

@@ -233,7 +233,7 @@ def _measured(axes: "Axes") -> None:
         "--",
         color=GREY,
         linewidth=1.0,
-        label=f"fit to box 1: $P \\sim k^{{{exponent:.2f} \\pm {exponent_error(k, p):.2f}}}$",
+        label=f"fit to box 1: P ~ k^({exponent:.2f} ± {exponent_error(k, p):.2f})",
     )
 
 

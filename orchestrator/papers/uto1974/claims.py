@@ -144,7 +144,7 @@ def _separation() -> Row:
 
 def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """Draw R_u over the number of segments."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED, WIDTH, captioned
+    from ...pictures.style import INK, ROCK, TRANSMITTED, WIDTH, captioned, plain_powers
 
     file = folder / "resistance.png"
     words = (
@@ -158,6 +158,8 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
             values = [resistance(int(n), reflection) / kN for n in segments]
             axes.loglog(segments, values, ".-", color=colour, label=f"alpha = {reflection:g}")
         axes.set(xlabel="segments", ylabel="R_u (kN)")
+        plain_powers(axes.xaxis)
+        plain_powers(axes.yaxis)
         axes.legend()
     return [file]
 

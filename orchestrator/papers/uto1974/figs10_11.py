@@ -158,7 +158,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
 
 def _draw_forces(axes: "Axes") -> None:
     """Draw the force on the toe for every stiffness of its spring."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED
+    from ...pictures.style import INK, ROCK, TRANSMITTED, plain_powers
 
     for ratio, colour in zip(STIFFNESSES, (TRANSMITTED, INK, "#8cc28a", ROCK), strict=True):
         run = stiff(ratio)
@@ -173,6 +173,7 @@ def _draw_forces(axes: "Axes") -> None:
         ylim=(-1e4, 1e4),
         yticks=[-1e4, -1e3, -1e2, -1e1, 0.0, 1e1, 1e2, 1e3, 1e4],
     )
+    plain_powers(axes.yaxis)
     axes.legend(loc="upper left")
 
 

@@ -1,0 +1,32 @@
+"""The command ``rockshed doctor``: kept code, compilers, leftovers, and what is slow."""
+
+from typing import Annotated
+
+import typer
+
+from ..runs import health
+from .options import RESULTS
+from .screen import opened
+
+_Clean = Annotated[
+    bool,
+    typer.Option("--clean", help="Remove kept code; it is compiled anew when it is needed."),
+]
+
+
+def command(clean: _Clean = False) -> None:
+    """Look at kept code, compilers, leftovers of killed runs, and what is slow."""
+    with opened() as screen:
+        if clean:
+            freed = health.clean(health.kept_files())
+            screen.say(f"{freed / 1e6:.1f} MB of kept code removed")
+            return
+        left = health.leftover_table(RESULTS)
+        for table in (health.place_table(), health.cache_table(), health.tool_table(), left):
+            if len(table):
+                screen.show(table, "")
+        reasons = health.slow_reasons()
+        for reason in reasons:
+            screen.say(f"slow: {reason}")
+        if not reasons:
+            screen.say("nothing makes it slow")

@@ -1,0 +1,248 @@
+"""The health of an installation: kept code, compilers, leftovers of runs, and what is slow."""
+
+import os
+import re
+import stat
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from rockshed.components.catalogue import NAMES, component
+from rockshed.components.common.cache import cache_path, cache_problem, has_kernels, source_stamp
+from rockshed.components.common.kept import is_sound
+from rockshed.fmus.native.fmu import PLATFORMS, compiler
+from rockshed.fmus.parts import BuildError, Runtime
+from rockshed.fmus.places import fmu_folder, native_is_fresh
+
+from ..core.loop import machine_code
+from ..tables import Table
+from ..versions import versions
+
+_STAMP = re.compile(r"[0-9a-f]{16}")
+_OBJECT = re.compile(rf"\w+-({'|'.join(PLATFORMS)})-[0-9a-f]{{24}}\.o")
+_LOOP = re.compile(r"loop-[0-9a-f]{24}\.o")
+_UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.tmp")
+_TEMPORARY = ("rockshed_*", "rockshed-*")
+_OF_KILLED_RUNS = ("*.running", ".*.old", ".*.lock")
+_PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "fmpy", "pythonfmu", "matplotlib", "typer")
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A file of kept code.
+
+    Attributes
+    ----------
+    file : Path
+        The file.
+    kind : str
+        The kind of code in it.
+    is_current : bool
+        Whether the present sources still lead to it.
+    """
+
+    file: Path
+    kind: str
+    is_current: bool
+
+
+def kept_files() -> list[Kept]:
+    """Return the files of kept code.
+
+    Returns
+    -------
+    list of Kept
+        Those whose names rockshed gives; whatever else lies in the folder is not looked at.
+    """
+    try:
+        folder = cache_path()
+        entries = sorted(folder.iterdir())
+    except (OSError, RuntimeError):
+        return []
+    current = _current_stamps()
+    return [kept for entry in entries for kept in _kept(entry, current)]
+
+
+def _current_stamps() -> set[str]:
+    return {source_stamp(component(name).folder)[:16] for name in NAMES}
+
+
+def _kept(entry: Path, current: set[str]) -> Iterator[Kept]:
+    """Return the kept files of an entry: the file itself, or those of the kernels of a stamp."""
+    if entry.is_symlink():
+        return
+    if entry.is_dir() and _STAMP.fullmatch(entry.name):
+        for file in sorted(entry.iterdir()):
+            if file.suffix in (".nbi", ".nbc") or _UNFINISHED.fullmatch(file.name):
+                yield Kept(file, "compiled kernels", entry.name in current)
+    elif entry.is_file() and _OBJECT.fullmatch(entry.name):
+        yield Kept(entry, "kernels of native FMUs", True)
+    elif entry.is_file() and _LOOP.fullmatch(entry.name):
+        yield Kept(entry, "exchange loop", entry == machine_code.kept_file())
+    elif entry.is_file() and _UNFINISHED.fullmatch(entry.name):
+        yield Kept(entry, "unfinished file", False)
+
+
+def cache_table() -> Table:
+    """Return a table of kept code by kind: files, size, health.
+
+    Returns
+    -------
+    Table
+    """
+    table = Table(("kept code", "files", "size", "damaged", "of older sources"))
+    table.right = table.columns[1:]
+    found = kept_files()
+    for kind in dict.fromkeys(kept.kind for kept in found):
+        members = [kept for kept in found if kept.kind == kind]
+        damaged = sum(kept.is_current and not is_sound(kept.file) for kept in members)
+        old = sum(not kept.is_current for kept in members)
+        size = _megabytes(_size(kept.file) for kept in members)
+        table.add(kind, str(len(members)), size, str(damaged), str(old))
+    return table
+
+
+def place_table() -> Table:
+    """Return a table of the folders that rockshed writes to by itself: owner and mode.
+
+    Returns
+    -------
+    Table
+    """
+    table = Table(("folder", "path", "owner", "mode"))
+    folders = {f"{runtime} FMUs": fmu_folder(runtime) for runtime in Runtime}
+    with suppress(RuntimeError):  # the user has no home
+        folders = {"kept code": cache_path()} | folders
+    for name, folder in folders.items():
+        table.add(name, str(folder), *_owner_and_mode(folder))
+    return table
+
+
+def _owner_and_mode(folder: Path) -> tuple[str, str]:
+    try:
+        found = folder.stat()
+    except OSError:
+        return "is not there", ""
+    owner = "you" if found.st_uid == getattr(os, "geteuid", lambda: found.st_uid)() else "another"
+    return owner, stat.filemode(found.st_mode)
+
+
+def tool_table() -> Table:
+    """Return a table of compilers and versions.
+
+    Returns
+    -------
+    Table
+    """
+    table = Table(("tool", ""))
+    for platform in PLATFORMS:
+        table.add(f"compiler for {platform}", _compiler_in_words(platform))
+    for name, version in versions(*_PACKAGES).items():
+        table.add(name, version or "is not installed")
+    return table
+
+
+def _compiler_in_words(platform: str) -> str:
+    try:
+        return " ".join(compiler(platform))
+    except BuildError as error:
+        return f"none: {error}"
+
+
+def leftover_table(results: Path) -> Table:
+    """Return a table of what killed runs have left, or runs that still go on have there.
+
+    Parameters
+    ----------
+    results : Path
+        Folder of results.
+
+    Returns
+    -------
+    Table
+        Unfinished results and locks among the results, and this user's unpacked FMUs in the
+        temporary folder.
+    """
+    table = Table(("left by killed runs, or of runs that go on", "number", "the first"))
+    for folder, patterns in ((results, _OF_KILLED_RUNS), (Path(tempfile.gettempdir()), _TEMPORARY)):
+        for pattern in patterns:
+            found = sorted(path for path in folder.glob(pattern) if _is_ours(path))
+            if found:
+                table.add(str(folder / pattern), str(len(found)), found[0].name)
+    return table
+
+
+def _is_ours(path: Path) -> bool:
+    try:
+        return path.lstat().st_uid == getattr(os, "geteuid", lambda: path.lstat().st_uid)()
+    except OSError:
+        return False
+
+
+def slow_reasons() -> list[str]:
+    """Return what makes commands slower than they can be, and why.
+
+    Returns
+    -------
+    list of str
+        Empty if nothing does.
+    """
+    reasons = []
+    if problem := cache_problem():
+        reasons.append(f"kernels are compiled at every start, about a minute: {problem}")
+    cold = [name for name in NAMES if not has_kernels(component(name).folder)]
+    if cold and not problem:
+        reasons.append(
+            f"the first use compiles the kernels of {', '.join(cold)}, about a minute, once"
+        )
+    stale = [name for name in NAMES if not _is_native_ready(name)]
+    if stale:
+        reasons.append(
+            f"native FMUs are missing or older than their sources ({', '.join(stale)}): FMUs with "
+            "Python take up to five times as long in a co-simulation; `rockshed build --runtime "
+            "native` makes them"
+        )
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
+        reasons.append("NUMBA_DISABLE_JIT is set: kernels run without being compiled")
+    return reasons
+
+
+def _is_native_ready(name: str) -> bool:
+    declared = component(name)
+    return native_is_fresh(declared, declared.with_sizes())
+
+
+def clean(found: Sequence[Kept]) -> int:
+    """Remove files of kept code; they are compiled anew when they are needed.
+
+    Parameters
+    ----------
+    found : sequence of Kept
+        As :func:`kept_files` returned them.
+
+    Returns
+    -------
+    int
+        Bytes that were freed.
+    """
+    freed = 0
+    for kept in found:
+        freed += _size(kept.file)
+        kept.file.unlink(missing_ok=True)
+    for folder in {kept.file.parent for kept in found if _STAMP.fullmatch(kept.file.parent.name)}:
+        with suppress(OSError):  # something else lies there
+            folder.rmdir()
+    return freed
+
+
+def _size(file: Path) -> int:
+    try:
+        return file.lstat().st_size
+    except OSError:
+        return 0
+
+
+def _megabytes(sizes: Iterable[int]) -> str:
+    return f"{sum(sizes) / 1e6:.1f} MB"

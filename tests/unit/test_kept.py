@@ -1,0 +1,171 @@
+"""Kept code: only whole, unchanged and of this user; what does not fit is compiled anew."""
+
+import os
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rockshed.components.common import cache
+from rockshed.components.common.kept import folder_problem, keep, kept, make_private
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="modes of POSIX")
+
+KERNEL = '''
+"""A kernel of three lines."""
+from rockshed.components.common.kernels import kernel
+
+@kernel
+def twice(x):
+    return 2.0 * x + {constant}
+'''
+
+
+def flipped(content: bytes, number: random.Random) -> bytes:
+    """The content with one bit changed, cut short, emptied, or longer."""
+    kind = number.randrange(10)
+    if kind == 0:
+        return b""
+    if kind == 1:
+        return content[: number.randrange(len(content))]
+    if kind == 2:
+        return content + b"\0"
+    damaged = bytearray(content)
+    damaged[number.randrange(len(damaged))] ^= 1 << number.randrange(8)
+    return bytes(damaged)
+
+
+def test_of_200_damages_none_is_taken(tmp_path):
+    file, number = tmp_path / "code", random.Random(1)
+    keep(file, os.urandom(1000))
+    whole = file.read_bytes()
+    assert kept(file) is not None
+    for _ in range(200):
+        file.write_bytes(flipped(whole, number))
+        assert kept(file) is None
+
+
+@posix
+def test_a_file_that_others_can_write_is_not_taken(tmp_path):
+    file = tmp_path / "code"
+    keep(file, b"code")
+    assert file.stat().st_mode & 0o777 == 0o600
+    file.chmod(0o666)
+    assert kept(file) is None
+
+
+@posix
+def test_a_folder_that_others_can_write_is_refused_with_the_reason(tmp_path, monkeypatch):
+    folder = tmp_path / "open"
+    folder.mkdir()
+    folder.chmod(0o777)
+    assert folder_problem(folder) == f"{folder} can be written by others"
+    assert "open can be written by others" in folder_problem(folder / "inside" / "deeper")
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(folder / "cache"))
+    assert cache.cache_directory() is None
+    assert "can be written by others" in cache.cache_problem()
+    assert "set ROCKSHED_CACHE_DIR to a folder" in cache.cache_problem()
+    assert not (folder / "cache").exists()
+
+
+@posix
+@pytest.mark.skipif(os.name != "nt" and os.geteuid() != 0, reason="only root gives files away")
+def test_a_folder_of_another_user_is_refused_with_the_reason(tmp_path):
+    folder = tmp_path / "theirs"
+    folder.mkdir()
+    os.chown(folder, 4321, 4321)
+    assert folder_problem(folder / "mine") == f"{folder} belongs to another user (number 4321)"
+    file = tmp_path / "code"
+    keep(file, b"code")
+    os.chown(file, 4321, 4321)
+    assert kept(file) is None
+
+
+@posix
+def test_folders_are_made_for_this_user_alone_whatever_the_umask(tmp_path):
+    before = os.umask(0)
+    try:
+        make_private(tmp_path / "a" / "b")
+    finally:
+        os.umask(before)
+    assert [path.stat().st_mode & 0o777 for path in (tmp_path / "a", tmp_path / "a/b")] == [
+        0o700,
+        0o700,
+    ]
+
+
+RUN = "import sys; sys.path.insert(0, sys.argv[1]); import mine; print(mine.twice(float(sys.argv[2])))"
+
+
+def result(folder: Path, cache_folder: Path) -> str:
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", RUN, folder, "4"],
+        env=os.environ | {cache.CACHE_VARIABLE: str(cache_folder)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_damaged_indices_and_codes_of_numba_are_compiled_anew(tmp_path):
+    (tmp_path / "mine.py").write_text(KERNEL.format(constant=1.0))
+    folder = tmp_path / "cache"
+    assert result(tmp_path, folder) == "9.0\n"
+    index, code = (next(folder.rglob(f"*.{ending}")) for ending in ("nbi", "nbc"))
+    number = random.Random(2)
+    for file in (index, code):
+        for damage in (b"", None):
+            whole = file.read_bytes()
+            file.write_bytes(flipped(whole, number) if damage is None else damage)
+            assert result(tmp_path, folder) == "9.0\n"
+            assert kept(file) is not None, "the damaged file was not replaced"
+
+
+PLANT = """
+import os, pickle, sys
+class Evil:
+    def __reduce__(self):
+        return os.mkdir, (sys.argv[2],)
+open(sys.argv[1], "wb").write(pickle.dumps("0.68.1") + pickle.dumps(Evil()))
+"""
+
+
+def test_an_index_that_somebody_planted_is_not_executed(tmp_path):
+    (tmp_path / "mine.py").write_text(KERNEL.format(constant=2.0))
+    folder, trap = tmp_path / "cache", tmp_path / "executed"
+    assert result(tmp_path, folder) == "10.0\n"
+    index = next(folder.rglob("*.nbi"))
+    subprocess.run([sys.executable, "-c", PLANT, index, trap], check=True)
+    assert result(tmp_path, folder) == "10.0\n"
+    assert not trap.exists()
+
+
+LOOP = """
+import sys
+from rockshed.core.loop import machine_code
+machine_code.advance()
+print(machine_code.kept_file())
+"""
+
+
+def loop_file(cache_folder: Path) -> Path:
+    done = subprocess.run(
+        [sys.executable, "-c", LOOP],
+        env=os.environ | {cache.CACHE_VARIABLE: str(cache_folder)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return Path(done.stdout.strip())
+
+
+def test_a_damaged_exchange_loop_is_compiled_anew(tmp_path):
+    file = loop_file(tmp_path / "cache")
+    whole, number = file.read_bytes(), random.Random(3)
+    for damaged in (whole[:1000], flipped(whole, number)):
+        file.write_bytes(damaged)
+        loop_file(tmp_path / "cache")
+        assert file.read_bytes() == whole
