@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ FLAT = 0.01
 TOUCH = 1e-6
 """Distance (m) at which ends of lines in a drawing are one point."""
 
+FARTHEST = 1e8
+"""Largest coordinate (m) of a drawing."""
 MOST_POINTS = 100_000
 """Largest number of straight cells that replace a curve."""
 _FOOT, _SURVEY_FOOT = 0.3048, 1200.0 / 3937.0
@@ -194,16 +197,20 @@ def _points(place: str, entity: Any, scale: float) -> list[tuple[float, float, f
     """Return the points (m) of an entity; of a curve, those of straight cells along it."""
     from ezdxf.path import make_path
 
-    points = []
-    for point in make_path(entity).flattening(FLAT / scale):
-        values = (scale * point.x, scale * point.y, scale * point.z)
-        if not all(abs(value) <= LARGEST for value in values):
-            problem = Problem(place, "has a coordinate that is no finite number", "draw it again")
-            raise InputRefused([problem])
-        points.append(values)
-        if len(points) > MOST_POINTS:
-            text = f"is a curve of more than {MOST_POINTS} straight cells of {FLAT:g} m precision"
-            raise InputRefused([Problem(place, text, "check the unit of the drawing")])
+    path = make_path(entity)
+    for point in path.control_vertices():
+        # of curves that are larger, no end would come of the division into straight cells
+        if not all(abs(scale * value) <= FARTHEST for value in point.xyz):
+            text = f"has a coordinate beyond {FARTHEST:g} m, or one that is no number"
+            remedy = "check the unit of the drawing, and draw it nearer to the origin"
+            raise InputRefused([Problem(place, text, remedy)])
+    points = [
+        (scale * point.x, scale * point.y, scale * point.z)
+        for point in islice(path.flattening(FLAT / scale), MOST_POINTS + 1)
+    ]
+    if len(points) > MOST_POINTS:
+        text = f"is a curve of more than {MOST_POINTS} straight cells of {FLAT:g} m precision"
+        raise InputRefused([Problem(place, text, "check the unit of the drawing")])
     return points
 
 
