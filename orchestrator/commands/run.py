@@ -8,6 +8,7 @@ import typer
 
 from ..core.errors import Problem, RunFailed
 from ..core.supervisor import announce
+from ..core.system.clock import seconds_in
 from ..runs.building import is_cold
 from ..runs.request import AUTO, Request
 from ..runs.run import Run
@@ -31,17 +32,26 @@ from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
 from .streams import stdout_for_results, tell_leftovers
 
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
-_StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of the run.")]
+
+
+def _time(text: str) -> float:
+    """Read a time (s), ``1e-5`` or ``1/60``."""
+    try:
+        return seconds_in(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
+
+
+def _seconds(help_: str) -> Any:
+    return typer.Option(metavar="SECONDS", parser=_time, help=help_)
+
+
+_StopTime = Annotated[float | None, _seconds("End of the run.")]
 _ExchangeStep = Annotated[
-    float | None, typer.Option(metavar="SECONDS", help="Time between two exchanges.")
+    float | None, _seconds("Time between two exchanges; like all times, 1e-5 or a fraction, 1/60.")
 ]
-_OutputInterval = Annotated[
-    float | None, typer.Option(metavar="SECONDS", help="Time between two rows.")
-]
-_StateInterval = Annotated[
-    float | None,
-    typer.Option(metavar="SECONDS", help="Time between two recorded states of the sand."),
-]
+_OutputInterval = Annotated[float | None, _seconds("Time between two rows.")]
+_StateInterval = Annotated[float | None, _seconds("Time between two recorded states of the sand.")]
 _Master = Annotated[
     str | None,
     typer.Option(

@@ -22,7 +22,6 @@ from .results.provenance import describe_run
 from .results.reading import StoredRun, read_run
 from .results.run_folder import RunFolder
 from .supervisor import announce
-from .system.clock import to_seconds
 from .system.plan import Plan
 from .system.planning import make_plan
 from .system.system import SystemSpec
@@ -116,7 +115,7 @@ class _Session:
         self.watched = buses.watched
         self.master = Master(self.slaves, buses, recorder)
         self.hearing = Hearing(self.slaves)
-        self.journal.legend(buses.operations, plan.timing.start, plan.schedule)
+        self.journal.legend(buses.operations, plan)
         self.journal.rests()
         self.preparation = time.perf_counter() - began
         known = describe_run(plan, self.sources, self.slaves)
@@ -186,7 +185,7 @@ class _Session:
         return self.warnings + self.accounts.warnings + ended + said
 
     def _metrics(self) -> list[Metric]:
-        simulated = to_seconds(self.master.exchanges * self.plan.timing.exchange)
+        simulated = self.plan.timing.lasts(self.master.exchanges * self.plan.timing.exchange)
         if self.master.ended_by:
             simulated = self.master.reached - self.plan.timing.seconds(0)
         return [
@@ -206,7 +205,7 @@ class _Session:
             at = timing.seconds(int(entry[f"{bound}_at"]))
             yield Metric(f"{end.name} {which}", float(entry[bound]), unit)
             yield Metric(f"{end.name} {which} at", at, "s")
-        area = float(entry["area"]) * to_seconds(timing.exchange)
+        area = float(entry["area"]) * timing.lasts(timing.exchange)
         yield Metric(f"{end.name} integral", area, "s" if unit == "1" else f"{unit}.s")
 
     def close(self) -> None:

@@ -5,7 +5,6 @@ import numpy as np
 from rockshed.core.fmu.slave import WARNING
 from rockshed.core.loop.exchange import Fault
 from rockshed.core.loop.tables import NOT_FINITE
-from rockshed.core.system.clock import to_seconds
 from rockshed.core.system.schedule import Action, Operation
 
 
@@ -43,7 +42,8 @@ class ReferenceLoop:
         if operation.action is Action.SET:
             return self.buses.give(slave)
         if operation.action is Action.STEP:
-            return slave.step(to_seconds(origin + operation.begin), to_seconds(operation.length))
+            lasts = self.buses.plan.timing.lasts
+            return slave.step(lasts(origin + operation.begin), lasts(operation.length))
         status = self.buses.take(slave)
         is_fine = status > WARNING or self.buses.not_finite(slave.name) is None
         return status if is_fine else NOT_FINITE

@@ -153,6 +153,17 @@ def test_the_first_bad_status_ends_all_three_in_the_same_place(answer, status, e
     assert len(found["rows"]) == 12  # the first one, and those of the parts before
 
 
+def test_steps_of_sixtieths_of_a_second_give_the_same_bits():
+    system, _ = wired(
+        {"a": counter(), "b": counter()},
+        ["a.level -> b.given", "b.level -> a.given"],
+        exchange_step="1/60",
+        stop_time=1.0,
+        components={"b": {"step": "1/120"}},
+    )
+    assert_the_same(system, lambda: {"a": counter(), "b": counter()})
+
+
 def test_native_fmus_give_the_same_bits(tmp_path):
     try:
         compiler(own_platform())

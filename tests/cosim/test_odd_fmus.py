@@ -10,7 +10,7 @@ import time
 import pytest
 
 from rockshed.core.results.reading import read_run
-from tests.cosim.odd_fmus import XML, end, make, program, run
+from tests.cosim.odd_fmus import SYSTEM, XML, end, make, program, run
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux" or not shutil.which("cc"), reason="needs Linux and a C compiler"
@@ -175,3 +175,25 @@ def test_a_later_run_sweeps_what_a_kill_had_to_leave(tmp_path):
     assert "a run that did not end has left" in said or left(tmp_path) == []
     assert read_run(tmp_path / "out").status == "complete"
     assert left(tmp_path) == []
+
+
+@pytest.mark.parametrize("rate", [30, 60, 44_100])
+def test_an_fmu_with_a_fixed_step_that_is_no_decimal_number_gets_that_step(tmp_path, rate):
+    now = f"(steps - 1) / {rate}.0"
+    status = f"(h == 1.0 / {rate} && t == {now} && callbacks ? 0 : 3)"
+    stop = 1.0 if rate < 100 else 0.01
+    system = SYSTEM.replace("0.1", f'"1/{rate}"').replace("1.0", str(stop))
+    make(tmp_path, system=system, STATUS=status)
+    code, _, said = run(tmp_path)
+    assert code == 0, said
+    count = round(rate * stop)
+    assert list(read_run(tmp_path / "out").time) == [n / rate for n in range(count + 1)]
+
+
+def test_a_step_that_is_a_rounded_fraction_is_told_the_fraction(tmp_path):
+    make(tmp_path, system=SYSTEM.replace("0.1", "0.016666666667"))
+    code, _, said = run(tmp_path)
+    assert code == 2
+    assert 'if the step is meant to be a fraction, write "1/60"' in " ".join(said.split())
+    code, _, said = run(tmp_path, "run", "system.toml", "--exchange-step", "1/60", "--no-figures")
+    assert code == 0, said

@@ -1,5 +1,6 @@
 """The form of a system: TOML, unknown keys, values that are shared or overridden."""
 
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -156,3 +157,13 @@ def test_the_example_in_the_documentation_is_a_system(tmp_path):
     text = (Path(rockshed.__file__).parent / "README.md").read_text(encoding="utf-8")
     (tmp_path / "example.toml").write_text(text.split("```toml\n")[1].split("```")[0])
     assert load_system(tmp_path / "example.toml").bonds["rock"].work == "energy.work.rock"
+
+
+@pytest.mark.parametrize("given", ["1/60", 1 / 60, Fraction(1, 60)])
+def test_a_time_may_be_a_fraction_of_a_second(given):
+    assert system_from(minimal(exchange_step=given)).exchange_step == 1 / 60
+
+
+@pytest.mark.parametrize("given", ["1/0", "-1/60", "a/b"])
+def test_a_fraction_that_is_no_time_is_refused(given):
+    assert list(refused(minimal(exchange_step=given))) == ["exchange_step"]

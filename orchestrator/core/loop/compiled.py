@@ -15,7 +15,6 @@ from numba import from_dtype, njit, types
 from numba.extending import intrinsic
 
 from ..fmu.slave import OK, WARNING
-from ..system.clock import TICKS_PER_SECOND
 from ..system.schedule import Action
 from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
 
@@ -23,7 +22,6 @@ _SET = int(Action.SET)
 _STEP = int(Action.STEP)
 _OK = OK
 _WARNING = WARNING
-_TICKS_PER_SECOND = float(TICKS_PER_SECOND)
 
 
 def _compiled(function: Callable[..., Any]) -> Any:
@@ -184,8 +182,8 @@ def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
     Returns the first bad status, or the worst one.
     """
     if operation["action"] == _STEP:
-        time = float(origin + operation["begin"]) / _TICKS_PER_SECOND
-        step = float(operation["length"]) / _TICKS_PER_SECOND
+        time = float(origin + operation["begin"]) / float(tables.rate)
+        step = float(operation["length"]) / float(tables.rate)
         return _call_step(operation["do_step"], operation["instance"], time, step)
     worst = 0
     for m in range(operation["first_move"], operation["end_move"]):

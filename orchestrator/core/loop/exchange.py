@@ -112,6 +112,7 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
     return Tables(
         start=plan.timing.start,
         exchange=plan.schedule.exchange,
+        rate=plan.timing.rate,
         every=snapshots.every,
         width=snapshots.rows.shape[1],
         row=0,

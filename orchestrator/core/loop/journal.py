@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..system.clock import to_seconds
-from ..system.schedule import Action, Operation, Schedule
+from ..system.plan import Plan
+from ..system.schedule import Action, Operation
 from .tables import IntegerTable
 
 FILE = "journal.bin"
@@ -51,25 +52,22 @@ class Journal:
         self.entries[:] = _NOTHING
         self.legend([])
 
-    def legend(
-        self, operations: Sequence[Operation], start: int = 0, schedule: Schedule | None = None
-    ) -> None:
+    def legend(self, operations: Sequence[Operation], plan: Plan | None = None) -> None:
         """Write down what the numbers of operations mean.
 
         Parameters
         ----------
         operations : sequence of Operation
             In the order of their numbers.
-        start : int
-            Time at the start (ticks).
-        schedule : Schedule, optional
+        plan : Plan, optional
             Gives times; not needed where there are no operations.
         """
         legend = {
             "components": self._components,
-            "start": start,
-            "exchange": schedule.exchange if schedule else 0,
-            "period": schedule.period if schedule else 1,
+            "start": plan.timing.start if plan else 0,
+            "rate": plan.timing.rate if plan else 1,
+            "exchange": plan.schedule.exchange if plan else 0,
+            "period": plan.schedule.period if plan else 1,
             "operations": [[o.component, int(o.action), o.begin, o.length] for o in operations],
         }
         (self._folder / LEGEND).write_text(json.dumps(legend), encoding="utf-8")
@@ -146,9 +144,9 @@ def _call(legend: dict[str, Any], operation: int, exchange: int, how: str) -> st
     }.get(Action(action), exchange * legend["exchange"])
     what = {
         Action.SET: "when its inputs were set",
-        Action.STEP: f"in the step by {to_seconds(length):.6g} s",
+        Action.STEP: f"in the step by {to_seconds(length, legend['rate']):.6g} s",
         Action.GET: "when its outputs were read",
         Action.RECORD: "when its outputs were read",
     }[Action(action)]
-    at = to_seconds(legend["start"] + ticks)
+    at = to_seconds(legend["start"] + ticks, legend["rate"])
     return f"{component} at t = {at:.9g} s: its code {how} {what}"

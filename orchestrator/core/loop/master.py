@@ -9,7 +9,6 @@ from types import FrameType, TracebackType
 from ..ending import asked_to_end
 from ..errors import RunFailed
 from ..fmu.slave import DISCARD, FATAL, Slave, status_name
-from ..system.clock import to_seconds
 from ..system.schedule import Action
 from .buses import Buses
 from .exchange import ExchangeLoop, Fault
@@ -236,7 +235,7 @@ class Master:
         return {
             Action.SET: "the inputs are refused",
             Action.GET: "the outputs are refused",
-            Action.STEP: f"the step by {to_seconds(fault.operation.length):.6g} s failed",
+            Action.STEP: f"the step by {self._plan.timing.lasts(fault.operation.length):.6g} s failed",
             Action.RECORD: "does not give its values",
         }[fault.operation.action]
 
@@ -250,7 +249,7 @@ class Master:
             return timing.seconds(fault.exchange)
         period = fault.exchange // schedule.period * schedule.period
         ticks = fault.operation.begin + round(part * fault.operation.length)
-        return to_seconds(timing.start + period * schedule.exchange + ticks)
+        return timing.lasts(timing.start + period * schedule.exchange + ticks)
 
     def _lost(self, fault: Fault) -> str:
         """Name the value that is no finite number, and say what may be done about it."""

@@ -51,6 +51,8 @@ class Tables(NamedTuple):
     ----------
     start, exchange : int
         Time at the start and exchange step (ticks).
+    rate : int
+        Ticks in a second.
     every : int
         Number of exchanges for one row of snapshots.
     width : int
@@ -85,6 +87,7 @@ class Tables(NamedTuple):
 
     start: int
     exchange: int
+    rate: int
     every: int
     width: int
     row: int
@@ -102,7 +105,7 @@ class Tables(NamedTuple):
     warned: IntegerTable
 
 
-NUMBERS = ("start", "exchange", "every", "width", "row")
+NUMBERS = ("start", "exchange", "rate", "every", "width", "row")
 """The numbers among the :class:`Tables`, which come first."""
 
 KINDS = {

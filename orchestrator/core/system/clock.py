@@ -1,21 +1,53 @@
 """Time as whole ticks: steps add up exactly.
 
-A time in seconds is computed from its tick and never accumulated.
+A time in seconds is computed from its tick and never accumulated. A tick is a picosecond, unless a
+time is none of them: then it is the largest fraction of a second of which all times of the run are
+whole multiples, 1/60 s for instance.
 """
 
+from collections.abc import Iterable
 from decimal import Decimal
-from math import ulp
+from fractions import Fraction
+from math import lcm, ulp
 
-TICKS_PER_SECOND = 10**12
-"""A tick is a picosecond: steps in use go down to 1e-7 s, and a step that follows from a wave speed
-needs a few digits more. In 64 bits, that reaches over 50 days."""
+PICOSECONDS = 10**12
+"""Ticks in a second where nothing else is needed: steps in use go down to 1e-7 s, and a step that
+follows from a wave speed needs a few digits more. In 64 bits, that reaches over 50 days."""
 
 _MOST = 2**62
-"""Longest time in ticks: 53 days, so that sums of two times hold in 64 bits as well."""
+"""Longest time in ticks, so that sums of two times hold in 64 bits as well; 53 days of
+picoseconds."""
+_DENOMINATOR = 10**6
+"""Largest denominator of a fraction of a second that is no decimal number."""
 
 
-def to_ticks(seconds: float) -> int:
-    """Count the ticks in a time, as far as a float can tell: 3 * 0.1 has as many as 0.3.
+def seconds_in(text: str) -> float:
+    """Return the time (s) that a text has.
+
+    Parameters
+    ----------
+    text : str
+        A number, or a fraction of two whole numbers: ``1/60``.
+
+    Returns
+    -------
+    float
+        The one nearest to it.
+
+    Raises
+    ------
+    ValueError
+        It is neither.
+    """
+    try:
+        return float(Fraction(text)) if "/" in text else float(text)
+    except (ValueError, ZeroDivisionError, OverflowError):
+        what = f"{text[:40]!r} is no time: write a number of seconds, or a fraction, 1/60"
+        raise ValueError(what) from None
+
+
+def exact(seconds: float) -> Fraction:
+    """Return the number that a time stands for, as far as a float can tell.
 
     Parameters
     ----------
@@ -24,24 +56,80 @@ def to_ticks(seconds: float) -> int:
 
     Returns
     -------
+    Fraction
+        A whole number of picoseconds where there is one next to it (3 * 0.1 is 0.3), else the
+        fraction of two whole numbers that it is nearest to: 1/60, 1/44100.
+
+    Raises
+    ------
+    ValueError
+        It is neither.
+    """
+    margin = 2 * Decimal(ulp(seconds))
+    picoseconds = Decimal(seconds) * PICOSECONDS
+    whole = picoseconds.to_integral_value()
+    if abs(picoseconds - whole) <= margin * PICOSECONDS:
+        return Fraction(int(whole), PICOSECONDS)
+    simple = Fraction(seconds).limit_denominator(_DENOMINATOR)
+    if simple and abs(simple - Fraction(seconds)) <= Fraction(margin):
+        return simple
+    raise ValueError(f"{seconds!r} s is no whole number of picoseconds, and no fraction like 1/60")
+
+
+def ticks_per_second(times: Iterable[Fraction]) -> int:
+    """Return the number of ticks in a second with which all these times (s) are whole."""
+    denominators = [time.denominator for time in times]
+    if all(PICOSECONDS % denominator == 0 for denominator in denominators):
+        return PICOSECONDS
+    return lcm(*denominators)
+
+
+def to_ticks(time: Fraction, rate: int = PICOSECONDS) -> int:
+    """Count the ticks in a time.
+
+    Parameters
+    ----------
+    time : Fraction
+        Time (s), of :func:`exact`.
+    rate : int
+        Ticks in a second, of :func:`ticks_per_second`.
+
+    Returns
+    -------
     int
 
     Raises
     ------
     ValueError
-        Not a whole number of ticks, or more of them than 64 bits hold.
+        More ticks than 64 bits hold.
     """
-    exact = Decimal(seconds) * TICKS_PER_SECOND
-    ticks = exact.to_integral_value()
-    if abs(exact - ticks) > 2 * Decimal(ulp(seconds)) * TICKS_PER_SECOND:
-        raise ValueError(f"{seconds!r} s is no whole number of picoseconds")
-    if abs(ticks) > _MOST:
-        raise ValueError(
-            f"{seconds:g} s is beyond the longest time, {float(_MOST) / TICKS_PER_SECOND:.3g} s"
-        )
+    ticks = time * rate
+    assert ticks.denominator == 1, f"{time} s is no whole number of ticks"
+    if max(abs(ticks), rate) > _MOST:
+        longest = _MOST / rate
+        raise ValueError(f"{float(time):g} s is beyond the longest time, {longest:.3g} s")
     return int(ticks)
 
 
-def to_seconds(ticks: int) -> float:
+def to_seconds(ticks: int, rate: int = PICOSECONDS) -> float:
     """Return a time in ticks in s, the same to the bit as in the compiled loop."""
-    return float(ticks) / float(TICKS_PER_SECOND)
+    return float(ticks) / float(rate)
+
+
+def fraction_near(seconds: float) -> str:
+    """Return the fraction that a rounded time was meant to be: ``1/60`` for 0.016666667 s.
+
+    Parameters
+    ----------
+    seconds : float
+        Time (s), greater than 0.
+
+    Returns
+    -------
+    str
+        Empty where there is no such fraction next to it, or where it is exact in picoseconds.
+    """
+    parts = max(1, round(1.0 / seconds))
+    difference = abs(parts * seconds - 1.0)
+    is_meant = 0.0 < difference < min(1e-4, 1e-2 / parts) and PICOSECONDS % parts != 0
+    return f"1/{parts}" if is_meant else ""

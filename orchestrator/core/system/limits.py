@@ -3,7 +3,6 @@
 import math
 
 from ..errors import Problem
-from .clock import to_seconds
 from .plan import Starts
 from .system import SystemSpec
 from .timing import Timing
@@ -92,4 +91,4 @@ def _longer(timing: Timing, most: int) -> str:
     least = timing.exchanges / max(1, most - 1)
     power = 10 ** math.floor(math.log10(max(1.0, least)))
     every = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= least)
-    return f"{to_seconds(every * timing.exchange):g} s"
+    return f"{timing.lasts(every * timing.exchange):g} s"

@@ -5,6 +5,7 @@ against the FMUs in :mod:`rockshed.core.system.planning`.
 """
 
 from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -22,6 +23,7 @@ from pydantic import (
 from ..errors import InputRefused, Problem
 from ..form_faults import UNKNOWN_KEY, sentences
 from ..input_text import read_text, toml_content
+from .clock import seconds_in
 from .names import matches, nearest
 
 Value = bool | int | float | str
@@ -61,7 +63,16 @@ ONE_VALUE = (
 
 _PlainValue = Annotated[Value, BeforeValidator(plain_value)]
 
-Seconds = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+
+def _from_fraction(value: Any) -> Any:
+    """Return a fraction of a second, ``1/60``, as the nearest float; anything else as it is."""
+    if isinstance(value, Fraction) or (isinstance(value, str) and "/" in value):
+        return seconds_in(str(value))
+    return value
+
+
+Time = Annotated[float, BeforeValidator(_from_fraction), Field(allow_inf_nan=False)]
+Seconds = Annotated[float, BeforeValidator(_from_fraction), Field(gt=0.0, allow_inf_nan=False)]
 Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 
@@ -210,7 +221,7 @@ class SystemSpec(_Data):
     order : list of str
         Every component once; without it, as they are listed.
     start_time, stop_time, exchange_step : float
-        Times (s).
+        Times (s). In a file, any time may be a fraction: ``"1/60"``.
     output_interval : float, optional
         Time between two rows of the results (s); without it, the exchange step.
     state_interval : float, optional
@@ -234,8 +245,8 @@ class SystemSpec(_Data):
     energy_alarm: EnergyAlarm | None = None
     master: Literal["sequential", "jacobi"] = "sequential"
     order: list[str] = []
-    start_time: float = Field(default=0.0, allow_inf_nan=False)
-    stop_time: float = Field(allow_inf_nan=False)
+    start_time: Time = 0.0
+    stop_time: Time
     exchange_step: Seconds
     output_interval: Seconds | None = None
     state_interval: Seconds | None = None

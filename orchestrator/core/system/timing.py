@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from ..errors import Problem
-from .clock import to_seconds, to_ticks
+from .clock import exact, fraction_near, ticks_per_second, to_seconds, to_ticks
 from .schedule import fits, nearest_steps
 from .system import SystemSpec
 
@@ -23,6 +24,8 @@ class Timing:
         Intervals of rows and of states (exchanges).
     steps : mapping of str to int
         Communication step of each component (ticks).
+    rate : int
+        Ticks in a second.
     """
 
     start: int
@@ -31,10 +34,15 @@ class Timing:
     output_every: int
     state_every: int
     steps: Mapping[str, int]
+    rate: int
 
     def seconds(self, exchange: int) -> float:
         """Return the time (s) at the beginning of an exchange."""
-        return to_seconds(self.start + exchange * self.exchange)
+        return self.lasts(self.start + exchange * self.exchange)
+
+    def lasts(self, ticks: int) -> float:
+        """Return a length of time in s."""
+        return to_seconds(ticks, self.rate)
 
 
 def make_timing(system: SystemSpec, problems: list[Problem]) -> Timing | None:
@@ -52,13 +60,22 @@ def make_timing(system: SystemSpec, problems: list[Problem]) -> Timing | None:
     Timing or None
         None where a time is no whole number of ticks.
     """
-    ticks = _all_ticks(system, problems)
-    if ticks is None:
+    times = _exact_times(system, problems)
+    if times is None:
         return None
+    rate = ticks_per_second(times.values())
+    ticks = {key: _ticks(key, time, rate, problems) for key, time in times.items()}
+    if any(count is None for count in ticks.values()):
+        return None
+    return _fitted(system, {key: count or 0 for key, count in ticks.items()}, rate, problems)
+
+
+def _fitted(
+    system: SystemSpec, ticks: Mapping[str, int], rate: int, problems: list[Problem]
+) -> Timing:
     exchange = ticks["exchange_step"]
     steps = {name: ticks.get(f"{name}.step", exchange) for name in system.components}
-    misfits = _misfits(system, ticks, steps)
-    problems += misfits
+    problems += _misfits(system, ticks, steps, rate)
     length = ticks["stop_time"] - ticks["start_time"]
     return Timing(
         start=ticks["start_time"],
@@ -67,11 +84,11 @@ def make_timing(system: SystemSpec, problems: list[Problem]) -> Timing | None:
         output_every=ticks["output_interval"] // exchange,
         state_every=ticks["state_interval"] // exchange,
         steps=steps,
+        rate=rate,
     )
 
 
-def _all_ticks(system: SystemSpec, problems: list[Problem]) -> dict[str, int] | None:
-    before = len(problems)
+def _exact_times(system: SystemSpec, problems: list[Problem]) -> dict[str, Fraction] | None:
     times = {
         "exchange_step": system.exchange_step,
         "start_time": system.start_time,
@@ -80,12 +97,26 @@ def _all_ticks(system: SystemSpec, problems: list[Problem]) -> dict[str, int] | 
         "state_interval": system.state_interval or system.exchange_step,
         **{f"{name}.step": spec.step for name, spec in system.components.items() if spec.step},
     }
-    ticks = {key: _ticks(key, seconds, problems) for key, seconds in times.items()}
-    return ticks if len(problems) == before else None
+    found = {}
+    for key, seconds in times.items():
+        try:
+            found[key] = exact(seconds)
+        except ValueError as error:
+            remedy = 'round it to 1e-12 s or multiples of it, or write a fraction, "1/60"'
+            problems.append(Problem(key, str(error), remedy))
+    return found if len(found) == len(times) else None
+
+
+def _ticks(key: str, time: Fraction, rate: int, problems: list[Problem]) -> int | None:
+    try:
+        return to_ticks(time, rate)
+    except ValueError as error:
+        problems.append(Problem(key, str(error), "make it shorter"))
+        return None
 
 
 def _misfits(
-    system: SystemSpec, ticks: Mapping[str, int], steps: Mapping[str, int]
+    system: SystemSpec, ticks: Mapping[str, int], steps: Mapping[str, int], rate: int
 ) -> list[Problem]:
     """Find steps and times that do not fit together, and a set of times that does."""
     exchange = ticks["exchange_step"]
@@ -94,57 +125,46 @@ def _misfits(
     problems = [
         problem
         for name, step in steps.items()
-        for problem in _step_problems(f"{name}.step", step, exchange)
+        for problem in _step_problems(f"{name}.step", step, exchange, rate)
     ]
     if length <= 0:
         what = f"{system.stop_time:g} s is not after start_time = {system.start_time:g} s"
         problems.append(Problem("stop_time", what, "let it be later"))
-    fitting = {key: _nearest(ticks[key], exchange) for key in ("output_interval", "state_interval")}
+    lengths = {key: ticks[key] for key in ("output_interval", "state_interval")}
+    fitting = {key: _nearest(lengths[key], exchange) for key in lengths}
     for key, near in fitting.items():
-        problems += _multiple_problems(key, ticks[key], exchange, near, 0)
+        problems += _multiple_problems(key, (0, lengths[key]), exchange, near, rate)
     longest = max(exchange, *steps.values())
     fitting["stop_time"] = _nearest(length, longest) if length > 0 else []
-    problems += _multiple_problems("stop_time", length, longest, fitting["stop_time"], start)
+    problems += _multiple_problems(
+        "stop_time", (start, length), longest, fitting["stop_time"], rate
+    )
     wrong = {key: near[0] for key, near in fitting.items() if near}
     if len(wrong) > 1 and len(problems) == len(wrong):
-        problems.append(_together(exchange, start, wrong))
+        problems.append(_together(exchange, start, wrong, rate))
     return problems
 
 
-def _together(exchange: int, start: int, nearest: Mapping[str, int]) -> Problem:
+def _together(exchange: int, start: int, nearest: Mapping[str, int], rate: int) -> Problem:
     """Name times that fit the exchange step all at once."""
     origin = {"stop_time": start}
     times = {key: origin.get(key, 0) + near for key, near in nearest.items()}
     listed = ", ".join(
-        f"{key} = {to_seconds(value):.12g}"
+        f"{key} = {to_seconds(value, rate):.12g}"
         for key, value in {"exchange_step": exchange, **times}.items()
     )
     return Problem("exchange_step", "does not fit these times", f"this will do: {listed}")
 
 
-def _ticks(key: str, seconds: float, problems: list[Problem]) -> int:
-    try:
-        return to_ticks(seconds)
-    except ValueError as error:
-        problems.append(
-            Problem(
-                key,
-                str(error),
-                "make it shorter" if seconds > 1.0 else "round it to 1e-12 s or multiples of it",
-            )
-        )
-        return 0
-
-
-def _step_problems(key: str, step: int, exchange: int) -> list[Problem]:
+def _step_problems(key: str, step: int, exchange: int, rate: int) -> list[Problem]:
     if fits(step, exchange):
         return []
-    near = " or ".join(f"{to_seconds(s):g} s" for s in nearest_steps(step, exchange))
+    near = " or ".join(f"{to_seconds(s, rate):g} s" for s in nearest_steps(step, exchange))
     return [
         Problem(
             key,
-            f"{to_seconds(step):g} s neither divides the exchange step {to_seconds(exchange):g} s "
-            "nor is a whole multiple of it",
+            f"{to_seconds(step, rate):g} s neither divides the exchange step "
+            f"{to_seconds(exchange, rate):g} s nor is a whole multiple of it",
             f"nearest are {near}",
         )
     ]
@@ -158,17 +178,21 @@ def _nearest(length: int, step: int) -> list[int]:
 
 
 def _multiple_problems(
-    key: str, length: int, step: int, near: Sequence[int], origin: int
+    key: str, span: tuple[int, int], step: int, near: Sequence[int], rate: int
 ) -> list[Problem]:
+    """Refuse a length, told with its beginning, that is no whole number of steps (ticks)."""
     if not near:
         return []
-    after = f" after {to_seconds(origin):g} s" if origin else ""
+    origin, length = span
+    after = f" after {to_seconds(origin, rate):g} s" if origin else ""
+    meant = fraction_near(to_seconds(step, rate))
     return [
         Problem(
             key,
-            f"{to_seconds(origin + length):g} s is no whole number of steps of "
-            f"{to_seconds(step):g} s{after}",
+            f"{to_seconds(origin + length, rate):g} s is no whole number of steps of "
+            f"{to_seconds(step, rate):g} s{after}",
             f"nearest {'is' if len(near) == 1 else 'are'} "
-            + " or ".join(f"{to_seconds(origin + n):.12g} s" for n in near),
+            + " or ".join(f"{to_seconds(origin + n, rate):.12g} s" for n in near)
+            + (f'; if the step is meant to be a fraction, write "{meant}"' if meant else ""),
         )
     ]
