@@ -73,3 +73,26 @@ class Table:
         for title, cell in zip(self.columns, row, strict=True):
             side = "right" if title in self.right else "left"
             yield f'<td style="text-align:{side}">{escape(cell)}</td>'
+
+
+def digits(value: float, number: int = 3) -> str:
+    """Write a number with so many digits and without an exponent: ``1044``, not ``1.04e+03``.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    number : int
+        Digits; of a whole number with more of them, none is lost.
+
+    Returns
+    -------
+    str
+        With an exponent only below 1e-6 and from 1e12 on.
+    """
+    if value and not 1e-6 <= abs(value) < 1e12:
+        return f"{value:.{number}g}"
+    rounded = float(f"{value:.{number}g}") + 0.0  # no -0
+    if abs(rounded) >= 10.0 ** (number - 1):
+        return f"{value:.0f}"
+    return f"{rounded:.{number + 6}f}".rstrip("0").rstrip(".")

@@ -15,7 +15,9 @@ from ..common.stepping import MOST_STEPS, STEPPING_FAULTS
     TOO_DENSE,
     SMOOTH_BUT_COHESIVE,
     SETTLING_TOO_LONG,
-) = range(1, 13)
+    ROCK_UNDER,
+    ROCK_TOO_FAST,
+) = range(1, 15)
 
 FAULTS = {
     **STEPPING_FAULTS,
@@ -41,6 +43,16 @@ FAULTS = {
         "{rock.position.x} m it does not fit into the box from {box.left} m on, {box.width} m "
         "wide; move the rock or widen the box, or give the walls a box.wall_height over which "
         "it comes"
+    ),
+    ROCK_UNDER: (
+        "the rock starts in or under what carries the sand: its centre lies at y = "
+        "{rock.position.y} m and its radius is {rock.radius} m; raise its position0.y above the "
+        "surface at {surface_height} m by that radius"
+    ),
+    ROCK_TOO_FAST: (
+        "the rock, at {rock.velocity.x} m/s to the right and {rock.velocity.y} m/s upwards, moves "
+        "on by more than the radius of a sand disc, {disc.radius} m, between two looks at its "
+        "contacts and would jump over them: reduce its velocity or the exchange step"
     ),
     DISC_TOO_WIDE: (
         "a sand disc of radius {disc.radius} m (spread {disc.spread}) does not fit into the "
@@ -75,5 +87,7 @@ FAULTS = {
 }
 """Message of each fault; a name in braces stands for the value of that variable."""
 
-DEFERRED = frozenset({ROCK_INSIDE, ROCK_BESIDE, BEAM_UNORDERED, BEAM_GAPS, BEAM_TOO_NARROW})
+DEFERRED = frozenset(
+    {ROCK_INSIDE, ROCK_BESIDE, ROCK_UNDER, BEAM_UNORDERED, BEAM_GAPS, BEAM_TOO_NARROW}
+)
 """Faults of inputs, which may still change before the first step."""

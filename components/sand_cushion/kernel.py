@@ -7,10 +7,17 @@ from ..common.kernels import kernel, view
 from ..common.stepping import TOO_MANY_STEPS
 from ..common.substeps import are_too_many, substep_count, substep_length
 from .bodies import bodies_of
-from .boundaries import boundary_of, touch
+from .boundaries import ABSENT, beam_top, boundary_of, lever_at, touch, touch_disc
 from .contact_search import rebuild
-from .declarations import FLOOR, LAYOUT, LINEAR, MEAN, SUM
-from .faults import DIVERGED, LIST_FULL, ROCK_BESIDE, ROCK_INSIDE
+from .declarations import FLOOR, LAYOUT, LINEAR, MEAN, PLANES, SUM, UNBOUNDED
+from .faults import (
+    DIVERGED,
+    LIST_FULL,
+    ROCK_BESIDE,
+    ROCK_INSIDE,
+    ROCK_TOO_FAST,
+    ROCK_UNDER,
+)
 from .forces import contact_forces, forget_forces
 from .motion import collect_forces, set_boundaries
 from .start import INSTANT, advance, beam_fault, beam_key, initialise
@@ -54,7 +61,7 @@ def surface_under_rock(w, x, k):
 
 @kernel
 def rock_fault(w, x, k):
-    """Return the fault of a rock inside the sand or in a side wall, or 0.
+    """Return the fault of a rock inside the sand, in a side wall or under the base, or 0.
 
     Parameters
     ----------
@@ -76,7 +83,57 @@ def rock_fault(w, x, k):
         dx, dy = bodies.x[rock] - bodies.x[i], bodies.y[rock] - bodies.y[i]
         if math.sqrt(dx * dx + dy * dy) < w[V.rock_radius] + bodies.radius[i] - _TOUCHING:
             return ROCK_INSIDE
-    return OK
+    return ROCK_UNDER if is_under_base(w, x, k) else OK
+
+
+@kernel
+def is_under_base(w, x, k):
+    """Tell whether the rock is in or under the floor or the beam.
+
+    A rock on or beyond walls with an upper end is beside the sand.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    bool
+    """
+    bodies, table = bodies_of(x, k), view(k, k, A.boundary)
+    rock = bodies.rock
+    base = boundary_of(bodies.end + PLANES - 1, rock, table)
+    if base.geometry != ABSENT:
+        return touch(rock, bodies.end + PLANES - 1, base, w, bodies).gap < -_TOUCHING
+    for b in range(rock + 1, bodies.end):
+        if touch_disc(rock, b, bodies).gap < -_TOUCHING:
+            return True
+    inside = 0.0 <= bodies.x[rock] - w[V.box_left] <= w[V.box_width]
+    if not inside and w[V.box_wall_height] != UNBOUNDED:
+        return False
+    lever = lever_at(bodies.x[rock], bodies)
+    return bodies.y[rock] < beam_top(lever, bodies) - bodies.radius[lever.left]
+
+
+@kernel
+def is_too_fast(h, dt, w):
+    """Tell whether the rock moves on by more than a disc's radius between two looks at contacts.
+
+    Parameters
+    ----------
+    h, dt : float
+        Communication step and internal step (s).
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    bool
+    """
+    look = dt if w[V.kinematics] == LINEAR else h
+    speed = math.sqrt(w[V.rock_velocity_x] ** 2 + w[V.rock_velocity_y] ** 2)
+    return speed * look > w[V.disc_radius]
 
 
 @kernel
@@ -304,6 +361,8 @@ def step(t, h, w, x, k):
             return status
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
+    if is_too_fast(h, dt, w):
+        return ROCK_TOO_FAST
     linear, mean = w[V.kinematics] == LINEAR, w[V.forces] == MEAN
     kinetic, potential = 0.0, 0.0
     for s in range(n):

@@ -59,6 +59,35 @@ def base_height(parameters: Parameters, axis: Sequence[float]) -> float:
     return max(axis) + float(parameters["beam.radius"])
 
 
+def doubts(parameters: Parameters, structures: Sequence[str]) -> list[str]:
+    """Return the reasons why the results may not mean what the user has in mind.
+
+    Parameters
+    ----------
+    parameters : mapping of str to value
+        Parameters of the cushion.
+    structures : sequence of str
+        Names of the beams in the system.
+
+    Returns
+    -------
+    list of str
+        Each continues the name of the cushion.
+    """
+    found = []
+    if parameters["base"] == "floor" and structures:
+        found.append(
+            f"rests on a rigid floor (base = floor), so that nothing of the impact reaches the "
+            f"{' and the '.join(structures)}: set base to beam_discs or beam_surface"
+        )
+    if float(parameters["gravity"]) == 0.0:
+        found.append(
+            "has no gravity (gravity = 0): nothing holds the sand down, and it weighs nothing on "
+            "what carries it"
+        )
+    return found
+
+
 def description(parameters: Parameters) -> str:
     """Return the model of the sand in a line: its name, and the parameters that make it up.
 

@@ -114,6 +114,7 @@ def _tables(component: Component, sizes: Sizes) -> dict[str, object]:
         "instance": instance,
         "internal_step": references.get("internal_step", -1),
         "stable_step": references.get("stable_step", -1),
+        "own_step": references.get("time_step", -1),
         "event_time": references[event.time] if event else -1,
         "zero_until_event": [references[name] for name in event.while_zero] if event else [],
         "table": component.layout.table(sizes)[0],

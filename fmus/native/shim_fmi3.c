@@ -146,10 +146,11 @@ static void check_number(Slave *m, const Reference r[], size_t n, size_t values)
   size_t expected = 0;
   for (size_t i = 0; i < n; i++) expected += length_of(r[i]);
   if (expected == values) return;
-  because(m, "%zu values are passed for the %zu of ", values, expected);
+  because(m, "%s", "");
   for (size_t i = 0; i < n; i++)
     add_counted(m, i ? ", " : "", r[i]);
-  add(m, ": pass as many as these have elements");
+  add(m, " %s %zu value%s, and %zu %s passed", n == 1 ? "takes" : "take", expected, expected == 1 ? "" : "s", values,
+      values == 1 ? "is" : "are");
 }
 
 static Reference *elements(Slave *m, const Reference r[], size_t n, size_t values, int type) { /* NULL: refused */

@@ -32,7 +32,7 @@ enum { LINE = 64 }; /* bytes of a cache line. x begins with one in a slave, beca
 typedef struct { uint64_t mark; uint32_t phase; double start, time, unused[4], x[NX + 1], w[NW]; int64_t k[NK + 1]; } State;
 _Static_assert(offsetof(State, x) == LINE, "x does not begin with a cache line");
 typedef struct { void (*logger)(void); void *environment; int takes_early_return; } Host; /* what the importer gave to an instance */
-typedef struct { State s; Host host; void *block; char *name; double stop; int stale, previewed, told[ERROR + 1];
+typedef struct { State s; Host host; void *block; char *name; double stop, longest; int stale, previewed, told[ERROR + 1];
                  size_t length, begin; char text[16384]; } Slave; /* begin: of the reasons, behind the name */
 enum { LONGEST_NAME = 1024 }; /* bytes of an instance's name that messages show */
 
@@ -225,7 +225,7 @@ static void start_anew(Slave *m) {
   m->s.mark = MARK;
   m->s.phase = INSTANTIATED;
   m->s.time = NAN;
-  m->stop = INFINITY;
+  m->stop = m->longest = INFINITY;
   m->stale = STATE;
   m->previewed = 0;
 }
@@ -294,6 +294,19 @@ static Status enter_initialisation(Slave *m) {
   return OK;
 }
 
+static double longest_stable_step(const Slave *m) { /* internal steps are never longer than the communication step, unless a component has its own */
+  int used = OWN_STEP < 0 ? INTERNAL_STEP : OWN_STEP;
+  if (used < 0 || STABLE_STEP < 0 || !(m->s.w[used] > m->s.w[STABLE_STEP])) return INFINITY;
+  return OWN_STEP < 0 ? m->s.w[STABLE_STEP] : 0.0;
+}
+
+static void warn_of_unstable_step(Slave *m) { /* once */
+  Short stable = number(m->s.w[STABLE_STEP]);
+  because(m, SAYS_UNSTABLE, number(m->s.w[INTERNAL_STEP]).text, stable.text, stable.text);
+  tell(m, WARNING);
+  m->longest = INFINITY;
+}
+
 static Status exit_initialisation(Slave *m) {
   if (!is_legal(m, CALL_EXIT)) return not_now(m, CALL_EXIT);
   int64_t put_off;
@@ -304,11 +317,8 @@ static Status exit_initialisation(Slave *m) {
     because(m, SAYS_DEFERRED, fault(m, put_off).text);
     tell(m, DISCARD);
   }
-  if (INTERNAL_STEP < 0 || STABLE_STEP < 0 || !(m->s.w[INTERNAL_STEP] > m->s.w[STABLE_STEP])) return OK;
-  Short stable = number(m->s.w[STABLE_STEP]);
-  because(m, SAYS_UNSTABLE, number(m->s.w[INTERNAL_STEP]).text, stable.text, stable.text);
-  tell(m, WARNING);
-  return WARNING;
+  m->longest = longest_stable_step(m);
+  return OK;
 }
 
 static Status terminate(Slave *m) {
@@ -330,8 +340,10 @@ static Long against_step(const Slave *m, double time, double step) { /* why a st
 
 static int may_step(Slave *m, double time, double step) {
   double tolerance = 1e-6 * step;
-  if (is_legal(m, CALL_STEP) && step > 0.0 && isfinite(step) && fabs(time - m->s.time) <= tolerance && time + step <= m->stop) return 1;
+  if (is_legal(m, CALL_STEP) && step > 0.0 && isfinite(step) && fabs(time - m->s.time) <= tolerance && time + step <= m->stop
+      && step <= m->longest) return 1;
   Long reason = against_step(m, time, step);
+  if (!*reason.text && step > m->longest) warn_of_unstable_step(m);
   if (!*reason.text) return 1;
   because(m, SAYS_STEP_REFUSED, number(step).text, time, reason.text);
   return 0;

@@ -117,6 +117,7 @@ class ComponentSlave(Fmi2Slave):
         self._previewed = False
         self._compiled = False
         self._time, self._stop_time = math.nan, math.inf
+        self._longest_stable = math.inf
         self._advance: Callable[..., int] = self.component.step
         self._zeros = np.zeros_like(instance.w)
         """As many zeros as values: their product is 0 while all values are finite."""
@@ -177,7 +178,7 @@ class ComponentSlave(Fmi2Slave):
             self._stale = Stale.NOTHING
         self._compile_step()
         self._phase = Phase.RUNNING
-        self._warn_of_unstable_step()
+        self._longest_stable = self._longest_stable_step()
 
     @_nothing
     def terminate(self) -> None:
@@ -204,12 +205,15 @@ class ComponentSlave(Fmi2Slave):
                 self._phase is _RUNNING
                 and current_time == self._time
                 and 0.0 < step_size < self._stop_time - current_time
+                and step_size <= self._longest_stable
             )
             if not due and (reason := self._why_not(current_time, step_size)):
                 self._log(
                     say("STEP_REFUSED", number(step_size), current_time, reason), Fmi2Status.error
                 )
                 return False
+            if step_size > self._longest_stable:
+                self._warn_of_unstable_step()
             instance = self._instance
             status = self._advance(current_time, step_size, instance.w, instance.x, instance.k)
             if status != OK:
@@ -269,14 +273,27 @@ class ComponentSlave(Fmi2Slave):
                 compiler(tuple(map(typeof, arguments)))
         self._compiled = True
 
+    def _longest_stable_step(self) -> float:
+        """Return the longest communication step (s) with which the integration is stable.
+
+        Internal steps are never longer than it, unless a component has its own.
+        """
+        known = self._instance.references
+        own = "time_step" in known
+        used = "time_step" if own else "internal_step"
+        if not {used, "stable_step"} <= known.keys():
+            return math.inf
+        stable = self._instance["stable_step"]
+        if self._instance[used] <= stable:
+            return math.inf
+        return 0.0 if own else stable
+
     def _warn_of_unstable_step(self) -> None:
-        if {"internal_step", "stable_step"} <= self._instance.references.keys():
-            step, stable = self._instance["internal_step"], self._instance["stable_step"]
-            if step > stable:
-                self._log(
-                    say("UNSTABLE", number(step), number(stable), number(stable)),
-                    Fmi2Status.warning,
-                )
+        """Say once that a step is too long."""
+        step, stable = self._instance["internal_step"], self._instance["stable_step"]
+        text = say("UNSTABLE", number(step), number(stable), number(stable))
+        self._log(text, Fmi2Status.warning)
+        self._longest_stable = math.inf
 
     # --- values
 

@@ -102,12 +102,20 @@ def case(name: str) -> Case:
     InputRefused
         There is no such case.
     """
-    found = next(
-        (case for case in cases().values() if name in (case.name, *case.other_names)), None
-    )
+    found = _found(name)
     if found is None:
         raise InputRefused([Problem(name, "there is no case of this name", nearest(name, cases()))])
     return found
+
+
+def is_case(name: str) -> bool:
+    """Tell whether there is a case of this name."""
+    return _found(name) is not None
+
+
+def _found(name: str) -> Case | None:
+    every = cases().values()
+    return next((case for case in every if name in (case.name, *case.other_names)), None)
 
 
 def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -> Changes:

@@ -8,7 +8,7 @@ from io import TextIOWrapper
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from ..core.supervisor import Ending, supervised
 
@@ -42,6 +42,21 @@ _STYLE: dict[str, Any] = {
 }
 
 
+class OnceEach(TyperCommand):
+    """A command that takes each option with a value once, unless it collects them."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Refuse an option that is given twice: the last one would hold in silence."""
+        _, _, given = self.make_parser(ctx).parse_args(args=list(args))
+        for option in given:
+            collects = option.param_type_name != "option" or getattr(option, "multiple", False)
+            is_flag = getattr(option, "is_flag", False)
+            if given.count(option) > 1 and not collects and not is_flag:
+                what = f"{option.opts[0]} is given {given.count(option)} times; keep one of them"
+                raise typer.BadParameter(what, ctx)
+        return super().parse_args(ctx, args)
+
+
 class LazyCommands(TyperGroup):
     """The commands of :data:`COMMANDS`, imported when one of them is used."""
 
@@ -55,7 +70,7 @@ class LazyCommands(TyperGroup):
             return None
         module = import_module(f".{cmd_name}", __package__)
         alone = typer.Typer(**_STYLE)
-        alone.command(cmd_name)(module.command)
+        alone.command(cmd_name, cls=OnceEach)(module.command)
         return typer.main.get_command(alone)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

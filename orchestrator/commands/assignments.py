@@ -8,7 +8,7 @@ from ..core.system.system import Value
 
 
 def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dict[str, Value]:
-    """Read values by name; the last of several for one name holds.
+    """Read values by name.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dic
     texts : sequence of str
         ``name=value``, ``sand.modulus=3e6`` for instance.
     problems : list of Problem
-        Texts that are no assignments are appended.
+        Texts that are no assignments, and names that are given twice, are appended.
 
     Returns
     -------
@@ -27,7 +27,10 @@ def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dic
     values: dict[str, Value] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
-        if name and equals and value:
+        if name and equals and value and name in values:
+            what = f"is given twice: {values[name]} and {_value(value)}"
+            problems.append(Problem(f"{option} {name}", what, "keep one of them"))
+        elif name and equals and value:
             values[name] = _value(value)
         else:
             remedy = f"write {option} component.name=value"

@@ -9,6 +9,7 @@ from ..runs.export import system_text
 from ..runs.inspection import describe_fmu
 from ..runs.request import Request
 from ..runs.system import System
+from ..runs.target import is_fmu
 from .options import ModelName
 from .screen import opened
 
@@ -27,7 +28,7 @@ _Toml = Annotated[
 def command(target: _Subject, toml: _Toml = False, model: ModelName = None) -> None:
     """Show an FMU or a system: ports, values, connections."""
     with opened() as screen:
-        if target.endswith(".fmu"):
+        if is_fmu(target):
             screen.overview(describe_fmu(Path(target)))
             return
         system = System.prepared(Request(target, model=model))

@@ -160,7 +160,13 @@ def _simulate(
         tell_leftovers(folder, screen)
         try:
             with options_named(request.options):
-                return simulate(system, folder, progress=progress, allow_unstable=allow_unstable)
+                return simulate(
+                    system,
+                    folder,
+                    progress=progress,
+                    allow_unstable=allow_unstable,
+                    note=screen.warn,
+                )
         except RunFailed as failure:
             done: Run = failure.run
             return done

@@ -29,6 +29,11 @@ class Problem:
         return f"{self.where}: {self.what}" + (f"; {self.remedy}" if self.remedy else "")
 
 
+def counted(number: int, noun: str) -> str:
+    """Return a number with its noun: ``1 output``, ``2 outputs``."""
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
 class InputRefused(Exception):  # noqa: N818 (it says what happened, not that it is an error)
     """A request cannot be carried out; nothing has been computed.
 

@@ -1,18 +1,19 @@
 """Run a system from its data to its results: the one function that an application needs."""
 
 import time
-from collections.abc import Iterator, Mapping
+import zlib
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NoReturn
 
-from .errors import RunFailed
+from .errors import InputRefused, Problem, RunFailed
 from .fmu.fmu_slave import FmuFile
 from .fmu.slave import FATAL, OK, WARNING, Slave, Source, counts_of, status_name
 from .loop.buses import Buses
-from .loop.initialisation import initialise, instantiate
+from .loop.initialisation import free, initialise, instantiate
 from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Master, Progress
@@ -22,6 +23,7 @@ from .results.provenance import describe_run
 from .results.reading import StoredRun, read_run
 from .results.run_folder import RunFolder
 from .supervisor import announce
+from .system.limits import amount_in_words
 from .system.plan import Plan
 from .system.planning import make_plan
 from .system.system import SystemSpec
@@ -40,6 +42,7 @@ def simulate(
     allow_unstable: bool = False,
     progress: Progress | None = None,
     facts: Mapping[str, Any] | None = None,
+    note: Callable[[str], None] = lambda text: None,
 ) -> StoredRun:
     """Run a system and write its results into a folder.
 
@@ -61,6 +64,8 @@ def simulate(
         Called now and then with the time reached and the stop time (s).
     facts : mapping, optional
         Added to the provenance of the run.
+    note : callable, optional
+        Called with a line before the run if its results will be large.
 
     Returns
     -------
@@ -75,16 +80,57 @@ def simulate(
         The run began and could not go on; the results until then are in the folder.
     """
     made_from = {**sources_of(system), **(sources or {})}
-    plan = make_plan(system, made_from)
+    plan = _plan(system, made_from, allow_unstable)
     with Interruption() as interruption, RunFolder(folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
         session = _Session(plan, made_from, results, interruption)
         try:
             session.prepare(allow_unstable, dict(facts or {}))
+            if large := session.large_results():
+                note(large)
             session.run(progress)
         finally:
             session.close()
     return read_run(folder)
+
+
+def _plan(system: SystemSpec, sources: Mapping[str, Source], allow_unstable: bool) -> Plan:
+    """Make the plan; of steps that do not fit, components say too what they have against them."""
+    try:
+        return make_plan(system, sources)
+    except InputRefused as refusal:
+        more = _against_steps(system, sources, allow_unstable)
+        raise InputRefused([*refusal.problems, *more]) from None
+
+
+def _against_steps(
+    system: SystemSpec, sources: Mapping[str, Source], allow_unstable: bool
+) -> list[Problem]:
+    """Return what components have against the steps of a system whose other times do not fit.
+
+    Nothing if more than these times is wrong with the system.
+    """
+    longest = max(system.step(name) for name in system.components)
+    silent = {
+        name: spec.model_copy(update={"record_states": False})
+        for name, spec in system.components.items()
+    }
+    fitting = {
+        "components": silent,
+        "output_interval": None,
+        "state_interval": None,
+        "stop_time": system.start_time + longest,
+    }
+    slaves: dict[str, Slave] = {}
+    try:
+        plan = make_plan(system.model_copy(update=fitting), sources)
+        slaves = instantiate(plan, sources)
+        initialise(slaves, Buses(plan), allow_unstable)
+    except InputRefused as refusal:
+        return refusal.problems if slaves else []
+    finally:
+        free(slaves.values())
+    return []
 
 
 @dataclass
@@ -119,7 +165,15 @@ class _Session:
         self.journal.rests()
         self.preparation = time.perf_counter() - began
         known = describe_run(plan, self.sources, self.slaves)
-        self.results.begin(recorder.columns, {**known, **facts})
+        self.columns = recorder.columns
+        self.results.begin(self.columns, {**known, **facts})
+
+    def large_results(self) -> str:
+        """Say what the results will take, if that is much; else nothing."""
+        names = [name for name, spec in self.plan.system.components.items() if spec.record_states]
+        state = sum(len(zlib.compress(self.slaves[name].state(), 1)) for name in names)
+        columns = 1 + len(self.columns)
+        return amount_in_words(self.plan.timing, columns, state, self.results.running)
 
     def _enter(self, component: str) -> None:
         """Note that a component is called next; stop here if that was asked for."""

@@ -1,17 +1,18 @@
 """Warnings of a run, and doubts about its metrics: whether they can be trusted."""
 
+import math
 from collections.abc import Iterator
 
 from rockshed.components.common.roles import Role
-from rockshed.components.common.units import kN, mm
+from rockshed.components.common.units import kN, mm, ms
 
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
-from . import names
-from .cushion import cushions
+from . import contents, names
+from .cushion import base_height, cushions
 from .energy import driven, structures
 from .headlines import headlines
-from .roles import column, members, parameter
+from .roles import column, members, owners, parameter, parameters
 
 _RESIDUAL_LIMIT = 0.01
 """Part of the impact energy that may be missing in the balance."""
@@ -19,6 +20,8 @@ _UNBALANCED_LIMIT = 1e-3
 """Unbalanced-force ratio at the start up to which a cushion counts as at rest."""
 _WEIGHT_LIMIT = 0.1
 """Random packs differ from their mean weight, and walls carry some of it."""
+_THINNEST = 3.0
+"""Diameters of a grain that a layer needs under the body to be a cushion."""
 
 
 def warnings(run: StoredRun) -> list[str]:
@@ -35,13 +38,118 @@ def warnings(run: StoredRun) -> list[str]:
         A sentence each, with a remedy.
     """
     found = headlines(run)
-    return [
+    texts = [
+        *meaningless(run),
         *run.provenance.get("warnings", []),
         *_open_balance(run, found),
         *(text for structure in structures(run) for text in _other_weight(run, structure)),
         *(text for cushion in cushions(run) for text in _restless(run, cushion)),
         *(text for cushion in cushions(run) for text in _bottomed_out(run, cushion, found)),
     ]
+    return list(dict.fromkeys(texts))
+
+
+def meaningless(run: StoredRun) -> list[str]:
+    """Return what makes the whole run meaningless, whatever its metrics are.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    list of str
+        Sentences that come before all other warnings.
+    """
+    return [
+        *([] if driven(run) else _different_gravity(run)),
+        *(text for cushion in cushions(run) for text in _of_cushion(run, cushion)),
+    ]
+
+
+def _different_gravity(run: StoredRun) -> Iterator[str]:
+    """Doubt a body and a cushion that do not fall alike."""
+    weighed = [*owners(run, Role.STRIKING), *cushions(run)]
+    found = [member for member in members(run, Role.GRAVITY) if member.component in weighed]
+    values = {m.column: float(parameter(run, m.component, Role.GRAVITY)) for m in found}
+    if len(set(values.values())) > 1:
+        listed = ", ".join(f"{name} = {value:g}" for name, value in values.items())
+        yield f"rock and cushion do not fall alike: {listed} m/s2; give all the same"
+
+
+def _of_cushion(run: StoredRun, cushion: str) -> Iterator[str]:
+    known = contents.measures(run, cushion)
+    if known is not None:
+        for reason in known.doubts(parameters(run, cushion), structures(run)):
+            yield f"the {cushion} {reason}"
+    yield from _no_cushion(run, cushion)
+    if not driven(run):
+        yield from _untouched(run, cushion)
+        yield from _gone_through(run, cushion)
+
+
+def _thickness(run: StoredRun, cushion: str) -> float:
+    """Return the height (m) of a cushion's surface over its base at the start, inf if unknown."""
+    surface, base = column(run, cushion, Role.SURFACE), base_height(run, cushion)
+    if surface is None or base is None:
+        return math.inf
+    return float(run.series[surface][0]) - base
+
+
+def _no_cushion(run: StoredRun, cushion: str) -> Iterator[str]:
+    """Doubt a layer that is hardly thicker than a grain."""
+    radius = parameter(run, cushion, Role.GRAIN_RADIUS)
+    thickness = _thickness(run, cushion)
+    if radius is None or thickness >= _THINNEST * 2.0 * float(radius):
+        return
+    yield (
+        f"the {cushion} is no cushion: it is {thickness / mm:.3g} mm high where the rock is, and "
+        f"one disc is {2.0 * float(radius) / mm:g} mm thick; give it more discs"
+    )
+
+
+def _untouched(run: StoredRun, cushion: str) -> Iterator[str]:
+    """Doubt an impact without contact."""
+    force = column(run, cushion, Role.ON_BODY)
+    if force is None or run.status != "complete" or run.series[force].any():
+        return
+    where = "; " + _on_its_way(run, cushion)
+    yield f"the rock has never touched the {cushion}: there is no impact in this run{where}"
+
+
+def _on_its_way(run: StoredRun, cushion: str) -> str:
+    """Say where a body was when the run ended, and where it was going."""
+    name = column(run, cushion, Role.PENETRATION)
+    if name is None or run.series["time"].size < 2:
+        return "check its place and velocity, and the stop time"
+    time, depth = run.series["time"], run.series[name]
+    distance = -float(depth[-1])
+    sinking = float(depth[-1] - depth[-2]) / float(time[-1] - time[-2])
+    if distance <= 0.0:
+        return "it ends beside the highest point of the surface; check its place and velocity"
+    if sinking <= 0.0:
+        return f"it ends {distance / mm:.4g} mm above the surface and moves away from it"
+    arrives = distance / sinking
+    return (
+        f"it ends {distance / mm:.4g} mm above the surface and needs some {arrives / ms:.3g} ms "
+        "more: raise the stop time, or check its place"
+    )
+
+
+def _gone_through(run: StoredRun, cushion: str) -> Iterator[str]:
+    """Doubt an impact that went through the base, which is no model of anything."""
+    name = column(run, cushion, Role.PENETRATION)
+    thickness = _thickness(run, cushion)
+    if name is None or not run.series[name].size:
+        return
+    depth = float(run.series[name].max())
+    if depth > 2.0 * thickness:
+        yield (
+            f"the rock has gone through the {cushion} and what carries it, by "
+            f"{(depth - thickness) / mm:.4g} mm: the impact is beyond this model, and what came "
+            "after means nothing"
+        )
 
 
 def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
@@ -97,6 +205,8 @@ def _bottomed_out(run: StoredRun, cushion: str, found: list[Metric]) -> Iterator
     clearance = next((float(m.value) for m in found if m.name in wanted), None)
     if clearance is None or radius is None or clearance >= 2.0 * float(radius):
         return
+    if clearance < -_thickness(run, cushion):
+        return  # told first
     where = f"presses {-clearance / mm:.1f} mm into"
     if clearance > 0.0:
         where = f"comes within {clearance / mm:.1f} mm of"

@@ -261,7 +261,11 @@ def _scale_bar(axes: Axes, box: float) -> None:
 
 
 def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
-    """Left, right, bottom, top (m) of what all panels show."""
+    """Left, right, bottom, top (m) of what all panels show.
+
+    That is the sand with what carries it, however far that gives way, and the rock; of things that
+    are farther off than the box is wide, nothing.
+    """
     box = shown[0].state.box
     margin = max(0.06 * box.width, 0.0 if math.isinf(box.wall_top) else 1.2 * box.wall_thickness)
     beam = max(float(frame.state.beam.radius.max(initial=0.0)) for frame in shown)
@@ -270,12 +274,17 @@ def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
         for frame in shown
         for disc in (frame.state.rock, frame.state.discs)
     )
-    highest = min(top, box.base + 1.2 * box.width)
+    lowest = min(
+        float((discs.y - discs.radius).min(initial=box.base))
+        for frame in shown
+        for discs in (frame.state.beam, frame.state.rock, frame.state.discs)
+    )
+    bottom = min(box.base - max(2.2 * beam, margin), lowest - 0.1 * margin)
     return (
         box.left - margin,
         box.left + box.width + margin,
-        box.base - max(2.2 * beam, margin),
-        highest + 0.3 * margin,
+        max(bottom, box.base - 1.2 * box.width),
+        min(top, box.base + 1.2 * box.width) + 0.3 * margin,
     )
 
 

@@ -1,6 +1,6 @@
 """FMUs of components: built where they are missing or out of date, and in which sizes."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,9 +81,7 @@ def case_sizes(
     for name, value in _with_one_size(chosen, numbers, problems).items():
         owner, _, size = name.partition(".")
         if name not in known:
-            problems.append(
-                Problem(f"--size {name}", "there is no such size", nearest(name, known))
-            )
+            problems.append(_no_size(f"--size {name}", chosen.models, name, known))
         elif not is_whole(value):
             problems.append(_not_whole(name, value))
         else:
@@ -91,6 +89,14 @@ def case_sizes(
     for owner, model in chosen.models.items():
         problems += range_problems(f"--size, {owner}", model, sizes[owner])
     return sizes
+
+
+def _no_size(where: str, models: Mapping[str, str], name: str, known: Sequence[str]) -> Problem:
+    """Refuse a size that a component of a case does not have; it may be a variable of it."""
+    owner, _, key = name.partition(".")
+    if owner in models and key in {v.name for v in component(models[owner]).layout.variables}:
+        return Problem(where, f"{key} is no size, but a variable", f"use --set {name}=VALUE")
+    return Problem(where, "there is no such size", nearest(name, known))
 
 
 def _not_whole(name: str, value: object) -> Problem:
@@ -437,12 +443,22 @@ def _export_problems(export: Export) -> list[Problem]:
     return problems
 
 
+def _other(size: str, known: Collection[str], names: Sequence[str]) -> str:
+    """Say what may have been meant by a size that no component has."""
+    variables = {v.name for name in names for v in component(name).layout.variables}
+    if size in variables:
+        return "it is a variable, whose value is set when a run begins: `rockshed run --set`"
+    return nearest(size, known)
+
+
 def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Problem]:
     known = {size for name in names for size in component(name).sizes}
     have = "have" if len(names) > 1 else "has"
     problems = [
         Problem(
-            f"--size {size}", f"{' and '.join(names)} {have} no such size", nearest(size, known)
+            f"--size {size}",
+            f"{' and '.join(names)} {have} no such size",
+            _other(size, known, names),
         )
         for size in sizes
         if size not in known

@@ -13,7 +13,15 @@ from rockshed.components.catalogue import component
 from rockshed.components.common.ports import Kind
 from rockshed.components.common.units import ms
 
-from ..cases.registry import Case, ComponentSizes, case, differences, model_changes, references
+from ..cases.registry import (
+    Case,
+    ComponentSizes,
+    case,
+    differences,
+    is_case,
+    model_changes,
+    references,
+)
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
@@ -22,6 +30,7 @@ from ..core.system.system import ONE_VALUE, SystemSpec, load_system, system_from
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import Note, case_fmus, case_sizes, own_sizes, silent
 from .request import AUTO, Request
+from .target import wrong_target
 
 __all__ = ["Job", "Request", "plan_problems", "prepare"]
 
@@ -80,8 +89,8 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
     InputRefused
         Everything that is wrong with the request.
     """
-    if request.target.endswith(".fmu"):
-        raise InputRefused([_not_an_fmu(request.target)])
+    if not is_case(request.target) and (wrong := wrong_target(request.target)):
+        raise InputRefused([wrong])
     known = list(problems)
     request, warnings = _with_present_names(request)
     asked = request
@@ -128,6 +137,9 @@ def _without_foreign_values(request: Request, problems: list[Problem]) -> Reques
     for name, value in request.values.items():
         owner, _, key = name.partition(".")
         variables = component(models[owner]).layout.variables if owner in models else ()
+        if owner in models and key in component(models[owner]).sizes:
+            problems.append(_a_size(name, value))
+            continue
         declared = {v.name: v for v in variables}.get(key.partition("[")[0])
         is_word = declared is not None and declared.kind is not Kind.REAL
         reason = "" if is_word else _why_no_number(value)
@@ -140,6 +152,11 @@ def _without_foreign_values(request: Request, problems: list[Problem]) -> Reques
     return replace(request, values=kept)
 
 
+def _a_size(name: str, value: object) -> Problem:
+    what = "is a size, which an FMU is built with, and no parameter"
+    return Problem(name, what, f"give it as a size: --size {name}={value}")
+
+
 def _why_no_number(value: object) -> str:
     if isinstance(value, list | tuple | dict):
         return ONE_VALUE
@@ -150,15 +167,6 @@ def _why_no_number(value: object) -> str:
     except TypeError:
         return ONE_VALUE
     return ""
-
-
-def _not_an_fmu(target: str) -> Problem:
-    return Problem(
-        target,
-        "is an FMU, and a run takes a case or a system file",
-        "look into it with `rockshed info`, and name it in a system file; "
-        "`rockshed info lab-impact --toml` shows one",
-    )
 
 
 def _from_file(request: Request, problems: list[Problem]) -> Job:
@@ -188,8 +196,25 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
         "system_file": request.target,
         "differences": {**request.values, **request.options},
     }
-    system = load_system(Path(request.target))
+    system = _loaded(Path(request.target))
     return Job(system.name, system, {}, facts)
+
+
+def _loaded(file: Path) -> SystemSpec:
+    """Read a system file; what is wrong with its form is told with all the rest.
+
+    Raises
+    ------
+    InputRefused
+        The form is wrong; with what the FMUs have against the connections that are in order.
+    """
+    try:
+        return load_system(file)
+    except InputRefused as refusal:
+        more: list[Problem] = []
+        with suppress(InputRefused):  # more than connections is wrong
+            more = plan_problems(load_system(file, leave_out_faulty=True), {})
+        raise InputRefused([*refusal.problems, *more]) from None
 
 
 def _from_case(chosen: Case, request: Request, problems: list[Problem], note: Note) -> Job:

@@ -70,7 +70,7 @@ class Request:
     @property
     def is_file(self) -> bool:
         """Whether the target is meant as a system file and not as the name of a case."""
-        return self.target.endswith(".toml") or "/" in self.target or "\\" in self.target
+        return self.target.lower().endswith(".toml") or "/" in self.target or "\\" in self.target
 
     def as_data(self) -> dict[str, Any]:
         """Return the request as plain data, for the provenance of the run."""

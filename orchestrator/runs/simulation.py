@@ -7,10 +7,11 @@ from pathlib import Path
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
-from ..core.results.reading import add_metrics
+from ..core.results.reading import add_metrics, set_warnings
 from ..core.run import simulate as simulate_spec
 from ..metrics import comparison
 from ..temporary import TemporaryFolder
+from .building import Note, silent
 from .run import Run, read_run
 from .system import System, case
 
@@ -21,6 +22,7 @@ def simulate(
     *,
     progress: Progress | None = None,
     allow_unstable: bool = False,
+    note: Note = silent,
 ) -> Run:
     """Run a system. Ctrl-C ends the run and keeps what was computed.
 
@@ -38,6 +40,8 @@ def simulate(
         Called with the time reached and the stop time (s), every now and then.
     allow_unstable : bool
         Run also with steps above the stable ones.
+    note : callable, optional
+        Called with a line before the run if its results will be large.
 
     Returns
     -------
@@ -68,7 +72,7 @@ def simulate(
     temporary = TemporaryFolder("rockshed-") if folder is None else None
     place = Path(temporary.name) / system.name if temporary else Path(str(folder))
     try:
-        _carry_out(system, place, progress, allow_unstable)
+        _carry_out(system, place, progress, allow_unstable, note)
     except RunFailed as failure:
         failure.run = _kept(measured(place), temporary)
         raise
@@ -91,7 +95,7 @@ def _system(system: System | str) -> System:
 
 
 def _carry_out(
-    system: System, folder: Path, progress: Progress | None, allow_unstable: bool
+    system: System, folder: Path, progress: Progress | None, allow_unstable: bool, note: Note
 ) -> None:
     job = system.job
     simulate_spec(
@@ -101,11 +105,12 @@ def _carry_out(
         allow_unstable=allow_unstable,
         progress=progress,
         facts=job.facts,
+        note=note,
     )
 
 
 def measured(folder: Path) -> Run:
-    """Add the metrics that follow from the results to those of the run, and read them all.
+    """Add the metrics and warnings that follow from the results to those of the run.
 
     Parameters
     ----------
@@ -115,14 +120,17 @@ def measured(folder: Path) -> Run:
     Returns
     -------
     Run
-        With all metrics; they are written down too, unless the disk is full.
+        With all of them; they are written down too, unless the disk is full.
     """
     done = read_run(folder)
     metrics = comparison.figures(done, comparison.known_of(done))
+    warnings = done.warnings
     with suppress(OSError):
         add_metrics(done.folder, metrics)
+        set_warnings(done.folder, warnings)
     everything = Metrics([*done.metrics.values(), *metrics])
-    return Run(**{**vars(done), "metrics": everything})
+    provenance = {**done.provenance, "warnings": warnings}
+    return Run(**{**vars(done), "metrics": everything, "provenance": provenance})
 
 
 def _kept(run: Run, temporary: TemporaryFolder | None) -> Run:

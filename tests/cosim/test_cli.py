@@ -608,7 +608,7 @@ def test_output_that_cannot_be_written(rockshed, tmp_path, place):
         (["build", "FallingRock", "--size", "discs=9"], "FallingRock has no such size"),
         (["build", "FallingRock", "--output-dir", "file/x"], "name another folder"),
         (["export", "lab-impact", "file"], "is a file"),
-        (["run", "file.fmu"], "is an FMU, and a run takes a case or a system file"),
+        (["run", "file.fmu"], "is an FMU, and a run takes a case of"),
         (["run", "lab-impact", "--output-dir", "/"], "is no folder of a run"),
         (["plot", "/"], "is no folder of a run"),
         (["plot", "file"], "is no folder of a run"),

@@ -261,7 +261,7 @@ LINKS = ["spring.end1.force -> mass.force", "mass.position -> spring.end1.positi
         (
             {"position": ["position", "velocity"]},
             LINKS,
-            "has 1 forces and 2 positions; name one position for each force",
+            "has 1 force and 2 positions; name one position for each force",
         ),
         (
             {},

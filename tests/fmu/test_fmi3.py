@@ -196,15 +196,15 @@ VALUES = {
     "the time": (lambda t: t.set_array("time", [4.0]), "time is refused: it is set by the steps"),
     "too few values": (
         lambda t: t.set_array("extra", [0.0, 1.0]),
-        r"2 values are passed for the 3 of extra\[3\]: pass as many",
+        r"extra\[3\] takes 3 values, and 2 are passed",
     ),
     "too many values of several": (
         lambda t: t.fmu.setFloat64([reference(t, "inflow"), reference(t, "extra")], [0.0] * 5),
-        r"5 values are passed for the 4 of inflow, extra\[3\]",
+        r"inflow, extra\[3\] take 4 values, and 5 are passed",
     ),
     "no room for all": (
         lambda t: t.fmu.getFloat64([reference(t, "level")], 2),
-        r"2 values are passed for the 3 of level\[3\]",
+        r"level\[3\] takes 3 values, and 2 are passed",
     ),
     "an element of an array": (
         lambda t: t.fmu.getFloat64([reference(t, "extra") + 1]),

@@ -7,6 +7,7 @@ import pytest
 
 from rockshed.components.common.component import ComponentError
 from rockshed.components.sand_cushion import COMPONENT
+from rockshed.components.sand_cushion.faults import ROCK_TOO_FAST
 from tests.sand_discs import SMALL_BOX, cushion, discs_at, run, stirred
 
 
@@ -51,6 +52,35 @@ def test_smooth_contacts_that_yield_are_no_fault():
 def test_nothing_is_no_size(sizes):
     with pytest.raises(ComponentError, match="allowed is 1 to"):
         COMPONENT.instance(**sizes)
+
+
+@pytest.mark.parametrize("base", ["beam_discs", "beam_surface", "floor"])
+@pytest.mark.parametrize("y", [-0.02, -0.06, -0.3, -5.0])
+def test_a_rock_that_starts_in_or_under_what_carries_the_sand_is_refused(base, y):
+    """The beam's discs, of a radius of 25 mm, have their centres at y = 0, the floor is there."""
+    with pytest.raises(ComponentError, match=r"starts (inside the sand|in or under what carries)"):
+        cushion({**SMALL_BOX, "base": base, "rock.position.y": y, "rock.radius": 0.04}, elements=3)
+
+
+def test_a_rock_may_start_on_the_base_beside_the_sand():
+    on_floor = {**SMALL_BOX, "rock.position.y": 0.02, "rock.radius": 0.02}
+    assert cushion({**on_floor, "rock.position.x": 0.079}, discs=5)["rock.force.y"] == 0.0
+
+
+def test_a_rock_that_comes_over_a_low_wall_may_start_below_the_base():
+    beside = {"box.wall_height": 0.2, "rock.position.x": -1.0, "rock.position.y": -0.5}
+    for base in ("beam_discs", "beam_surface", "floor"):
+        cushion({**SMALL_BOX, **beside, "base": base}, elements=3)
+
+
+@pytest.mark.parametrize(("kinematics", "reach"), [("held", 1e-3), ("linear", 1e-5)])
+def test_a_rock_that_jumps_over_contacts_is_refused_in_the_step(kinematics, reach):
+    """Held inputs move the rock once in a communication step, linear ones in each internal step."""
+    sand = cushion({**SMALL_BOX, "kinematics": kinematics, "internal_step": 1e-5})
+    for velocity, status in ((0.99, 0), (1.01, ROCK_TOO_FAST)):
+        sand["rock.velocity.y"] = -velocity * 0.005 / reach
+        assert COMPONENT.step(0.0, 1e-3, sand.w, sand.x, sand.k) == status
+    assert "moves on by more than the radius of a sand disc, 0.005 m" in sand.message(status)
 
 
 def test_a_rock_inside_the_sand():

@@ -30,6 +30,7 @@ from ...pictures.style import (
 )
 from ...sites.rockfall.profile import surface
 from ...sites.rockfall.site import Barrier
+from ...tables import digits
 from ..drawing import drawn
 from ..frame import Count, Drawing, StageProgress, counter
 from .animation import FRAMES_PER_SECOND, write_animation
@@ -74,6 +75,10 @@ _LEVEL = 0.05
 """Height of a picture of a level profile / its length."""
 _FEWEST_RADII = 20.0
 """Height of a picture of a level profile / radius of the rock, at least."""
+_NAMES_IN_A_LINE = 5
+"""Names that stand side by side above a panel."""
+_TO_SCALE = 0.02
+"""Part by which heights may be drawn larger than lengths and still be to scale."""
 _ALIKE = 1e-9
 """Part of the largest value by which values may differ and still be one."""
 
@@ -201,12 +206,36 @@ def envelopes(result: "RockfallResult") -> Figure:
         for number in range(count):
             path = replay(result.slope, campaign, number, _INTERVAL)
             panels[0].plot(path.x, path.y, color=ROCK, linewidth=0.5, alpha=0.35, zorder=4)
-        legend(panels[0], loc="upper right")
+        _legend_above(panels[0])
         for axes, name in zip(panels[1:], _SHOWN, strict=True):
             _envelope(result, name, axes)
-        legend(panels[1], loc="upper right", ncols=len(_CURVES))
+        _legend_above(panels[1])
         panels[-1].set(xlabel="x (m)")
+        _tell_scale(panels[0])
     return figure
+
+
+def _legend_above(axes: Axes) -> None:
+    """Name what is drawn above the panel, where it hides neither curves nor labels."""
+    number = len(axes.get_legend_handles_labels()[0])
+    legend(
+        axes,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=max(1, min(number, _NAMES_IN_A_LINE)),
+        borderaxespad=0.2,
+    )
+
+
+def _tell_scale(axes: Axes) -> None:
+    """Say by how much heights are drawn larger than lengths."""
+    axes.figure.draw_without_rendering()  # type: ignore[union-attr]  # it is no part of a figure
+    box = axes.get_window_extent()
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    ratio = (box.height / (top - bottom)) / (box.width / (right - left))
+    words = "to scale" if abs(ratio - 1.0) < _TO_SCALE else f"heights × {ratio:.2g}"
+    place = {"xycoords": "axes fraction", "xytext": (2, 2), "color": INK, "zorder": 6}
+    axes.annotate(words, (0.0, 0.0), ha="left", va="bottom", **place, **_MARK)
 
 
 def _envelope(result: "RockfallResult", name: str, axes: Axes) -> None:
@@ -272,7 +301,7 @@ def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
         curve = np.exp(-0.5 * ((x - mean) / deviation) ** 2) / (deviation * np.sqrt(2.0 * np.pi))
         axes.plot(x, curve, color=TRANSMITTED, linewidth=1.0)
     axes.annotate(
-        f"{mean:.3g} ± {deviation:.3g}",
+        f"{digits(mean)} ± {digits(deviation)}",
         (1.0, 1.0),
         xycoords="axes fraction",
         xytext=(-2, -2),
@@ -312,7 +341,7 @@ def ends(result: "RockfallResult") -> Figure:
     with drawn([*caption(result), "Curve: rocks that get beyond x."], WIDTH, 5.2) as figure:
         slope, axes = figure.subplots(2, 1, sharex=True, height_ratios=[1, 1.2])
         _slope(result, slope)
-        legend(slope, loc="upper right")
+        _legend_above(slope)
         _end_histogram(result, x, axes)
         axes.set(xlabel="x (m)", ylabel="trials that end here")
         reached = axes.twinx()
@@ -325,7 +354,8 @@ def ends(result: "RockfallResult") -> Figure:
         )
         reached.set(ylabel="beyond x (%)", ylim=(0.0, 104.0))
         reached.grid(False)
-        legend(axes, loc="center left")
+        _legend_above(axes)
+        _tell_scale(slope)
     return figure
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from ...tables import Table
+from ...tables import Table, digits
 from .passages import QUANTITIES, LinePassages, PassageQuantity
 from .statistics import CONFIDENCE, SHARES, Percentile
 
@@ -64,7 +64,7 @@ def _with_interval(found: Percentile, scale: float) -> str:
 
 def _number(value: float) -> str:
     """Write three digits, but none that are rounding: a rock that rolls has the height 0."""
-    return f"{round(value, 6):.3g}"
+    return digits(round(value, 6))
 
 
 def notes(has_lines: bool, hypercube: bool) -> list[str]:

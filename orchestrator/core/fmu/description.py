@@ -72,6 +72,8 @@ class Port:
     has_own_start : bool
         Whether an output or a local variable begins with a start value that may be set (FMI:
         ``initial`` is exact or approx).
+    is_constant : bool
+        Whether nobody can set it.
     """
 
     name: str
@@ -86,11 +88,13 @@ class Port:
     description: str = ""
     annotation: Annotation = NOTHING
     has_own_start: bool = False
+    is_constant: bool = False
 
     @property
     def can_be_set(self) -> bool:
         """Tell whether a value can be given before the initialisation."""
-        return self.has_own_start or self.causality in ("parameter", "input")
+        may_be = self.has_own_start or self.causality in ("parameter", "input")
+        return may_be and not self.is_constant
 
     @property
     def unit_name(self) -> str:

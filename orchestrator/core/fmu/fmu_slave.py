@@ -380,6 +380,7 @@ def _port(variable: ModelVariable, units: dict[str, UnitDefinition]) -> Port:
         variable.start,
         variable.description or "",
         has_own_start=_has_own_start(variable),
+        is_constant=variable.variability == "constant",
     )
 
 

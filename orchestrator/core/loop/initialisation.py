@@ -4,7 +4,8 @@ What they refuse is collected from all of them.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from ..fmu.slave import (
     without_name,
     worst,
 )
+from ..system.limits import MOST_INTERNAL_STEPS
 from ..system.plan import Plan
 from .buses import Buses
 
@@ -123,6 +125,9 @@ def initialise(
             f"outputs at the start still change after {_ROUNDS} rounds of exchange, "
             f"{unsettled} among them"
         )
+    endless = [problem for name in plan.order for problem in _too_many(plan, slaves[name])]
+    if endless:
+        raise InputRefused(endless)
     unstable = [problem for name in plan.order for problem in _stability(plan, slaves[name])]
     if unstable and not allow_unstable:
         raise InputRefused(unstable)
@@ -161,29 +166,50 @@ def _begin(plan: Plan, slave: Slave, start: float, stop: float) -> int:
 
 def _phase(slaves: Mapping[str, Slave], call: Callable[[Slave], int], entering: Entering) -> None:
     """Do the same with all slaves, then see whether any of them refused."""
-    problems = []
+    refusals = []
     for slave in slaves.values():
         entering(slave.name)
         said = len(slave.messages)
         status = call(slave)
-        problems += _refusals(slave, status)
+        refusals += _refusals(slave, status)
         if status == WARNING and len(slave.messages) == said:
             slave.messages.append((WARNING, "returned Warning without a message"))
-    if problems:
-        raise InputRefused(problems)
+    if refusals:
+        raise InputRefused(_causes(refusals))
 
 
-def _refusals(slave: Slave, status: int) -> list[Problem]:
+class _Refusal(NamedTuple):
+    """A refusal of a slave; ``of_inputs``: other inputs may content it at its first step."""
+
+    problem: Problem
+    of_inputs: bool
+
+
+def _refusals(slave: Slave, status: int) -> list[_Refusal]:
     """Return what a slave refused, by its status or by a message with the status Error.
 
     A message with the status Discard tells that the first step will be refused.
     """
-    errors = [text for severity, text in slave.messages if severity >= DISCARD]
+    errors = [(severity, text) for severity, text in slave.messages if severity >= DISCARD]
     if OK <= status <= WARNING and not errors:
         return []
-    silence = [f"returned {status_name(status)} without a message"]
-    texts = errors or [text for _, text in slave.messages] or silence
-    return [Problem(slave.name, without_name(slave.name, text)) for text in dict.fromkeys(texts)]
+    silence = [(status, f"returned {status_name(status)} without a message")]
+    told = errors or slave.messages or silence
+    return [
+        _Refusal(Problem(slave.name, without_name(slave.name, text)), severity == DISCARD)
+        for severity, text in dict.fromkeys(told)
+    ]
+
+
+def _causes(refusals: Sequence[_Refusal]) -> list[Problem]:
+    """Return the problems without those that may follow from others.
+
+    A component that refuses its parameters shows no outputs; what others have against their inputs
+    is then no reason of its own.
+    """
+    found = list(dict.fromkeys(refusals))
+    causes = [refusal for refusal in found if not refusal.of_inputs]
+    return [refusal.problem for refusal in causes or found]
 
 
 def _settle(buses: Buses, slaves: Mapping[str, Slave], entering: Entering) -> str:
@@ -200,12 +226,12 @@ def _settle(buses: Buses, slaves: Mapping[str, Slave], entering: Entering) -> st
     taken: set[int] = set()
     said: dict[str, int] = {}
     for _ in range(_ROUNDS):
-        problems: list[Problem] = []
+        refusals: list[_Refusal] = []
         for slave in turns:
             entering(slave.name)
-            problems += _pass_on(buses, slave, taken, said)
-        if problems:
-            raise InputRefused(list(dict.fromkeys(problems)))
+            refusals += _pass_on(buses, slave, taken, said)
+        if refusals:
+            raise InputRefused(_causes(refusals))
         changed = np.flatnonzero((outputs != before) & ~(np.isnan(outputs) & np.isnan(before)))
         if not changed.size:
             return ""
@@ -213,29 +239,49 @@ def _settle(buses: Buses, slaves: Mapping[str, Slave], entering: Entering) -> st
     return buses.plan.outputs[changed[0]].name
 
 
-def _pass_on(buses: Buses, slave: Slave, taken: set[int], said: dict[str, int]) -> list[Problem]:
+def _pass_on(buses: Buses, slave: Slave, taken: set[int], said: dict[str, int]) -> list[_Refusal]:
     """Set the inputs of a slave, if all are there, and take its outputs.
 
     A warning about inputs that are replaced now is forgotten: the slave says it again if it still
     holds. ``taken`` are the places of the outputs that are there, ``said`` counts messages.
     """
     name = slave.name
-    problems: list[Problem] = []
+    refusals: list[_Refusal] = []
     if buses.needs[name] <= taken:
         if name in said and buses.needs[name]:
             _forget_warnings(slave, said[name])
-        problems += _refusals(slave, buses.give(slave))
+        refusals += _refusals(slave, buses.give(slave))
     said[name] = len(slave.messages)
     refused = _refusals(slave, buses.take(slave))
     if not refused:
         taken |= buses.shows[name]
-    return problems + refused
+    return refusals + refused
 
 
 def _forget_warnings(slave: Slave, since: int) -> None:
     """Take back the warnings among the messages from number ``since`` on."""
     slave.messages[since:] = [
         message for message in slave.messages[since:] if message[0] != WARNING
+    ]
+
+
+def _too_many(plan: Plan, slave: Slave) -> list[Problem]:
+    """Refuse more internal steps in one communication step than a run can wait for."""
+    ports = plan.descriptions[slave.name].ports
+    used = next((name for name in ("time_step", "internal_step") if name in ports), None)
+    step = plan.system.step(slave.name)
+    if used is None:
+        return []
+    length = _value(slave, ports[used])
+    if not 0.0 < length * MOST_INTERNAL_STEPS < step:
+        return []
+    return [
+        Problem(
+            f"{slave.name}.{used}",
+            f"internal steps of {length:.4g} s are {step / length:.2g} in each communication step "
+            f"of {step:g} s, and at most {MOST_INTERNAL_STEPS:,} can be made",
+            "reduce the exchange step, or what makes the internal step so short",
+        )
     ]
 
 

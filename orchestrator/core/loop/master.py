@@ -232,10 +232,11 @@ class Master:
         return RunFailed(name, self._time(fault), what)
 
     def _what(self, fault: Fault) -> str:
+        length = self._plan.timing.lasts(fault.operation.length)
         return {
             Action.SET: "the inputs are refused",
             Action.GET: "the outputs are refused",
-            Action.STEP: f"the step by {self._plan.timing.lasts(fault.operation.length):.6g} s failed",
+            Action.STEP: f"the step by {length:.6g} s failed",
             Action.RECORD: "does not give its values",
         }[fault.operation.action]
 

@@ -268,6 +268,21 @@ def _numbers(column: Any) -> NDArray[np.float64]:
     return np.concatenate([np.empty(0), *map(np.from_dlpack, column.chunks)])
 
 
+def set_warnings(folder: Path, texts: Sequence[str]) -> None:
+    """Write the warnings of a finished run down, in the place of those of its components alone.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the run.
+    texts : sequence of str
+        All warnings, the weightiest first.
+    """
+    path = folder / RUN
+    facts = json.loads(path.read_text(encoding="utf-8"))
+    write_json(path, {**facts, "warnings": list(texts)})
+
+
 def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:
     """Add metrics to the summary of a finished run.
 

@@ -105,7 +105,7 @@ def to_ticks(time: Fraction, rate: int = PICOSECONDS) -> int:
     """
     ticks = time * rate
     assert ticks.denominator == 1, f"{time} s is no whole number of ticks"
-    if max(abs(ticks), rate) > _MOST:
+    if abs(ticks) > _MOST or rate > _MOST:
         longest = _MOST / rate
         raise ValueError(f"{float(time):g} s is beyond the longest time, {longest:.3g} s")
     return int(ticks)

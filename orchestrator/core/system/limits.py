@@ -1,6 +1,8 @@
 """Limits of a run: refused is what would fill memory or disk hours later."""
 
 import math
+import shutil
+from pathlib import Path
 
 from ..errors import Problem
 from .plan import Starts
@@ -52,6 +54,53 @@ def amount_problems(system: SystemSpec, timing: Timing, columns: int) -> list[Pr
         remedy = f"{interval} or more will do; or shorten stop_time"
         problems.append(Problem("state_interval", what, remedy))
     return problems
+
+
+MUCH = 50_000_000
+"""Size of results (bytes) from which on they are told before the run."""
+
+
+_BYTES = 25
+"""Bytes that a value takes as text and in the Parquet file."""
+
+
+def amount_in_words(timing: Timing, columns: int, state: int, folder: Path) -> str:
+    """Say how much a run will write, if that is much or more than the disk has room for.
+
+    Parameters
+    ----------
+    timing : Timing
+        Of the run.
+    columns : int
+        Columns of the time series.
+    state : int
+        Size (bytes) of the compressed states that are recorded together, as they are at the start.
+    folder : Path
+        Folder of the results.
+
+    Returns
+    -------
+    str
+        Empty if it is less than :data:`MUCH` and there is room.
+    """
+    rows = timing.exchanges // timing.output_every + 1
+    frames = timing.exchanges // timing.state_every + 1 if state else 0
+    size = _BYTES * rows * columns + frames * state
+    free = shutil.disk_usage(folder).free
+    if size < min(MUCH, free):
+        return ""
+    parts = [f"{rows:,} rows of {columns:,} columns"]
+    if frames:
+        parts.append(f"{frames:,} states of {state / 1e3:.3g} kB")
+    room = f", and {_size(free)} are free there" if size >= free else ""
+    return (
+        f"the results will take {_size(size)} or more ({' and '.join(parts)}){room}; a longer "
+        "output_interval or state_interval makes less"
+    )
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.3g} MB"
 
 
 def internal_step_problems(system: SystemSpec, starts: Starts) -> list[Problem]:

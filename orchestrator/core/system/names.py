@@ -5,6 +5,11 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 _RANGE = re.compile(r"\[(?:\*|(\d+)\.\.(\d+))\]")
+_LONGEST_NUMBER = 18
+"""Digits of an index of an array, at most."""
+
+MOST_ELEMENTS = 1_000_000
+"""Elements of an array that a shorthand stands for, at most."""
 
 
 def is_shorthand(name: str) -> bool:
@@ -26,6 +31,11 @@ def expand(name: str, known: Iterable[str]) -> list[str]:
     -------
     list of str
         The name itself where it is no shorthand.
+
+    Raises
+    ------
+    ValueError
+        It stands for more than :data:`MOST_ELEMENTS` elements.
     """
     found = _RANGE.search(name)
     if found is None:
@@ -33,15 +43,34 @@ def expand(name: str, known: Iterable[str]) -> list[str]:
     head = name[: found.start()]
     tail = name[found.end() :]
     if found.group(1) is not None:
-        return [f"{head}[{i}]{tail}" for i in range(int(found.group(1)), int(found.group(2)) + 1)]
+        return [f"{head}[{i}]{tail}" for i in _indices(*found.groups())]
     element = re.compile(re.escape(head) + r"\[(\d+)\]" + re.escape(tail))
     indices = sorted(int(m.group(1)) for m in map(element.fullmatch, known) if m)
     return [f"{head}[{i}]{tail}" for i in indices]
 
 
+def _indices(first: str, last: str) -> range:
+    if max(len(first), len(last)) > _LONGEST_NUMBER:
+        raise ValueError(f"has an index of more than {_LONGEST_NUMBER} digits")
+    indices = range(int(first), int(last) + 1)
+    if len(indices) > MOST_ELEMENTS:
+        most = f"{MOST_ELEMENTS:,} are the most"
+        raise ValueError(f"stands for {len(indices):,} elements, and {most}")
+    return indices
+
+
 def matches(shorthand: str, name: str) -> bool:
     """Tell whether a shorthand stands for a name, or both are the same."""
-    return shorthand == name or name in expand(shorthand, [name])
+    found = _RANGE.search(shorthand)
+    if found is None or shorthand == name:
+        return shorthand == name
+    head, tail = re.escape(shorthand[: found.start()]), re.escape(shorthand[found.end() :])
+    element = re.fullmatch(rf"{head}\[(\d{{1,{_LONGEST_NUMBER}}})\]{tail}", name)
+    if element is None or found.group(1) is None:
+        return element is not None
+    first, last = found.groups()
+    fits = max(len(first), len(last)) <= _LONGEST_NUMBER
+    return fits and int(first) <= int(element.group(1)) <= int(last)
 
 
 def select(pattern: str, known: Sequence[str]) -> list[str]:

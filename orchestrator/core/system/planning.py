@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputRefused, Problem
+from ..errors import InputRefused, Problem, counted
 from ..fmu.description import Description, Port, UnitDefinition
 from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import REAL, Source
@@ -151,6 +151,7 @@ class _Planner:
             try:
                 self.descriptions[name] = read_description(source.model_description())
                 self.warnings += [f"{name}: {text}" for text in self.descriptions[name].warnings]
+                self.warnings += _of_texts(name, self.descriptions[name])
             except InputRefused as refusal:
                 self.problems += [
                     Problem(name, f"{p.where}: {p.what}", p.remedy) for p in refusal.problems
@@ -218,7 +219,11 @@ class _Planner:
         if component not in self.descriptions:
             return []
         ports = self.descriptions[component].ports
-        names = expand(self._present(component, name), ports)
+        try:
+            names = expand(self._present(component, name), ports)
+        except ValueError as error:
+            self._refuse(where, f"{component}.{name} {error}", "give the range that the FMU has")
+            return []
         unknown = [n for n in names if n not in ports] if names else [name]
         if unknown:
             more = f" and {len(unknown) - 1} more" if len(unknown) > 1 else ""
@@ -269,7 +274,10 @@ class _Planner:
         for given in patterns:
             pattern = self._present_pattern(given)
             names = [pattern] if pattern in ends and key == "record" else select(pattern, outputs)
-            if (
+            if self._is_text(pattern):
+                what = f"{pattern!r} is text, and only numbers are kept"
+                self._refuse(key, what, "leave it out")
+            elif (
                 not names
                 and len(self.descriptions) == len(self.system.components)
                 and pattern != "*"
@@ -277,6 +285,11 @@ class _Planner:
                 self._refuse(key, f"{pattern!r} selects no output", nearest(pattern, outputs))
             chosen |= {name: ends[name] for name in names}
         return list(chosen.values())
+
+    def _is_text(self, name: str) -> bool:
+        component, variable = _split(name)
+        known = self.descriptions.get(component)
+        return known is not None and variable in known.ports and not known.ports[variable].is_number
 
     def _present_pattern(self, pattern: str) -> str:
         component, name = _split(pattern)
@@ -311,7 +324,7 @@ class _Planner:
         if len(sources) != len(targets):
             self._refuse(
                 where,
-                f"connects {len(sources)} outputs with {len(targets)} inputs",
+                f"connects {counted(len(sources), 'output')} with {counted(len(targets), 'input')}",
                 "give ranges of one length, [1..24], or build the FMUs with sizes that fit",
             )
             return []
@@ -398,7 +411,11 @@ class _Planner:
         connected: set[str],
     ) -> None:
         for end in self._ends(target, *_split(target)):
-            if not end.port.can_be_set:
+            if end.port.is_constant:
+                what = "is a constant, fixed when the FMU was built, and cannot be set"
+                remedy = "build the FMU anew with another one, rockshed's with `rockshed build"
+                self._refuse(end.name, what, f"{remedy} --size {end.port.name}=...`")
+            elif not end.port.can_be_set:
                 self._refuse(
                     end.name,
                     f"is of the causality {end.port.causality} and cannot be set",
@@ -407,9 +424,9 @@ class _Planner:
             elif end.name in connected:
                 self._refuse(end.name, f"is set in {giver} and is connected", "remove one of both")
             elif end.name in given:
-                self._refuse(
-                    end.name, f"is set in {given[end.name][1]} and in {giver}", "remove one of both"
-                )
+                other = given[end.name][1]
+                twice = f"twice in {giver}" if other == giver else f"in {other} and in {giver}"
+                self._refuse(end.name, f"is set {twice}", "remove one of both")
             else:
                 given[end.name] = (end, giver, value)
 
@@ -423,7 +440,7 @@ class _Planner:
         if not force or not position or (bond.work and not work):
             return None
         if len(force) != len(position):
-            what = f"has {len(force)} forces and {len(position)} positions"
+            what = f"has {counted(len(force), 'force')} and {counted(len(position), 'position')}"
             self._refuse(where, what, "name one position for each force")
             return None
         fed = _fed_by(links, bond.taker)
@@ -486,6 +503,15 @@ class _Planner:
         where = "energy_alarm.reference"
         ends = self._of_causality(where, self._ends(where, *_split(alarm.reference)), "output")
         return ends[0] if ends else None
+
+
+def _of_texts(component: str, description: Description) -> list[str]:
+    """Say which outputs of a component are left out of the results, because they are text."""
+    texts = [port.name for port in description.named("output") if not port.is_number]
+    if not texts:
+        return []
+    verb = "is text and is" if len(texts) == 1 else "are text and are"
+    return [f"{component}: {_few(texts)} {verb} not recorded"]
 
 
 def _described(end: End) -> str:

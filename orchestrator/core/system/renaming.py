@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from ..errors import InputRefused, Problem
 from ..fmu.description import Description
 from .system import Value
 
@@ -53,13 +54,18 @@ def with_present_names(
     Returns
     -------
     values : dict
-        The same values in the same order. What is given under a present name goes before what is
-        given under an older one.
+        The same values in the same order.
     warnings : list of str
         A sentence for each older name.
+
+    Raises
+    ------
+    InputRefused
+        A variable is given different values under two names.
     """
     present: dict[str, Value] = {}
     warnings = []
+    problems = []
     for name, value in values.items():
         component, _, variable = name.partition(".")
         base, bracket, element = variable.partition("[")
@@ -68,5 +74,11 @@ def with_present_names(
             present[name] = value
             continue
         warnings.append(renaming_warning(component, variable, new))
-        present.setdefault(f"{component}.{new}", value)
+        name_now = f"{component}.{new}"
+        if values.get(name_now, value) != value:
+            what = f"is the older name of {name_now}, and both are given"
+            problems.append(Problem(name, what, "keep one of them"))
+        present.setdefault(name_now, value)
+    if problems:
+        raise InputRefused(problems)
     return present, warnings

@@ -4,7 +4,7 @@ A system is read from a TOML file or built in Python; both are checked for their
 against the FMUs in :mod:`rockshed.core.system.planning`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -288,18 +288,42 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
         ) from error
 
 
+_LEFT_OUT = ("connections", "bonds")
+"""Keys of a system whose entries the others can do without."""
+
+
+def _without_faulty(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a system without the connections and bonds of a wrong form."""
+    try:
+        SystemSpec.model_validate(data)
+    except ValidationError as error:
+        faulty = {tuple(fault["loc"][:2]) for fault in error.errors()}
+        return {key: _sound(key, value, faulty) for key, value in data.items()}
+    return dict(data)
+
+
+def _sound(key: str, value: Any, faulty: Collection[tuple[Any, ...]]) -> Any:
+    if key not in _LEFT_OUT or not isinstance(value, list | dict):
+        return value
+    if isinstance(value, list):
+        return [entry for place, entry in enumerate(value) if (key, place) not in faulty]
+    return {name: entry for name, entry in value.items() if (key, name) not in faulty}
+
+
 def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem:
     hints = [nearest(str(key[-1]), _KEYS)] if UNKNOWN_KEY in texts else []
     return Problem(f"{where}: {'.'.join(map(str, key))}", "; ".join([" or ".join(texts), *hints]))
 
 
-def load_system(path: Path) -> SystemSpec:
+def load_system(path: Path, leave_out_faulty: bool = False) -> SystemSpec:
     """Read a system from a TOML file.
 
     Parameters
     ----------
     path : Path
         Relative paths of FMUs count from its folder.
+    leave_out_faulty : bool
+        Connections and bonds of a wrong form are passed over, to see what else is wrong.
 
     Returns
     -------
@@ -311,6 +335,8 @@ def load_system(path: Path) -> SystemSpec:
         No such file, not TOML, or :func:`system_from` refuses the content.
     """
     data = toml_content(path, read_text(path))
+    if leave_out_faulty:
+        data = _without_faulty(data)
     system = system_from(data, str(path))
     folder = path.resolve().parent
     components = {
