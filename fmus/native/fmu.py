@@ -105,7 +105,7 @@ _OPTIONS = (
     "-ffp-contract=off",
     "-s",
 )
-_PYTHON_REMAINS = "FMUs with Python inside need no compiler: `rockshed build --runtime python`"
+_PYTHON_REMAINS = 'FMUs with Python inside, runtime="python", need no compiler'
 
 
 def own_platform() -> str:

@@ -140,7 +140,7 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
         raise InputRefused(
             [
                 Problem(
-                    f"--model {name}",
+                    f"model {name}",
                     f"{chosen.name} has no sand that takes a model",
                     "leave it out",
                 )

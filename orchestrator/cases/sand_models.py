@@ -124,11 +124,7 @@ def sand_model(name: str) -> SandModel:
     """
     if name not in MODELS:
         raise InputRefused(
-            [
-                Problem(
-                    f"--model {name}", "there is no such model of the sand", nearest(name, MODELS)
-                )
-            ]
+            [Problem(f"model {name}", "there is no such model of the sand", nearest(name, MODELS))]
         )
     return MODELS[name]
 

@@ -29,6 +29,9 @@ STIFFNESSES = {
 }
 """Units of spring constants and their sizes (N/m)."""
 
+_OPTIONS = ("rotation", "values", "seeds", "workers", "folder")
+"""Arguments of the analysis that are options of the command."""
+
 _Curve = Annotated[
     str | None,
     typer.Argument(
@@ -80,7 +83,7 @@ def command(
             raise InputRefused(problems)
         measurement = measurement_from(target, stiffness)
         try:
-            with options_named(("rotation", "seeds")), stages(screen) as progress:
+            with options_named(_OPTIONS), stages(screen) as progress:
                 result = calibrate(
                     measurement,
                     rotation=rotation,

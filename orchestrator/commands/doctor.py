@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from ..runs import health
+from .analysis import in_options
 from .options import RESULTS
 from .screen import opened
 
@@ -27,6 +28,6 @@ def command(clean: _Clean = False) -> None:
                 screen.show(table, "")
         reasons = health.slow_reasons()
         for reason in reasons:
-            screen.say(f"slow: {reason}")
+            screen.say(f"slow: {in_options(reason, ('runtime',))}")
         if not reasons:
             screen.say("nothing makes it slow")

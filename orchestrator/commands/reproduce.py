@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from ..papers.reproduction import PAPERS, Reproduction, reproduce
+from .analysis import options_named
 from .options import RESULTS, Json, Quiet, Workers
 from .screen import INTERRUPTED, Screen, opened
 
@@ -34,7 +35,7 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         folder = output_dir or RESULTS / paper
-        with screen.counting("runs") as done:
+        with options_named(("only", "folder")), screen.counting("runs") as done:
             made = reproduce(paper, folder, only or [], quick, workers, screen.note, done)
         if as_json:
             screen.dump(made.content)

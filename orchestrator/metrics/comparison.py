@@ -79,7 +79,7 @@ _HUGE = 1e7
 """Numbers from here on, of runs that went astray, are written with an exponent."""
 _TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compared"
 _TOO_SHALLOW = (
-    "the rock is not driven 4 cm deep: there is no secant spring constant; raise --stop-time"
+    "the rock is not driven 4 cm deep: there is no secant spring constant; let the run end later"
 )
 _STILL = (
     "the force on the rock has not ended: impulse and duration would be larger with a later stop "

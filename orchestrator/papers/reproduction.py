@@ -120,7 +120,7 @@ def chosen(paper: str, only: Sequence[str]) -> list[Study]:
     known = studies(paper)
     names = [study.name for study in known]
     problems = [
-        Problem(f"--only {name}", "there is no such study", nearest(name, names))
+        Problem(f"only {name}", "there is no such study", nearest(name, names))
         for name in only
         if name not in names
     ]
@@ -168,7 +168,7 @@ def reproduce(
         Unknown paper or study, or a folder that cannot be written; nothing has been run.
     """
     selected = chosen(paper, only)
-    remedy = "name another folder with --output-dir"
+    remedy = "name another folder: folder=..."
     refuse_foreign(folder, (DATA, PAGE), remedy)
     with refusing_unwritable(folder / FIGURES, remedy):
         (folder / FIGURES).mkdir(parents=True, exist_ok=True)

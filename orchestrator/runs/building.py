@@ -81,20 +81,18 @@ def case_sizes(
     for name, value in _with_one_size(chosen, numbers, problems).items():
         owner, _, size = name.partition(".")
         if name not in known:
-            problems.append(
-                Problem(f"--size {name}", "there is no such size", nearest(name, known))
-            )
+            problems.append(Problem(f"sizes {name}", "there is no such size", nearest(name, known)))
         elif not is_whole(value):
             problems.append(_not_whole(name, value))
         else:
             sizes[owner][size] = int(value)
     for owner, model in chosen.models.items():
-        problems += range_problems(f"--size, {owner}", model, sizes[owner])
+        problems += range_problems(f"sizes of {owner}", model, sizes[owner])
     return sizes
 
 
 def _not_whole(name: str, value: object) -> Problem:
-    return Problem(f"--size {name}", f"{value!r} is no whole number", "give a whole number")
+    return Problem(f"sizes {name}", f"{value!r} is no whole number", "give a whole number")
 
 
 def _with_one_size(
@@ -105,7 +103,7 @@ def _with_one_size(
     if len(set(given.values())) > 1:
         problems.append(
             Problem(
-                "--size",
+                "sizes",
                 f"{', '.join(f'{n} = {v}' for n, v in given.items())}, and they are one number",
                 "give one of them",
             )
@@ -230,7 +228,7 @@ def _best_runtime(
         if fmu_file(component(chosen.models[name]), sizes[name], Runtime.NATIVE).is_file()
     ]
     why = f"native {' and '.join(there)} out of date" if there else "there are no native ones"
-    return Runtime.PYTHON, f"{why}; --runtime native makes them"
+    return Runtime.PYTHON, f'{why}; runtime="native" makes them'
 
 
 def _changed_at(file: Path) -> int:
@@ -418,22 +416,21 @@ def _export_problems(export: Export) -> list[Problem]:
 
     runtime = export.chosen_runtime
     problems = [
-        Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS))
+        Problem(f"platforms {name}", "there is no such platform", nearest(name, PLATFORMS))
         for name in export.platforms
         if name not in PLATFORMS
     ]
     if runtime not in (*Runtime, BOTH):
         choice = f"choose one of {', '.join(Runtime)}, {BOTH}"
-        problems.append(Problem("--runtime", f"{runtime!r} is unknown", choice))
+        problems.append(Problem("runtime", f"{runtime!r} is unknown", choice))
     elif export.platforms and runtime == Runtime.PYTHON:
         reason = "is for native FMUs; those with Python inside run everywhere"
-        problems.append(Problem("--platform", reason, "add --runtime native"))
+        problems.append(Problem("platforms", reason, 'add runtime="native"'))
     if export.fmi not in list(Fmi):
         reason = "there is no such version of FMI here"
-        problems.append(Problem(f"--fmi {export.fmi}", reason, "choose 2 or 3"))
+        problems.append(Problem(f"fmi {export.fmi}", reason, "choose 2 or 3"))
     elif export.fmi == Fmi.THREE and runtime != Runtime.NATIVE:
-        where = f"--fmi 3 --runtime {runtime}"
-        problems.append(Problem(where, ONLY_NATIVE, "add --runtime native"))
+        problems.append(Problem(f"runtime {runtime}", ONLY_NATIVE, 'add runtime="native"'))
     return problems
 
 
@@ -441,9 +438,7 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Probl
     known = {size for name in names for size in component(name).sizes}
     have = "have" if len(names) > 1 else "has"
     problems = [
-        Problem(
-            f"--size {size}", f"{' and '.join(names)} {have} no such size", nearest(size, known)
-        )
+        Problem(f"sizes {size}", f"{' and '.join(names)} {have} no such size", nearest(size, known))
         for size in sizes
         if size not in known
     ]
@@ -452,7 +447,7 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Probl
         return problems
     for name in names:
         its_sizes = {s: n for s, n in sizes.items() if s in component(name).sizes}
-        problems += range_problems(f"--size, {name}", name, its_sizes)
+        problems += range_problems(f"sizes of {name}", name, its_sizes)
     return problems
 
 

@@ -201,8 +201,8 @@ def slow_reasons() -> list[str]:
     if stale:
         reasons.append(
             f"native FMUs are missing or older than their sources ({', '.join(stale)}): FMUs with "
-            "Python take up to five times as long in a co-simulation; `rockshed build --runtime "
-            "native` makes them"
+            "Python take up to five times as long in a co-simulation; `rockshed build` with "
+            'runtime="native" makes them'
         )
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         reasons.append("NUMBA_DISABLE_JIT is set: kernels run without being compiled")

@@ -156,8 +156,8 @@ def _not_an_fmu(target: str) -> Problem:
     return Problem(
         target,
         "is an FMU, and a run takes a case or a system file",
-        "look into it with `rockshed info`, and name it in a system file; "
-        "`rockshed info lab-impact --toml` shows one",
+        "look into it with `rockshed info`, and name it in a system file; `rockshed export` writes "
+        "one",
     )
 
 
@@ -169,19 +169,15 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
-    for option, remedy, asked in (
-        ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
-        ("--model", "set the parameters of its sand", request.model),
-        (
-            "--coupling",
-            "set --master, --exchange-step and the components' parameters",
-            request.coupling,
-        ),
-        ("--in-process", "a system file names FMU files", request.in_process),
-        ("--runtime", "a system file names FMU files", request.runtime != AUTO),
+    for argument, remedy, asked in (
+        ("sizes", "build its FMUs in these sizes", request.sizes),
+        ("model", "set the parameters of its sand", request.model),
+        ("coupling", "set master, exchange_step and the components' parameters", request.coupling),
+        ("in_process", "a system file names FMU files", request.in_process),
+        ("runtime", "a system file names FMU files", request.runtime != AUTO),
     ):
         if asked:
-            problems.append(Problem(option, "is for cases only", remedy))
+            problems.append(Problem(argument, "is for cases only", remedy))
     if problems:
         raise InputRefused(problems)
     facts = {
@@ -229,19 +225,19 @@ def _coupling_problems(chosen: Case, coupling: str) -> list[Problem]:
     if coupling in chosen.couplings:
         return []
     choice = f"choose one of {', '.join(chosen.couplings)}"
-    return [Problem("--coupling", f"{coupling!r} is unknown", choice)]
+    return [Problem("coupling", f"{coupling!r} is unknown", choice)]
 
 
 def _runtime_problems(request: Request) -> list[Problem]:
     known = (AUTO, "native", "python")
     if request.runtime not in known:
         choice = f"choose one of {', '.join(known)}"
-        return [Problem("--runtime", f"{request.runtime!r} is unknown", choice)]
+        return [Problem("runtime", f"{request.runtime!r} is unknown", choice)]
     if request.in_process and request.runtime != AUTO:
         return [
             Problem(
-                "--runtime",
-                "is for FMUs, and --in-process runs without them",
+                "runtime",
+                "is for FMUs, and in_process=True runs without them",
                 "leave one of them out",
             )
         ]
@@ -295,10 +291,10 @@ def _load_cell_problems(request: Request, system: SystemSpec) -> list[Problem]:
     remedy = "give a lower one"
     if request.load_cell > 0.0:
         longest = 1.0 / (LOAD_CELL_ROWS * request.load_cell)
-        remedy += f", or --output-interval {longest:.2g} or less"
+        remedy += f", or output_interval={longest:.2g} or less"
     return [
         Problem(
-            "--load-cell",
+            "load_cell",
             f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 "
             f"and up to {fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
             remedy,

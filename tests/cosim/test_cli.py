@@ -13,11 +13,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from rockshed.commands.analysis import options_named
 from rockshed.commands.app import COMMANDS, app
 from rockshed.commands.screen import spoken
+from rockshed.core.errors import InputRefused, Problem
 from rockshed.core.results.reading import read_run
 from rockshed.core.system.system import load_system
 
+EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
 PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
 SHORT = ["--stop-time", "0.001", "--no-figures"]
 
@@ -541,6 +544,45 @@ def test_refused_with_reason_and_remedy_and_nothing_left_behind(
     assert all(part in text for part in said), text
     assert result.stdout == ""
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ["run", "lab-impact", "--runtime", "native", "--in-process"],
+            "--runtime: is for FMUs, and --in-process runs without them",
+        ),
+        (["run", "lab-impact", "--load-cell", "1e9"], "or --output-interval 2e-10 or less"),
+        (["run", "lab-impact", "--load-cell", "1e9"], "--load-cell: 1e+09 Hz"),
+        (["run", "lab-impact", "--size", "sand.discs=2.5"], "--size sand.discs: 2.5 is no whole"),
+        (["run", "system.toml", "--size", "sand.discs=9"], "--size: is for cases only"),
+        (["run", "spt", "--model", "literal"], "--model literal: spt has no sand"),
+        (["info", "spt", "--model", "literal"], "--model literal: spt has no sand"),
+        (["export", "spt", "x", "--coupling", "magic"], "--coupling: 'magic' is unknown"),
+        (["build", "--platform", "win65"], "--platform win65: there is no such platform"),
+        (["build", "--platform", "win64"], "→ add --runtime native"),
+        (["build", "--fmi", "3", "--runtime", "python"], "--runtime python: FMUs with Python"),
+        (["reproduce", "ushiro", "--only", "fig9"], "--only fig9: there is no such study"),
+        (["reproduce", "ushiro", "--output-dir", "file/x"], "name another folder: --output-dir"),
+        (["rockfall", "slope.toml", "--scheduler", "tls://h:1"], "--tls-ca, --tls-cert and --tls"),
+    ],
+)
+def test_a_command_names_its_options_where_the_library_names_arguments(
+    rockshed, tmp_path, arguments, said
+):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "slope.toml").write_bytes((EXAMPLES / "slope.toml").read_bytes())
+    result = rockshed(*arguments)
+    assert result.exit_code == 2
+    assert said in in_one_line(result.stderr)
+
+
+def test_a_text_of_the_user_that_looks_like_an_argument_stays_as_it_is():
+    problem = Problem("folder", "'runtime=\"x\"' is no word, nor is sand.runtime=3", "runtime=true")
+    with pytest.raises(InputRefused) as refusal, options_named(("runtime", "folder"), given=()):
+        raise InputRefused([problem])
+    assert refusal.value.problems == [problem]
 
 
 def test_a_refusal_as_json(rockshed):

@@ -122,6 +122,14 @@ def begins_with_what(node: ast.AST) -> str | None:
     return text[:60] if text and re.match(r"What\b", text.strip()) else None
 
 
+def names_an_option(node: ast.AST) -> str | None:
+    """Object to texts with an option of the command line."""
+    if not isinstance(node, ast.Constant):
+        return None
+    found = re.search(r"(?<![\w-])--[a-z][\w-]*", str(node.value))
+    return f"names {found[0]}" if found else None
+
+
 def says_little(node: ast.AST) -> str | None:
     """Object to docstrings of four words or fewer."""
     text = docstring(node)

@@ -69,12 +69,12 @@ def test_what_a_model_sets_is_no_change_of_the_test():
 
 
 def test_an_unknown_model_is_answered_with_the_known_ones():
-    with pytest.raises(InputRefused, match=r"--model one_law.*no such model"):
+    with pytest.raises(InputRefused, match=r"model one_law: .*no such model"):
         prepared("lab-impact", "one_law")
 
 
 def test_a_system_file_takes_no_model(tmp_path):
     file = tmp_path / "some.toml"
     file.write_text("")
-    with pytest.raises(InputRefused, match=r"--model: is for cases only"):
+    with pytest.raises(InputRefused, match=r"model: is for cases only"):
         prepare(Request(str(file), model="literal"))

@@ -130,7 +130,7 @@ def _certificate_problems(scheduler: str, certificates: Certificates | None) -> 
     is_secure = scheduler.startswith("tls://")
     if certificates is None:
         if is_secure:
-            remedy = "give the files with --tls-ca, --tls-cert and --tls-key"
+            remedy = "give the files with certificates=..."
             yield Problem(f"scheduler {scheduler}", "needs certificates", remedy)
         return
     if not is_secure:

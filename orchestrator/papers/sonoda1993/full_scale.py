@@ -198,7 +198,7 @@ def plot_forces(axes: "Axes", outcome: Outcome) -> None:
 
 SEED_NOTE = (
     f"Mean and standard deviation over {len(SEEDS)} seeds: random packs, or a lattice shifted by "
-    f"{LATTICE_SHIFT:g} diameters. With --quick one run, and fewer models."
+    f"{LATTICE_SHIFT:g} diameters. In a quick reproduction one run, and fewer models."
 )
 STEP_NOTE = (
     "Sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms, sand every 0.05 ms, "

@@ -33,8 +33,8 @@ STOP = 0.03
 
 SEED_NOTE = (
     f"Mean and standard deviation over {len(SEEDS)} seeds of a lattice shifted by "
-    f"{LATTICE_SHIFT:g} diameters; with --quick one seed, with the coupling impulse, which needs a "
-    "tenth of the exchanges."
+    f"{LATTICE_SHIFT:g} diameters; in a quick reproduction one seed, with the coupling impulse, "
+    "which needs a tenth of the exchanges."
 )
 
 

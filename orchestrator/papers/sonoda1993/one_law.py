@@ -458,6 +458,6 @@ STUDY = Study(
         "Calibrated: E_bar, unloading ratio and the two solid fractions (to the twelve peak forces "
         "and table 6), the cohesions (to k).",
         "Mean and standard deviation over eight packings, three where one number of the law is "
-        "changed; with --quick one packing.",
+        "changed; in a quick reproduction one packing.",
     ),
 )

@@ -394,8 +394,9 @@ STUDY = Study(
     draw,
     (
         f"Mean and standard deviation over {len(SEEDS)} seeds: of a square lattice shifted by "
-        f"{LATTICE_SHIFT:g} diameters, or of random packings of discs ±25 % in size; with --quick "
-        f"one seed, pushed at {100 * SPEED * HASTE:g} cm/s instead of {100 * SPEED:g}.",
+        f"{LATTICE_SHIFT:g} diameters, or of random packings of discs ±25 % in size; in a quick "
+        f"reproduction one seed, pushed at {100 * SPEED * HASTE:g} cm/s instead of "
+        f"{100 * SPEED:g}.",
         "A load is the mean over half a millimetre of penetration. calibrated: rotation locked, "
         "stiffness factor 0.37 where no other is named. literal: three freedoms a disc, factor 1.",
         "A random packing of discs that cannot turn stays so loose (height 14 cm instead of 10) "
