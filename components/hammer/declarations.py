@@ -4,8 +4,11 @@ from ..common.ports import Layout, State, choice, inp, out, param, switch
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2
+from ..common.wave_port import Heard
 
 KINEMATICS, WAVES = 1, 2
+HEARD = Heard(*range(3))
+"""Places in ``heard``, which keeps the wave of the step before."""
 
 _UTO = "Uto et al. 1974, table 1: standard penetration test"
 
@@ -175,6 +178,7 @@ LAYOUT = Layout(
     (
         State("largest", lambda sizes: 1),
         State("ends", lambda sizes: 1),
+        State("heard", lambda sizes: len(HEARD)),
     ),
 )
 """Variables and hidden arrays of the hammer.
