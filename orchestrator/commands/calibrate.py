@@ -35,7 +35,7 @@ _OPTIONS = ("rotation", "values", "seeds", "workers", "folder")
 _Curve = Annotated[
     str | None,
     typer.Argument(
-        metavar="[CURVE.csv|sonoda1993]",
+        metavar="CURVE.csv|sonoda1993",
         show_default=False,
         help="Measured load-penetration curve, columns `penetration (cm)` and `load (kgf)` or "
         "other units; or table 4 of the paper.",

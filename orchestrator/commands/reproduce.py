@@ -15,7 +15,7 @@ _Only = Annotated[
     list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")
 ]
 _Quick = Annotated[
-    bool, typer.Option("--quick", help="One run where the full reproduction has ten seeds.")
+    bool, typer.Option("--quick", help="One seed in the place of eight or ten, and fewer models.")
 ]
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")]
 

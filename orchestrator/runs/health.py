@@ -191,11 +191,11 @@ def slow_reasons() -> list[str]:
     """
     reasons = []
     if problem := cache_problem():
-        reasons.append(f"kernels are compiled at every start, about a minute: {problem}")
+        reasons.append(f"kernels are compiled at every start, a minute or two: {problem}")
     cold = [name for name in NAMES if not has_kernels(component(name).folder)]
     if cold and not problem:
         reasons.append(
-            f"the first use compiles the kernels of {', '.join(cold)}, about a minute, once"
+            f"the first use compiles the kernels of {', '.join(cold)}, a minute or two, once"
         )
     stale = [name for name in NAMES if not _is_native_ready(name)]
     if stale:
