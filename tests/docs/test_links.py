@@ -87,6 +87,25 @@ def test_every_link_of_the_site_leads_to_a_page_of_it(tmp_path, monkeypatch):
     assert dead == {}
 
 
+@pytest.mark.parametrize(
+    ("page", "folders"),
+    [
+        (
+            "orchestrator/README.md",
+            ("orchestrator/core", "orchestrator/sites", "orchestrator/analyses"),
+        ),
+        ("orchestrator/README.md", ("orchestrator/input_files",)),
+        ("fmus/README.md", ("fmus",)),
+    ],
+)
+def test_a_page_says_what_each_module_of_its_folders_is_for(page, folders):
+    quoted = " ".join(re.findall(r"`([^`\n]+)`", (ROOT / page).read_text(encoding="utf-8")))
+    named = set(re.findall(r"\w+", quoted))
+    modules = (path for folder in folders for path in (ROOT / folder).rglob("*.py"))
+    own = (path for path in modules if "dist" not in path.parts and path.stem != "__init__")
+    assert [str(path) for path in own if path.stem not in named] == []
+
+
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md"])
 def test_a_table_of_folders_has_every_folder_of_the_package(page):
     tracked = subprocess.run(
