@@ -3,7 +3,7 @@
 import os
 import shutil
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
@@ -22,6 +22,7 @@ from ..runs.kept import KeptRuns
 from ..tables import Table
 from ..temporary import TemporaryFolder
 from ..versions import versions
+from .kernel_stamps import stamps
 from .page import page
 from .report import Part, as_data, table
 from .study import Outcomes, Study
@@ -175,10 +176,14 @@ def reproduce(
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
+    stamped = stamps(selected)
     kept = KeptRuns(folder / FINISHED)
     outcomes = Outcomes(run_all(tasks, workers, note, counted, kept), quick)
     with TemporaryFolder() as drawn:
-        parts = [_part(study, outcomes, drawn, folder / FIGURES) for study in selected]
+        parts = [
+            _part(study, outcomes, stamped[study.name], drawn, folder / FIGURES)
+            for study in selected
+        ]
     facts = {
         "paper": PAPERS[paper],
         "started": started,
@@ -196,11 +201,13 @@ def reproduce(
     return made
 
 
-def _part(study: Study, outcomes: Outcomes, drawn: Path, figures: Path) -> Part:
+def _part(
+    study: Study, outcomes: Outcomes, stamped: Mapping[str, str], drawn: Path, figures: Path
+) -> Part:
     """Return the rows of a study, and its figures, which are drawn elsewhere first."""
     rows = study.rows(outcomes)
     files = study.draw(outcomes, rows, drawn)
-    return Part(study, rows, [_put(file, figures / file.name) for file in files])
+    return Part(study, rows, [_put(file, figures / file.name) for file in files], stamped)
 
 
 def _put(file: Path, target: Path) -> Path:

@@ -105,8 +105,9 @@ class Task:
 
     @property
     def settings(self) -> list[str]:
-        """Values of the request that differ from the case, as ``name=value``."""
-        return [f"{name}={value}" for name, value in self.request.values.items()]
+        """Values and sizes of the request that differ from the case, as ``name=value``."""
+        changed = {**self.request.values, **self.request.sizes}
+        return [f"{name}={value}" for name, value in changed.items()]
 
     @property
     def key(self) -> str:
@@ -227,7 +228,11 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
 
 def _order(task: Task, note: Note) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
-    system = prepare(task.request, note).system
+    return _Order(task.key, slim(prepare(task.request, note).system), task.allow_unstable)
+
+
+def slim(system: SystemSpec) -> SystemSpec:
+    """Return a system that records the variables of :data:`COLUMNS` and no states."""
     components = {
         name: spec.model_copy(update={"record_states": False})
         for name, spec in system.components.items()
@@ -237,7 +242,7 @@ def _order(task: Task, note: Note) -> _Order:
         "record": [column for column in COLUMNS if column.partition(".")[0] in components],
         "state_interval": None,
     }
-    return _Order(task.key, system.model_copy(update=changes), task.allow_unstable)
+    return system.model_copy(update=changes)
 
 
 def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
@@ -346,7 +351,7 @@ def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: flo
         run.status,
         str(failure) if failure else "",
         failure.time if failure else None,
-        _metrics(run) if run.status == COMPLETE else {},
+        metrics_of(run) if run.status == COMPLETE else {},
         dict(run.series),
         _options(components),
         {name: str(facts["sha256"]) for name, facts in components.items()},
@@ -354,7 +359,7 @@ def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: flo
     )
 
 
-def _metrics(run: "StoredRun") -> dict[str, float]:
+def metrics_of(run: "StoredRun") -> dict[str, float]:
     """Return the numbers of a run by the names of the metrics."""
     from ..metrics.headlines import headlines
 

@@ -17,6 +17,7 @@ from ...metrics.filtering import low_pass
 from ...metrics.names import SETTLED_CUT_OFF
 from ...runs.batch import COMPLETE, Outcome, Task
 from ...runs.job import Request
+from ..study import shortened
 from .laboratory import MODELS as LABORATORY
 from .laboratory import ONE_LAW
 
@@ -170,6 +171,16 @@ def impacts(case: str, model: Model, quick: bool, stop_time: float) -> list[Task
     return [task(seed) for seed in SEEDS]
 
 
+def _short(case: str) -> dict[str, Request]:
+    """Return beginnings of an impact with models that together have everything of the others."""
+    names = ("calibrated", "literal", "poured, all together", "one-law")
+    chosen = {model.name: model for model in MODELS if model.name in names}
+    return {
+        f"{case}, {name}": shortened(impacts(case, model, False, 1.0)[0], 0.03)
+        for name, model in chosen.items()
+    }
+
+
 def _above_pack() -> dict[str, Value]:
     """Return a start above every pack, from which the rock has its speed at the lattice."""
     fallen = 2.0 * GRAVITY * (_FREE_HEIGHT - LAYER)
@@ -177,6 +188,11 @@ def _above_pack() -> dict[str, Value]:
         "rock.position0.y": _FREE_HEIGHT + ROCK_RADIUS,
         "rock.velocity0.y": -math.sqrt(ROCK_SPEED**2 - fallen),
     }
+
+
+SHORT_RIGID = _short(f"rigid-base-{ONE_SAND}")
+SHORT_GIRDERS = _short("girders-8")
+"""Beginnings of impacts, which studies at full scale stand on."""
 
 
 def plot_forces(axes: "Axes", outcome: Outcome) -> None:

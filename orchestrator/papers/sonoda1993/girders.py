@@ -22,7 +22,7 @@ from ...metrics.names import (
 from ...runs.batch import Outcome, Task
 from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs
 from . import full_scale
-from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces
+from .full_scale import SEED_NOTE, SHORT_GIRDERS, STEP_NOTE, Model, models, plot_forces
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -253,4 +253,5 @@ STUDY = Study(
         "kgf/cm3 of the layer, not of a disc), deck and box, unloading stiffness 3 or 20 times the "
         "loading one, cohesion 0.05 kgf/cm2; all together: these with unloading 3.",
     ),
+    stands_on=SHORT_GIRDERS,
 )

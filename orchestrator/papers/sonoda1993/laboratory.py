@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from rockshed.components.common.units import cm
 
 from ...cases.sand_models import LATTICE_SHIFT, model_values
-from ...cases.sonoda1993 import case_name
+from ...cases.sonoda1993 import DEFAULT_TEST, case_name
 from ...core.system.system import Value
 from ...runs.batch import Task
 from ...runs.job import Request
+from ..study import shortened
 
 MODELS: Mapping[str, Mapping[str, Value]] = {
     name: model_values(name) for name in ("calibrated", "literal")
@@ -73,6 +74,25 @@ def impact(
         model=model if model == ONE_LAW else None,
     )
     return Task(request, model, seed)
+
+
+def _beginning(model: str, coupling: str = "impulse", stop_time: float = 4e-3) -> Request:
+    return shortened(impact(DEFAULT_TEST, model, None, SEEDS[0], coupling), stop_time)
+
+
+SHORT_IMPACTS: Mapping[str, Request] = {
+    **{f"impact, {model}": _beginning(model) for model in MODELS},
+    f"impact, {ONE_LAW}": _beginning(ONE_LAW, stop_time=6e-3),
+    "impact, exchange every 0.01 ms": _beginning("calibrated", "paper", 1e-3),
+}
+"""Beginnings of the impact of test 4, which studies of the laboratory stand on.
+
+With the one law the ball starts higher, and meets the sand later.
+"""
+SHORT_STEEL: Mapping[str, Request] = {f"impact, {STEEL_DISCS}": _beginning(STEEL_DISCS)}
+SHORT_JACOBI: Mapping[str, Request] = {
+    "impact, all at once": _beginning("calibrated", "jacobi", 2e-3)
+}
 
 
 def impacts(

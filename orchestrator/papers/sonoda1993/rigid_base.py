@@ -28,7 +28,7 @@ from ...metrics.names import (
 from ...runs.batch import COMPLETE, Task
 from ..study import Measure, Outcomes, Row, Study, detail, row_of_runs
 from . import full_scale
-from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces, sands
+from .full_scale import SEED_NOTE, SHORT_RIGID, STEP_NOTE, Model, models, plot_forces, sands
 
 SANDS = {
     name.removeprefix("rigid-base-"): impact
@@ -162,4 +162,5 @@ STUDY = Study(
         "E_bar 20 (pit), 75 (river; the paper has 70 to 80) and 100 kgf/cm2 (crushed); depth 92 "
         "cm, which the paper does not give.",
     ),
+    stands_on=SHORT_RIGID,
 )
