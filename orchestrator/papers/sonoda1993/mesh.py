@@ -347,8 +347,8 @@ STUDY = Study(
     draw,
     (
         f"Test 4, {len(SEEDS)} seeds for each size ({FINEST_SEEDS} of the finest discs), exchange "
-        "every 0.1 ms; internal steps of sand and beam fall with the size. With --quick one seed, "
-        "and not the finest discs.",
+        "every 0.1 ms; internal steps of sand and beam fall with the size. In a quick "
+        "reproduction one seed, and not the finest discs.",
         "Shipped are discs of 5 mm, 24 elements, and discs of 5 cm on the girders.",
     ),
     stands_on={

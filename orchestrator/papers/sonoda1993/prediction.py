@@ -86,7 +86,7 @@ TRIALS: Mapping[str, Callable[[Prediction], float]] = {
     "sand B, from sand A": lambda p: p.of(_of_sand("A"), _of_sand("B")),
     "sand A, from sand B": lambda p: p.of(_of_sand("B"), _of_sand("A")),
 }
-"""What is predicted from what, by words; of sands the tests 1 to 12."""
+"""Trials by what is predicted from what; of a sand the tests 1 to 12."""
 
 
 def tasks(quick: bool) -> list[Task]:
