@@ -190,11 +190,22 @@ LAYOUT = Layout(
             "support.velocity.y",
             "span",
         ),
-        _per_element(
+        out(
             "moment",
-            "bending moment at the disc's centre, positive with tension below",
+            "bending moment of the whole section at the disc's centre, positive with tension below",
             "N.m",
-            *_AT_REST,
+            size="elements",
+            initial_dependencies=_AT_REST,
+            role=Role.BENDING_MOMENT,
+        ),
+        out(
+            "support.moment",
+            "bending moment of the whole section at the support, positive with tension below; 0 "
+            "on simple supports",
+            "N.m",
+            size="support_count",
+            initial_dependencies=_AT_REST,
+            role=Role.BENDING_MOMENT,
         ),
         out(
             "support.force.y",
@@ -202,6 +213,7 @@ LAYOUT = Layout(
             "load)",
             "N",
             size="support_count",
+            role=Role.SUPPORT_FORCE,
         ),
         out(
             "support.mean_force.y",

@@ -18,6 +18,7 @@ from .chain import (
     potential,
     reactions,
     set_kicks,
+    wall_moments,
 )
 from .declarations import LAYOUT
 from .faults import BOX_OFF_BEAM, DIVERGED
@@ -249,6 +250,7 @@ def _publish_places(c, w, x, k):
     )
     _publish_axis(c.n, w[V.axis_y], 0.0, view(x, k, A.v), view(w, k, A.position_y))
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.hinge_moment), view(w, k, A.moment))
+    _place(view(w, k, A.support_moment), wall_moments(c, x, k))
     _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_shape), view(w, k, A.angle))
 
 

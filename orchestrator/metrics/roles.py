@@ -125,6 +125,32 @@ def elements(run: StoredRun, name: str) -> list[NDArray[np.float64]]:
     return [values for key, values in run.series.items() if key.startswith(f"{name}[")]
 
 
+def all_samples(run: StoredRun, component: str, role: Role) -> NDArray[np.float64]:
+    """Return the series of a component's outputs with a role, elements of arrays included.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component : str
+        Name of the component in the system.
+    role : Role
+        The role that is asked for.
+
+    Returns
+    -------
+    array of float, shape (outputs, rows)
+        Of those that were recorded.
+    """
+    columns = [member.column for member in members(run, role) if member.component == component]
+    listed = [
+        series
+        for name in columns
+        for series in ([run.series[name]] if name in run.series else elements(run, name))
+    ]
+    return np.array(listed).reshape(len(listed), run.series["time"].size)
+
+
 def parameters(run: StoredRun, component: str) -> dict[str, Any]:
     """Return the values of a component's parameters by name.
 

@@ -21,7 +21,15 @@ from rockshed.core.results.reading import read_run
 from rockshed.core.system.system import load_system
 
 EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
-PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
+PICTURES = {
+    "overview.png",
+    "sand.png",
+    "forces.png",
+    "penetration.png",
+    "beam.png",
+    "moment.png",
+    "energy.png",
+}
 SHORT = ["--stop-time", "0.001", "--no-figures"]
 
 
@@ -348,7 +356,7 @@ def test_the_example_of_a_system_file_runs_and_is_drawn_without_a_beam(rockshed,
     assert result.exit_code == 0, result.stderr
     assert {
         path.name for path in (tmp_path / "results/rigid-floor/figures").iterdir()
-    } == PICTURES - {"beam.png"}
+    } == PICTURES - {"beam.png", "moment.png"}
 
 
 def test_a_system_of_strangers_has_its_summary_and_no_pictures(rockshed, tmp_path, foreign):
