@@ -3,7 +3,7 @@
 from ..common.ports import Layout, State, choice, inp, out, param, switch
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.units import cm, cm2
+from ..common.units import cm, cm2, standard_gravity
 from ..common.wave_port import Heard
 
 KINEMATICS, WAVES = 1, 2
@@ -25,7 +25,12 @@ LAYOUT = Layout(
             maximum=1.0,
         ),
         param(
-            "gravity", "acceleration of gravity", 9.80665, "m/s2", minimum=0.0, role=Role.GRAVITY
+            "gravity",
+            "acceleration of gravity",
+            standard_gravity,
+            "m/s2",
+            minimum=0.0,
+            role=Role.GRAVITY,
         ),
         switch("weight", "whether the ram's weight acts during the blow too", True),
         param(

@@ -10,7 +10,7 @@ from ..common.component import Size
 from ..common.ports import Indices, Layout, Sizes, State, choice, count, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.units import cm, deg, kgf
+from ..common.units import cm, deg, kgf, standard_gravity
 
 MOST_THREADS = 64
 """Threads that can share the work of a step."""
@@ -254,7 +254,7 @@ LAYOUT = Layout(
         param(
             "gravity",
             "acceleration of gravity, downwards",
-            9.80665,
+            standard_gravity,
             "m/s2",
             minimum=0.0,
             role=Role.GRAVITY,

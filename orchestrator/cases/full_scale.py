@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from rockshed.components.catalogue import component
-from rockshed.components.common.units import cm, cm2, cm4, kgf, kN
+from rockshed.components.common.units import cm, cm2, cm4, kgf, kN, standard_gravity
 
 from ..core.system.schedule import Scheme
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
@@ -114,7 +114,6 @@ DECK_MASS, BOX_MASS = 0.0, 0.0
 
 The paper gives none: none is assumed.
 """
-GRAVITY = 9.80665
 
 _SANDS = (
     ("pit", "pit sand", 20.0, 0.24),
@@ -246,7 +245,7 @@ def _girders(fmu: str, impact: Impact, spacing: float) -> ComponentSpec:
         "section.area": GIRDERS * GIRDER_AREA,
         "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT,
         "section.height": GIRDER_HEIGHT,
-        "gravity": GRAVITY,
+        "gravity": standard_gravity,
         "deck.mass": DECK_MASS,
         "box.mass": BOX_MASS,
         "internal_step": _BEAM_STEP,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
-from rockshed.components.common.units import cm, kgf
+from rockshed.components.common.units import cm, kgf, standard_gravity
 from rockshed.components.sand_cushion.models import MODELS, SPREAD, SandModel
 
 from ..core.errors import InputRefused, Problem
@@ -193,11 +193,11 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
     state = soil or layer.soil
     largest = 2.0 * layer.disc_radius * (1.0 + SPREAD)
     clearance = 1.5 * largest
-    gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
+    gained = 2.0 * standard_gravity * clearance if layer.falling else 0.0
     values |= {
         "sand.cohesion": state.cohesion,
         "sand.solid_fraction": state.solid_fraction,
-        "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665),
+        "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / standard_gravity),
     }
     if layer.dropped:
         values |= {

@@ -11,6 +11,8 @@ gravity is 0 in them.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rockshed.components.common.units import cm2, kgf, standard_gravity
+
 from ..core.system.system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from . import full_scale
 from .spt import toe_bond, toe_connections
@@ -62,7 +64,7 @@ class Pile:
     @property
     def weight(self) -> float:
         """Weight of the rod (N), without the soil."""
-        return self.length * self.area * self.density * full_scale.GRAVITY
+        return self.length * self.area * self.density * standard_gravity
 
 
 PILE = Pile()
@@ -232,5 +234,5 @@ def derived(system: SystemSpec, discs: int, elements: int) -> dict[str, Value]:
     return values
 
 
-_STEEL = 2.1e6 * 9.80665e4
+_STEEL = 2.1e6 * kgf / cm2
 """Young's modulus (Pa) that RBSMBeam has where none is given."""

@@ -137,14 +137,17 @@ class _Told:
 
     @property
     def heard(self) -> bool:
+        """Whether the child has taken notice of the last request to end."""
         return _HEARD in self._lines
 
     @property
     def done(self) -> bool:
+        """Whether the child has come to its end."""
         return _DONE in self._lines
 
     @property
     def facts(self) -> dict[str, Any]:
+        """Facts that the child has told, the later ones over the earlier."""
         told: dict[str, Any] = {}
         for line in self._lines:
             if line.startswith("{"):

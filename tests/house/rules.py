@@ -136,6 +136,22 @@ def says_little(node: ast.AST) -> str | None:
     return text if text is not None and len(text.split()) <= 4 else None
 
 
+def standard_gravity(node: ast.AST) -> str | None:
+    """Object to 9.80665 in any power of ten, which ``units.standard_gravity`` has."""
+    is_number = isinstance(node, ast.Constant) and isinstance(node.value, float)
+    digits = f"{node.value:.6e}".partition("e")[0] if is_number else ""
+    return "stands in units.standard_gravity" if digits == "9.806650" else None
+
+
+def undocumented(node: ast.AST) -> str | None:
+    """Object to modules and classes with public members without a docstring."""
+    if not isinstance(node, ast.Module | ast.ClassDef):
+        return None
+    members = [child for child in node.body if isinstance(child, ast.ClassDef | Function)]
+    silent = [m.name for m in members if not m.name.startswith("_") and docstring(m) is None]
+    return f"has no docstring of {', '.join(silent)}" if silent else None
+
+
 def two_meanings() -> list[Breach]:
     """Return public classes and aliases whose name is defined in more than one module."""
     places = defaultdict(list)

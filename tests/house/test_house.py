@@ -10,6 +10,7 @@ RULES = (
     rules.unlike_things,
     rules.begins_with_what,
     rules.says_little,
+    rules.undocumented,
 )
 
 
@@ -29,3 +30,8 @@ def test_a_text_of_the_library_names_arguments_and_no_option_of_the_command_line
 def test_a_name_has_one_meaning():
     breaches = rules.two_meanings()
     assert not breaches, "\n".join(map(str, breaches))
+
+
+def test_standard_gravity_is_written_once():
+    (breach,) = rules.breaches(rules.standard_gravity)
+    assert breach.file == "components/common/units.py"

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rockshed.components.common.units import cm, kgf, ms, tf
+from rockshed.components.common.units import cm, kgf, ms, standard_gravity, tf
 
-from ...cases.full_scale import GRAVITY, LAYER, ROCK_RADIUS, ROCK_SPEED
+from ...cases.full_scale import LAYER, ROCK_RADIUS, ROCK_SPEED
 from ...cases.sand_models import LATTICE_SHIFT, LOOSE
 from ...core.system.system import Value
 from ...metrics.filtering import low_pass
@@ -183,7 +183,7 @@ def _short(case: str) -> dict[str, Request]:
 
 def _above_pack() -> dict[str, Value]:
     """Return a start above every pack, from which the rock has its speed at the lattice."""
-    fallen = 2.0 * GRAVITY * (_FREE_HEIGHT - LAYER)
+    fallen = 2.0 * standard_gravity * (_FREE_HEIGHT - LAYER)
     return {
         "rock.position0.y": _FREE_HEIGHT + ROCK_RADIUS,
         "rock.velocity0.y": -math.sqrt(ROCK_SPEED**2 - fallen),

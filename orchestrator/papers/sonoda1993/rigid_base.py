@@ -6,11 +6,10 @@ Transmitted force and force on the rock, beside those of formulas.
 from collections.abc import Sequence
 from pathlib import Path
 
-from rockshed.components.common.units import cm, tf
+from rockshed.components.common.units import cm, standard_gravity, tf
 
 from ...cases.full_scale import (
     DROP,
-    GRAVITY,
     ROCK_MASS,
     ROCK_RADIUS,
     Impact,
@@ -96,7 +95,7 @@ def _filter(runs: Sequence[Task], outcomes: Outcomes) -> str:
 
 def formulas() -> list[Row]:
     """Return the force on the rock by the handbook, and by Hertz, on whom the handbook builds."""
-    speed = (2.0 * GRAVITY * DROP) ** 0.5
+    speed = (2.0 * standard_gravity * DROP) ** 0.5
     return [
         Row(
             "force on the rock by the Japanese rockfall handbook",
