@@ -184,7 +184,7 @@ def describe_system(job: Job) -> Overview:
     system = job.system
     plan = make_plan(system, {**sources_of(system), **job.sources})
     parts: list[str | Table] = [
-        f"{system.name}: {system.description}\n"
+        f"{system.name}{': ' if system.description else ''}{system.description}\n"
         f"{system.master} master, order {', '.join(plan.order)}; exchange every "
         f"{system.exchange_step:g} s until {system.stop_time:g} s; {len(plan.inputs)} values a "
         f"time in {len(system.connections)} connections"
