@@ -123,8 +123,8 @@ class Envelope:
     along : str
         Name of the array of its places (m) in order; those at the start are taken.
     ends : str
-        Name of an array of two, the values half a spacing before the first place and after the
-        last one; empty for none.
+        Name of an array whose first two values are those half a spacing before the first place and
+        after the last one; empty for none.
     """
 
     label: str

@@ -57,6 +57,6 @@ def _along(
     if not ends:
         return places, values
     half = 0.5 * (places[1] - places[0])
-    first, last = ends
+    first, last = ends[:2]
     wider = np.concatenate([places[:1] - half, places, places[-1:] + half])
     return wider, np.vstack([first, values, last])

@@ -74,3 +74,16 @@ def test_the_picture_of_the_moment_goes_from_support_to_support_and_over_time(si
     load = (STEEL + 100.0) * GRAVITY
     assert high.get_ydata().max() == pytest.approx(load * SPAN**2 / 8e3, rel=1e-6)
     assert axes.get_ylabel() == "bending moment (kN m)"
+
+
+def test_a_beam_on_three_supports_gives_the_reaction_of_the_middle_one_and_its_picture(tmp_path):
+    """10/16 of the weight, and w l2/8 over it; through the FMU of this size."""
+    parameters = {"gravity": GRAVITY, "deck.mass": 100.0, "support.element[3]": 13}
+    system = rockshed.System.new("spans", exchange_step=1e-4, stop_time=1e-3)
+    sizes = {"elements": 25, "support_count": 3}
+    run = rockshed.simulate(system.add("beam", "RBSMBeam", parameters, sizes=sizes))
+    load = (STEEL + 100.0) * GRAVITY
+    reaction = run.metrics["peak_support_reaction"].value
+    assert reaction == pytest.approx(load * SPAN * 10 / 16, rel=1e-3)
+    assert run.metrics["peak_bending_moment"].value == pytest.approx(-load * SPAN**2 / 32, rel=1e-2)
+    assert run.figures(tmp_path)["moment"].stat().st_size > 10_000
