@@ -29,7 +29,7 @@ SIZES = {
     "elements": Size(24, 1, 2_000, "number of beam discs that the sand may touch"),
 }
 
-CALIBRATED_STIFFNESS_FACTOR = 0.37
+CALIBRATED_STIFFNESS_FACTOR = 0.342
 """Factor on the stiffness for locked rotation (1): fitted to table 5 and to the static test (fig.
 13) of the paper, not derived."""
 
@@ -400,7 +400,7 @@ LAYOUT = Layout(
             "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's "
             "discs as discs",
             ("floor", "beam_surface", "beam_discs"),
-            "beam_discs",
+            "beam_surface",
         ),
         choice(
             "base.shape",

@@ -9,6 +9,7 @@ from typing import cast
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import Component
+from rockshed.components.common.units import ms
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
@@ -364,10 +365,12 @@ def _spt() -> Case:
     )
 
 
-_FULL_SCALE_COUPLINGS = {
-    "paper": "sand first, inputs held, exchange every 0.05 ms",
-    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms",
-}
+def _full_scale_couplings(impact: full_scale.Impact) -> Mapping[str, str]:
+    paper, impulse = (f"{impact.steps[name] / ms:g} ms" for name in ("paper", "impulse"))
+    return {
+        "paper": f"sand first, inputs held, exchange every {paper}",
+        "impulse": f"sand first, kinematics extrapolated, mean forces, exchange every {impulse}",
+    }
 
 
 def _weight_on_beam(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
@@ -398,7 +401,7 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         f"Sonoda et al. 1993, full scale: {impact.summary}",
         models={"sand": "SandCushion", "rock": "FallingRock", **beam},
         sizes={"sand": {"discs": impact.discs, **elements}, **dict.fromkeys(beam, elements)},
-        couplings=_FULL_SCALE_COUPLINGS,
+        couplings=_full_scale_couplings(impact),
         make=make,
         one_size=("sand.elements", "beam.elements") if beam else (),
         derived=_weight_on_beam,
@@ -427,7 +430,7 @@ def _slope_to_cushion() -> Case:
             "beam": elements,
             "rock": {"cells": slope_to_cushion.cells()},
         },
-        couplings=_FULL_SCALE_COUPLINGS,
+        couplings=_full_scale_couplings(impact),
         make=make,
         one_size=("sand.elements", "beam.elements"),
         derived=_weight_on_beam,

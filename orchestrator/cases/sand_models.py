@@ -152,7 +152,7 @@ def discs_of(layer: SandLayer, solid_fraction: float) -> int:
 
 
 def model_values(name: str) -> dict[str, Value]:
-    """Return the values of a model that takes nothing from the soil.
+    """Return the values of a model that takes nothing from the soil, for sand on a floor.
 
     Parameters
     ----------
@@ -188,6 +188,8 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
         Values, sizes and keys of the system.
     """
     values: dict[str, Value] = {f"sand.{name}": value for name, value in model.parameters.items()}
+    if layer.on_beam:
+        values["sand.base"] = model.beam_base
     if not model.prepared:
         return Changes(values)
     state = soil or layer.soil
@@ -206,8 +208,6 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
         }
     if layer.step:
         values["sand.internal_step"] = layer.step
-    if layer.on_beam:
-        values["sand.base"] = "beam_surface"
     return Changes(
         values,
         {"sand.discs": discs_of(layer, state.solid_fraction)},

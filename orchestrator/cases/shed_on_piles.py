@@ -93,7 +93,9 @@ def shed_system(
     base = full_scale.full_scale_system(
         fmus, full_scale.impacts()[GIRDERS], "impulse", discs, elements
     )
-    components = dict(base.components)
+    girders = base.components["beam"]
+    undamped = {**girders.parameters, "damping.stiffness": 0.0}
+    components = {**base.components, "beam": girders.model_copy(update={"parameters": undamped})}
     connections = list(base.connections)
     bonds = dict(base.bonds)
     for number, side in enumerate(SIDES, 1):

@@ -61,12 +61,12 @@ def made_up(length=0.02, summary=(), **columns):
         **columns,
     }
     sand = {
-        "base": "beam_discs",
+        "base": "beam_surface",
         "base.y": 0.0,
         "beam.radius": 0.025,
         "disc.radius": 0.005,
         "rotation": "locked",
-        "stiffness_factor": 0.37,
+        "stiffness_factor": 0.342,
         "density": 1800.0,
         "density_of": "disc",
         "base.shape": "flat",
@@ -292,14 +292,14 @@ def test_models_of_the_sand_have_their_names():
     run = made_up()
     sand = run.provenance["components"]["sand"]["parameters"]
     assert models(run)[0] == (
-        "calibrated sand: rotation locked, stiffness factor 0.37, "
+        "calibrated sand: rotation locked, stiffness factor 0.342, "
         "square packing, fictitious modulus E_bar 30.0 kgf/cm²"
     )
-    sand["rotation"]["value"], sand["stiffness_factor"]["value"], sand["base.shape"]["value"] = (
-        "free",
-        1.0,
-        "round",
-    )
+    literal = {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"}
+    for name, value in literal.items():
+        sand[name]["value"] = value
+    assert models(run)[0].startswith("modified sand: rotation free")
+    sand["base"]["value"] = "beam_discs"
     assert models(run)[0].startswith("literal sand: rotation free")
     sand["rolling_resistance"]["value"] = 0.3
     assert models(run)[0].startswith(
@@ -392,7 +392,7 @@ def references_of(differing):
         {
             "rock.mass": 4,
             "rock_radius": 0.0495,
-            "sand.base": "beam_discs",
+            "sand.base": "beam_surface",
             "rock.position0.y": 0.15,
             "sand.damping": 0.2,
         },

@@ -15,13 +15,13 @@ from ..study import shortened
 MODELS: Mapping[str, Mapping[str, Value]] = {
     name: model_values(name) for name in ("calibrated", "literal")
 }
-"""Values, by ``sand.parameter``, of the models of the paper's sand by name."""
+"""Values, by ``sand.parameter``, of the models of the paper's sand on a floor by name."""
 STEEL_DISCS = "calibrated, steel discs"
 READINGS: Mapping[str, Mapping[str, Value]] = {
-    **MODELS,
+    **{name: {} for name in MODELS},
     STEEL_DISCS: {"sand.beam.disc_mass": math.pi * (2.5 * cm) ** 2 * 10 * cm * 7850.0},
 }
-"""The same, and the calibrated sand with another reading of eq. (1) on the beam.
+"""The models, and the calibrated sand with another reading of eq. (1) on the beam: what it sets.
 
 In the dashpots there, m is the mass of a beam disc of steel, as thick as the cushion.
 """
@@ -71,7 +71,7 @@ def impact(
         values,
         coupling=coupling,
         options={"stop_time": STOP},
-        model=model if model == ONE_LAW else None,
+        model=model if model in ALL_MODELS else None,
     )
     return Task(request, model, seed)
 

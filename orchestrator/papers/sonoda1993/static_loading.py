@@ -408,7 +408,7 @@ STUDY = Study(
         f"reproduction one seed, pushed at {100 * SPEED * HASTE:g} cm/s instead of "
         f"{100 * SPEED:g}.",
         "A load is the mean over half a millimetre of penetration. calibrated: rotation locked, "
-        "stiffness factor 0.37 where no other is named. literal: three freedoms a disc, factor 1.",
+        "stiffness factor 0.342 where no other is named. literal: three freedoms a disc, factor 1.",
         "A random packing of discs that cannot turn stays so loose (height 14 cm instead of 10) "
         "that it carries nothing.",
     ),
