@@ -217,7 +217,7 @@ SEED_NOTE = (
 )
 STEP_NOTE = (
     "Sand first, kinematics extrapolated, mean forces. Rigid base: exchange every 0.2 ms, sand "
-    "every 0.05 ms. Girders: exchange every 0.1 ms, sand every 0.0125 ms, girders every 0.01 ms. With "
-    "calibrated sand forces are within 0.1 % of those with an exchange at every step of the sand; "
-    "packs are chaotic, their seeds tell how much."
+    "every 0.05 ms. Girders: exchange every 0.1 ms, sand every 0.0125 ms, girders every 0.01 ms. "
+    "With calibrated sand forces are within 0.1 % of those with an exchange at every step of the "
+    "sand; packs are chaotic, their seeds tell how much."
 )
