@@ -77,6 +77,7 @@ def rows(outcomes: Outcomes) -> list[Row]:
         *(_coefficient(area) for area in AREAS),
         *(row for area in AREAS for row in _ends(area)),
         _slopes(),
+        _rise(),
         _masses(),
         *(detail(row) for area in AREAS for row in _slope_and_mass(area)),
         _chained(),
@@ -110,7 +111,7 @@ def _ends(area: float) -> Iterator[Row]:
 def _slopes() -> Row:
     """Return whether the slope of (12) rises with the area, as (5) to (7) with (11) demand."""
     fitted = [slope(area) for area in AREAS]
-    rise = slope_of_model(AREAS[-1]) / slope_of_model(AREAS[0])
+    rise = _rise().computed
     return Row(
         "slope of (12), largest / smallest plate",
         "1",
@@ -118,6 +119,15 @@ def _slopes() -> Row:
         verdict=verdict(fitted == sorted(fitted)),
         note=f"should rise with A as 2 M/K of (5)-(7), (11) does, by {rise:.2f}; it falls: (11) "
         "and (12) contradict each other",
+    )
+
+
+def _rise() -> Row:
+    return Row(
+        "2 M/K of (5) to (7) with (11), largest / smallest plate",
+        "1",
+        computed=slope_of_model(AREAS[-1]) / slope_of_model(AREAS[0]),
+        note="the slope that (12) should have",
     )
 
 

@@ -4,13 +4,13 @@ Each model has one assumption more, or another one, than the one before.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rockshed.components.common.units import cm, kgf, ms, standard_gravity, tf
 
-from ...cases.full_scale import LAYER, ROCK_RADIUS, ROCK_SPEED
+from ...cases.full_scale import LAYER, ROCK_MASS, ROCK_RADIUS, ROCK_SPEED
 from ...cases.sand_models import LATTICE_SHIFT, LOOSE
 from ...core.system.system import Value
 from ...metrics.filtering import low_pass
@@ -192,6 +192,15 @@ def _above_pack() -> dict[str, Value]:
 SHORT_RIGID = _short(f"rigid-base-{ONE_SAND}")
 SHORT_GIRDERS = _short("girders-8")
 """Beginnings of impacts, which studies at full scale stand on."""
+
+
+IMPACT_ENERGY = 0.5 * ROCK_MASS * ROCK_SPEED**2
+"""Kinetic energy (J) of the rock where it meets the sand, wherever it started."""
+
+
+def share(figure: str) -> Callable[[Outcome], float]:
+    """Return the function of a peak energy of the girders as a part of the impact's."""
+    return lambda outcome: outcome.metrics[figure] / IMPACT_ENERGY
 
 
 def plot_forces(axes: "Axes", outcome: Outcome) -> None:

@@ -3,13 +3,13 @@
 Models of the sand differ by one assumption each.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockshed.components.common.units import tf
 
-from ...cases.full_scale import ROCK_MASS, ROCK_SPEED, Impact, impacts, known_of
+from ...cases.full_scale import Impact, impacts, known_of
 from ...metrics.names import (
     BEAM_ENERGY,
     BEAM_ENERGY_FROM_STRAIN,
@@ -19,10 +19,10 @@ from ...metrics.names import (
     SETTLED_ROCK,
     SETTLED_TRANSMITTED,
 )
-from ...runs.batch import Outcome, Task
+from ...runs.batch import Task
 from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs
 from . import full_scale
-from .full_scale import SEED_NOTE, SHORT_GIRDERS, STEP_NOTE, Model, models, plot_forces
+from .full_scale import SEED_NOTE, SHORT_GIRDERS, STEP_NOTE, Model, models, plot_forces, share
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,8 +31,6 @@ SPANS = {impact.span: impact for impact in impacts().values() if impact.span}
 """Impacts by their span (m)."""
 STOP = 0.15
 """End of the runs (s): energy and forces have had their peaks."""
-IMPACT_ENERGY = 0.5 * ROCK_MASS * ROCK_SPEED**2
-"""Kinetic energy (J) of the rock where it meets the sand, wherever it started."""
 
 
 def _runs(impact: Impact, model: Model, quick: bool) -> list[Task]:
@@ -66,11 +64,6 @@ def rows(outcomes: Outcomes) -> list[Row]:
     return listed
 
 
-def _share(figure: str) -> Callable[[Outcome], float]:
-    """Return the function of a peak energy of the girders as a part of the impact's."""
-    return lambda outcome: outcome.metrics[figure] / IMPACT_ENERGY
-
-
 def _known(impact: Impact, figure: str, who: str) -> float | None:
     reference = known_of(impact)[figure].by().get(who)
     return None if reference is None else reference.value
@@ -87,7 +80,7 @@ def _energy(impact: Impact, model: Model, outcomes: Outcomes) -> Row:
             f"girders' energy / rock's by eq. (7), span {impact.span:g} m",
             "%",
             0.01,
-            _share(BEAM_ENERGY_FROM_STRAIN),
+            share(BEAM_ENERGY_FROM_STRAIN),
         ),
         _runs(impact, model, outcomes.quick),
         outcomes,
@@ -105,7 +98,7 @@ def _springs_and_forces(impact: Impact, model: Model, outcomes: Outcomes) -> lis
     on_rock = Measure(f"settled force on the rock, {span}", "tf", tf, SETTLED_ROCK)
     return [
         row_of_runs(
-            Measure(by_springs, "%", 0.01, _share(BEAM_ENERGY)),
+            Measure(by_springs, "%", 0.01, share(BEAM_ENERGY)),
             runs,
             outcomes,
             _percent(_known(impact, BEAM_SHARE, "paper")),

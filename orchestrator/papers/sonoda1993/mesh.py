@@ -24,7 +24,6 @@ from ...cases.sonoda1993 import (
 from ...core.system.system import Value
 from ...metrics.names import (
     BEAM_ENERGY_FROM_STRAIN,
-    BEAM_SHARE_FROM_STRAIN,
     PEAK_TRANSMITTED,
     PENETRATION,
 )
@@ -167,21 +166,19 @@ def on_girders(impact_on: full_scale.Impact, division: int, quick: bool) -> Mesh
     made = at_full_scale.impacts(impact_on.name, model, quick, _GIRDERS_STOP)[: len(SEEDS)]
     if division > 1:
         sizes = {"sand.discs": _filling(full_scale.layer(impact_on), radius)}
-        made = [_refined(task, radius, division, sizes) for task in made]
+        changes = {
+            "sand.disc.radius": radius,
+            "sand.internal_step": impact_on.steps["paper"] / division,
+        }
+        made = [_refined(task, changes, sizes) for task in made]
     return Mesh(words, ONE_LAW, radius / mm, made)
 
 
 _GIRDERS_STOP = 0.15
-_GIRDERS_STEP = 5e-5
-"""Internal step (s) of the shipped sand at full scale."""
 
 
-def _refined(task: Task, radius: float, division: int, sizes: Mapping[str, int]) -> Task:
-    values = {
-        **task.request.values,
-        "sand.disc.radius": radius,
-        "sand.internal_step": _GIRDERS_STEP / division,
-    }
+def _refined(task: Task, changes: Mapping[str, Value], sizes: Mapping[str, int]) -> Task:
+    values = {**task.request.values, **changes}
     return replace(task, request=replace(task.request, values=values, sizes=sizes))
 
 
@@ -223,7 +220,12 @@ def rows(outcomes: Outcomes) -> list[Row]:
     return listed
 
 
-_ENERGY = Measure("girders' energy / rock's by eq. (7)", "%", 0.01, BEAM_SHARE_FROM_STRAIN)
+_ENERGY = Measure(
+    "girders' energy / rock's by eq. (7)",
+    "%",
+    0.01,
+    at_full_scale.share(BEAM_ENERGY_FROM_STRAIN),
+)
 
 
 def _compared(

@@ -18,6 +18,7 @@ from ...cases.static_loading import NAME as STATIC_TEST
 from ...cases.static_loading import SPEED
 from ...core.system.system import Value
 from ...metrics.names import (
+    BEAM_ENERGY_FROM_STRAIN,
     BEAM_SHARE_FROM_STRAIN,
     PEAK_TRANSMITTED,
     SETTLED_RATIO,
@@ -330,7 +331,7 @@ def _energy(impact: full_scale.Impact, law: Law, outcomes: Outcomes) -> Row:
             f"girders of {impact.span:g} m: energy / rock's by eq. (7)",
             "%",
             0.01,
-            BEAM_SHARE_FROM_STRAIN,
+            full_scale_runs.share(BEAM_ENERGY_FROM_STRAIN),
         ),
         _girders(impact, law, outcomes.quick),
         outcomes,

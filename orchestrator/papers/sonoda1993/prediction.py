@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean, stdev
+from textwrap import fill
 from typing import Any
 
 from ...cases import sonoda1993
@@ -258,7 +259,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
             bars = axes.barh([p.name for p in shown], errors, color=colours)
             axes.bar_label(bars, fmt="%.1f", padding=2, fontsize=6.5)
             axes.set(xlabel="error (%)", xlim=(0.0, 1.25 * max(errors)))
-            axes.set_title(trial.replace(", ", ",\n", 1), fontsize=7.5)
+            axes.set_title(fill(trial, 20), fontsize=7.5)
         panels[0].invert_yaxis()
     return [file]
 
