@@ -273,5 +273,6 @@ def still_sinking(run: StoredRun) -> bool:
         if (name := column(run, cushion, Role.PENETRATION))
     ]
     return any(
-        int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0 for depth in depths
+        depth.size == 0 or int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0
+        for depth in depths
     )

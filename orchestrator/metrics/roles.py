@@ -43,6 +43,10 @@ class Member:
         return f"{self.component}.{self.variable}"
 
 
+_ROLES = frozenset(map(str, Role))
+"""All roles; results may name others, which a later version has."""
+
+
 def members(run: StoredRun, role: Role) -> list[Member]:
     """Return the variables that are declared with a role, or with a kind of it.
 
@@ -62,7 +66,7 @@ def members(run: StoredRun, role: Role) -> list[Member]:
         Member(component, variable, Role(told["role"]), told.get("label", ""))
         for component, facts in run.provenance["components"].items()
         for variable, told in facts.get("variables", {}).items()
-        if told.get("role") and role.includes(told["role"])
+        if told.get("role") in _ROLES and role.includes(told["role"])
     ]
 
 

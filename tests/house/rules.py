@@ -152,6 +152,14 @@ def undocumented(node: ast.AST) -> str | None:
     return f"has no docstring of {', '.join(silent)}" if silent else None
 
 
+def leaves_a_folder(node: ast.AST) -> str | None:
+    """Object to temporary folders that stay when their process is killed."""
+    if not isinstance(node, ast.Attribute | ast.Name):
+        return None
+    name = node.attr if isinstance(node, ast.Attribute) else node.id
+    return "is not TemporaryFolder" if name == "TemporaryDirectory" else None
+
+
 def two_meanings() -> list[Breach]:
     """Return public classes and aliases whose name is defined in more than one module."""
     places = defaultdict(list)

@@ -11,6 +11,7 @@ RULES = (
     rules.begins_with_what,
     rules.says_little,
     rules.undocumented,
+    rules.leaves_a_folder,
 )
 
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.cache import source_stamp
 
 from ...core.errors import InputRefused, Problem
+from ...temporary import TemporaryFolder
 from ..frame import Count
 from .campaign import (
     Campaign,
@@ -153,7 +153,7 @@ def _local(workers: int | None) -> "Iterator[Client]":
     from distributed import Client, LocalCluster, Security
 
     security = Security.temporary()
-    with TemporaryDirectory(prefix="rockshed-dask-") as folder, dask.config.set(_NO_PAGES):
+    with TemporaryFolder("rockshed-dask-") as folder, dask.config.set(_NO_PAGES):
         with _deaf_to_ctrl_c():
             cluster = LocalCluster(
                 n_workers=workers,
@@ -163,7 +163,7 @@ def _local(workers: int | None) -> "Iterator[Client]":
                 memory_limit=0,
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
-                local_directory=folder,
+                local_directory=str(folder),
                 security=security,
                 protocol="tls://",
             )

@@ -392,6 +392,28 @@ def leftovers(folder: Path, live: Path | None = None) -> list[Path]:
     return [path for path in _numbered(folder).values() if path != live and is_marked(path)]
 
 
+def unfinished(place: Path) -> list[Path]:
+    """Return what runs have left that were killed or go on, in the folder of their results.
+
+    Parameters
+    ----------
+    place : Path
+        In which results lie, ``results`` for instance.
+
+    Returns
+    -------
+    list of Path
+        Folders in which runs write, and old results that a swap has put aside. What the user has
+        there is not among them, whatever it is called.
+    """
+    try:
+        entries = sorted(entry for entry in place.iterdir() if entry.is_dir())
+    except OSError:
+        return []
+    aside = re.compile(rf"\.[0-9a-f]{{8}}{_ASIDE}")
+    return [entry for entry in entries if is_marked(entry) or aside.fullmatch(entry.name)]
+
+
 def _beside(path: Path, name: str) -> Path:
     """Return the place of another name in the same folder; a root has no name that could change."""
     return path.parent / name
