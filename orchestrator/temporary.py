@@ -42,7 +42,7 @@ class TemporaryFolder:
 
     def __init__(self, prefix: str = "rockshed_", place: Path | None = None) -> None:
         where = str(place or tempfile.gettempdir())
-        _sweep_once(where)
+        sweep_once(where)
         self.name, lock = _made(prefix, where)
         self._remove = weakref.finalize(self, _removed, self.name, lock)
 
@@ -90,9 +90,20 @@ def _removed(name: str, lock: FileLock) -> None:
     shutil.rmtree(name, ignore_errors=True)
 
 
+def sweep_once(place: str = "") -> None:
+    """Remove temporary folders of processes that were killed, the first time that this is called.
+
+    Parameters
+    ----------
+    place : str
+        Where to look; by default the folder of temporary files.
+    """
+    _swept(place or tempfile.gettempdir())
+
+
 @cache
-def _sweep_once(place: str) -> None:
-    sweep(Path(place))
+def _swept(place: str) -> list[Path]:
+    return sweep(Path(place))
 
 
 def left_behind(place: Path | None = None) -> Iterator[tuple[Path, FileLock]]:

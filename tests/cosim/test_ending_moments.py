@@ -238,7 +238,8 @@ def test_a_command_that_is_ended_loses_nothing_and_the_next_one_works(
         assert code in (0, 1, 2), told  # 2: before anything was computed
         assert code == 0 or "No space left" in " ".join(told.split()), told
     elif ending != "SIGKILL":
-        assert code in (0, 130, -getattr(signal, ending)), told
+        # Python ends itself with SIGINT if Ctrl-C has hit code of exec(); a shell says 130 then
+        assert code in (0, 130, -signal.SIGINT, -getattr(signal, ending)), told
         assert not left(place), told
     assert ended(started(place, chosen.again, chosen.is_cold)) == 0, said(place)
     check_users_files(place)

@@ -1,6 +1,7 @@
 """The zip archive of an FMU, also one that was packed on Windows or by hand."""
 
 import errno
+import os
 import posixpath
 import stat
 import zipfile
@@ -20,6 +21,12 @@ MOST_DESCRIPTION = 256 << 20
 """Largest size (bytes) of a description in it."""
 MOST_MEMBERS = 100_000
 """Largest number of files in it."""
+_END_MARK = b"PK\x05\x06"
+"""Begins the record at the end of an archive."""
+_LONGEST_END = 22 + (1 << 16)
+"""Largest size (bytes) of that record, with a comment."""
+_UNTOLD = 0xFFFF
+"""Number of members in it where there are more than it can tell."""
 _AT_ONCE = 1 << 20
 """Bytes that are unpacked at a time."""
 _UNREADABLE = (
@@ -72,7 +79,11 @@ class Archive:
             if isinstance(error, OSError) and error.filename is not None:  # it cannot be opened
                 raise
             raise ArchiveError("is not an FMU: not a zip archive") from error
-        self._members = {_clean(info.filename): info for info in self._zip.infolist()}
+        listed = self._zip.infolist()
+        told = _number_told(file)
+        if told not in (_UNTOLD, len(listed)):
+            raise ArchiveError(f"is damaged: it names {len(listed)} of its {told} files")
+        self._members = {_clean(info.filename): info for info in listed}
 
     def __enter__(self) -> "Archive":
         return self
@@ -177,8 +188,24 @@ def _possible(name: str) -> Iterator[None]:
         raise ArchiveError(f"has a member whose name is too long: {shown(name)}") from error
 
 
+def _number_told(file: Path | IO[bytes]) -> int:
+    """Return the number of members that the end of an archive tells.
+
+    The reader does not look at it: where a damaged entry hides those behind it, they are missing.
+    """
+    if isinstance(file, Path):
+        with file.open("rb") as opened:
+            return _number_told(opened)
+    length = file.seek(0, os.SEEK_END)
+    file.seek(max(0, length - _LONGEST_END))
+    end = file.read()
+    at = end.rfind(_END_MARK)
+    return int.from_bytes(end[at + 10 : at + 12], "little") if at >= 0 else _UNTOLD
+
+
 def _is_folder(info: zipfile.ZipInfo) -> bool:
-    return info.filename.endswith(("/", "\\")) or stat.S_ISDIR(info.external_attr >> 16)
+    is_called_so = info.filename.endswith(("/", "\\")) or stat.S_ISDIR(info.external_attr >> 16)
+    return is_called_so and info.file_size == 0
 
 
 def _clean(name: str) -> str:

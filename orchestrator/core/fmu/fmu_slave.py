@@ -239,7 +239,7 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
 
 
 def _described(
-    model: ModelDescription, root: ElementTree.Element, warnings: list[str]
+    model: ModelDescription, root: ElementTree.Element, warnings: tuple[str, ...]
 ) -> Description:
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation

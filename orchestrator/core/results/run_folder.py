@@ -26,7 +26,7 @@ import re
 import secrets
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -38,6 +38,7 @@ from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from ...files import naming, write_file, write_json
+from ...temporary import sweep_once
 from ..errors import InputRefused, Problem, refusing_unwritable
 from .metric import Metric
 from .own_files import FILES, MARK, content_of, foreign, is_marked, mark, read_data
@@ -134,13 +135,15 @@ class RunFolder:
         return self
 
     def _open(self) -> None:
+        sweep_once()
         with refusing_unwritable(self.folder, "choose another folder"):
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self._take_lock()
             recover(self.folder)
             self.running = free_running_folder(self.folder)
             self.running.mkdir()
-            mark(self.running)
+            with _removed_if_it_fails(self.running):
+                mark(self.running)
 
     def _take_lock(self) -> None:
         file = Path(self._lock.lock_file)
@@ -324,6 +327,15 @@ class RunFolder:
         if is_complete:
             for folder in lost:
                 _remove_leftover(folder)
+
+
+@contextmanager
+def _removed_if_it_fails(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def settle(folder: Path) -> None:
