@@ -73,7 +73,7 @@ def test_an_archive_whose_directory_hides_files_is_refused(python_fmus):
     for entry in entries[:-1]:
         longer = bytearray(content)
         longer[entry + LENGTH_OF_COMMENT] ^= 1 << 6  # the next entries are in the comment
-        with pytest.raises(ArchiveError, match="is damaged: it names|not a zip archive"):
+        with pytest.raises(ArchiveError, match=r"is damaged: it names|not a zip archive"):
             members(bytes(longer))
         folder = bytearray(content)
         folder[entry + MODE] ^= 1 << 6  # as of a folder
