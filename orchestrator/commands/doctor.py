@@ -5,8 +5,8 @@ from typing import Annotated
 import typer
 
 from ..runs import health
-from .analysis import in_options
 from ..temporary import sweep
+from .analysis import in_options
 from .options import RESULTS
 from .screen import opened
 
