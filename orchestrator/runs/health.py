@@ -167,13 +167,13 @@ def leftover_table(results: Path) -> Table:
     table = Table(("left by killed runs", "number", "the first", "how it goes"))
     runs = unfinished(results)
     if runs:
-        how = "with the next complete run of this name; `rockshed plot` draws what it has"
+        how = "with the next complete run of this name; until then it can be drawn"
         table.add(
             "unfinished results, if not of a run that goes on", str(len(runs)), str(runs[0]), how
         )
     folders = [folder for folder, _ in left_behind()]
     if folders:
-        how = "with the next run, or `rockshed doctor --clean`"
+        how = "with the next run, or a cleaning"
         table.add("temporary folders", str(len(folders)), str(folders[0]), how)
     return table
 
