@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.system.system import SystemSpec
 from ..temporary import TemporaryFolder
-from .building import Note, silent
+from .building import FmusOf, Note, case_fmus, each_once, silent
 from .job import prepare
 from .kept import KeptRuns
 from .outcome import Outcome
@@ -172,7 +172,8 @@ def run_all(
     InputRefused
         A task cannot be prepared.
     """
-    orders = [_order(task, note) for task in {task.key: task for task in tasks}.values()]
+    fmus_of = each_once()
+    orders = [_order(task, note, fmus_of) for task in {task.key: task for task in tasks}.values()]
     outcomes = _ended(orders, kept)
     if outcomes:
         note(f"{len(outcomes)} of {len(orders)} runs have ended before, and are not run again")
@@ -226,9 +227,10 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
     return run_one(_order(task, note))
 
 
-def _order(task: Task, note: Note) -> _Order:
+def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
-    return _Order(task.key, slim(prepare(task.request, note).system), task.allow_unstable)
+    system = prepare(task.request, note, fmus_of=fmus_of).system
+    return _Order(task.key, slim(system), task.allow_unstable)
 
 
 def slim(system: SystemSpec) -> SystemSpec:

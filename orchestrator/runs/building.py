@@ -194,6 +194,30 @@ def case_fmus(
     return CaseFmus(files, runtime.value, reason)
 
 
+FmusOf = Callable[[Case, Mapping[str, Mapping[str, int]], Note, str], CaseFmus]
+"""Functions with the parameters of :func:`case_fmus`."""
+
+
+def each_once() -> FmusOf:
+    """Return :func:`case_fmus` for a batch of runs, which looks at every FMU once.
+
+    To look whether an FMU is up to date takes as long as to make it: of a thousand runs with the
+    same components and sizes the first one pays for all.
+    """
+    found: dict[object, CaseFmus] = {}
+
+    def fmus_of(
+        chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO
+    ) -> CaseFmus:
+        components = [(name, model, *sizes[name].items()) for name, model in chosen.models.items()]
+        key = (tuple(components), wanted)
+        if key not in found:
+            found[key] = case_fmus(chosen, sizes, note, wanted)
+        return found[key]
+
+    return fmus_of
+
+
 def _build_if_needed(
     name: str, model: str, sizes: Mapping[str, int], runtime: Runtime, file: Path, note: Note
 ) -> None:

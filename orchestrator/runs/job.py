@@ -20,7 +20,7 @@ from ..core.fmu.slave import Source
 from ..core.system.renaming import with_present_names
 from ..core.system.system import ONE_VALUE, SystemSpec, load_system, system_from, with_values
 from ..metrics.filtering import LOAD_CELL_ROWS
-from .building import Note, case_fmus, case_sizes, own_sizes, silent
+from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .request import AUTO, Request
 
 __all__ = ["Job", "Request", "plan_problems", "prepare"]
@@ -58,7 +58,12 @@ class Job:
         return frozenset(case(self.facts["case"]).models.values())
 
 
-def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] = ()) -> Job:
+def prepare(
+    request: Request,
+    note: Note = silent,
+    problems: Sequence[Problem] = (),
+    fmus_of: FmusOf = case_fmus,
+) -> Job:
     """Make the system of a request; FMUs that are missing or out of date are built.
 
     Parameters
@@ -69,6 +74,8 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
         Called with a line for each FMU that is built.
     problems : sequence of Problem
         Problems that the caller has with the request, refused together with those seen here.
+    fmus_of : callable
+        Finds or builds the FMUs of a case.
 
     Returns
     -------
@@ -90,7 +97,7 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
     if request.is_file:
         job = _from_file(request, known)
     else:
-        job = _from_case(case(request.target), request, known, note)
+        job = _from_case(case(request.target), request, known, note, fmus_of)
     system = _changed(job.system, request, known)
     known += _load_cell_problems(request, system)
     if known:
@@ -188,7 +195,9 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     return Job(system.name, system, {}, facts)
 
 
-def _from_case(chosen: Case, request: Request, problems: list[Problem], note: Note) -> Job:
+def _from_case(
+    chosen: Case, request: Request, problems: list[Problem], note: Note, fmus_of: FmusOf
+) -> Job:
     """Make the system of a case in the sizes of the request, with the model of the sand.
 
     Raises
@@ -210,7 +219,7 @@ def _from_case(chosen: Case, request: Request, problems: list[Problem], note: No
         files = {name: f"{made} (in process)" for name, made in chosen.models.items()}
         sources = _in_process(chosen, sizes)
     else:
-        fmus = case_fmus(chosen, sizes, note, request.runtime)
+        fmus = fmus_of(chosen, sizes, note, request.runtime)
         facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
         files = dict(fmus.files)
     base = chosen.make(files, sizes, coupling)

@@ -7,6 +7,7 @@ import pytest
 from jsonschema import validate
 
 from rockshed.cases import sonoda1993
+from rockshed.cases.registry import case
 from rockshed.cases.sonoda1993 import case_name
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
@@ -26,7 +27,7 @@ from rockshed.papers.statistics import (
     power_law,
 )
 from rockshed.papers.study import Measure, Outcomes, Row, Study, row_of_runs
-from rockshed.runs import batch
+from rockshed.runs import batch, building
 from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome, Task
 from rockshed.runs.job import Request
 
@@ -166,7 +167,9 @@ def test_every_study_makes_its_rows_and_figures_when_no_run_ends(tmp_path):
 
 
 def test_tasks_that_are_the_same_are_one_run(monkeypatch):
-    monkeypatch.setattr(batch, "_order", lambda task, note: batch._Order(task.key, None, False))
+    monkeypatch.setattr(
+        batch, "_order", lambda task, note, fmus_of: batch._Order(task.key, None, False)
+    )
     monkeypatch.setattr(
         batch,
         "_carry_out",
@@ -187,12 +190,29 @@ def test_runs_that_differ_in_a_size_alone_are_two_runs():
     assert len({task.key for task in every}) == len({(t.key, *t.request.sizes) for t in every})
 
 
+def test_a_batch_looks_at_the_fmus_of_equal_components_and_sizes_once(monkeypatch):
+    looked = []
+    monkeypatch.setattr(
+        building,
+        "case_fmus",
+        lambda chosen, sizes, note, wanted: looked.append(sizes["sand"]["discs"]) or len(looked),
+    )
+    fmus_of = building.each_once()
+    for name, discs in (("lab-impact", 370), ("lab-impact-2", 370), ("lab-impact", 740)):
+        sizes = {"sand": {"discs": discs}, "rock": {}, "beam": {}}
+        fmus_of(case(name), sizes, print, "auto")
+    assert looked == [370, 740]
+    assert fmus_of(case("lab-impact"), sizes, print, "python") == 3
+
+
 def test_ctrl_c_keeps_what_was_computed(monkeypatch):
     def carry_out(orders, workers):
         yield Outcome(orders[0].key, COMPLETE)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(batch, "_order", lambda task, note: batch._Order(task.key, None, False))
+    monkeypatch.setattr(
+        batch, "_order", lambda task, note, fmus_of: batch._Order(task.key, None, False)
+    )
     monkeypatch.setattr(batch, "_carry_out", carry_out)
     found = batch.run_all([task(1), task(2)], 1, lambda text: None, lambda done, total: None)
     assert [outcome.status for outcome in found.values()] == [COMPLETE, INTERRUPTED]
