@@ -1,4 +1,4 @@
-"""The benchmark as one table of figures."""
+"""The benchmark as one table."""
 
 import json
 import os

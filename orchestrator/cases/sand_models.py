@@ -129,6 +129,27 @@ def sand_model(name: str) -> SandModel:
     return MODELS[name]
 
 
+def lattice_height(discs: int, width: float, radius: float) -> float:
+    """Return the height of a square lattice of discs.
+
+    Parameters
+    ----------
+    discs : int
+        Number of discs.
+    width : float
+        Of the box (m).
+    radius : float
+        Of a disc (m).
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
+    columns = max(1, math.floor(width / (2.0 * radius) * (1.0 + 1e-9)))
+    return math.ceil(discs / columns) * 2.0 * radius
+
+
 @cache
 def discs_of(layer: SandLayer, solid_fraction: float) -> int:
     """Return the number of discs of many sizes that fill a layer.

@@ -163,6 +163,6 @@ def as_json(result: Result) -> dict[str, Any]:
         "status": result.status,
         "folder": str(result.folder),
         "warnings": result.warnings,
-        "figures": [metric.as_entry() for metric in result.metric_list()],
+        "metrics": [metric.as_entry() for metric in result.metric_list()],
         "pictures": [str(file) for file in result.pictures],
     }

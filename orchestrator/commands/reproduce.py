@@ -31,7 +31,7 @@ def command(
 ) -> None:
     """Carry out the studies of a paper.
 
-    Computed figures stand beside printed and measured ones: table, JSON, figures, HTML page.
+    What is computed stands beside what was printed and measured: table, JSON, figures, HTML page.
     """
     with opened(quiet, as_json) as screen:
         folder = output_dir or RESULTS / paper
@@ -42,7 +42,7 @@ def command(
         else:
             _show(made, folder, screen)
         if made.interrupted:
-            screen.warn("interrupted: rows without a figure were not run")
+            screen.warn("interrupted: rows without a value were not run")
             raise typer.Exit(INTERRUPTED)
 
 

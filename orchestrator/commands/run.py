@@ -253,6 +253,6 @@ def _as_data(done: Run, pictures: list[Path]) -> dict[str, Any]:
         "error": done.error,
         "warnings": done.warnings,
         "caption": done.caption,
-        "figures": [metric.as_entry() for metric in done.metrics.values()],
+        "metrics": [metric.as_entry() for metric in done.metrics.values()],
         "pictures": [str(file) for file in pictures],
     }

@@ -16,7 +16,7 @@ from .values import extreme
 
 @dataclass(frozen=True)
 class ReportedMetric:
-    """A declared figure and how it is shown.
+    """A declared metric and how it is shown.
 
     Attributes
     ----------

@@ -196,9 +196,9 @@ def test_a_load_cell_that_was_asked_for_is_in_the_results(rockshed, tmp_path):
         "--json",
     ]
     made = rockshed(*arguments, "--load-cell", "1000", "--output-dir", tmp_path / "run")
-    figures = {entry["name"]: entry for entry in json.loads(made.stdout)["figures"]}
+    metrics = {entry["name"]: entry for entry in json.loads(made.stdout)["metrics"]}
     peak, seen = (
-        figures[f"peak transmitted force{through}"]["value"]
+        metrics[f"peak transmitted force{through}"]["value"]
         for through in ("", " through the load cell")
     )
     assert 0.98 * peak < seen < peak
@@ -282,7 +282,7 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     )
     content = json.loads(result.stdout)
     assert content["status"] == "complete"
-    by_name = {figure["name"]: figure for figure in content["figures"]}
+    by_name = {metric["name"]: metric for metric in content["metrics"]}
     peak = by_name["peak transmitted force"]
     measured, computed = peak["references"]["experiment"], peak["references"]["paper"]
     assert measured == {
@@ -293,7 +293,7 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     assert "interpolated to E_bar" in computed["note"]
     assert "references" not in by_name["impact energy"]
     assert (
-        json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["figures"]
+        json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["metrics"]
     )
     read = read_run(tmp_path / "results/lab-impact").metrics["peak_transmitted_force"]
     assert (read.references["paper"].value, read.references["paper"].note) == (

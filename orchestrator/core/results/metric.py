@@ -39,7 +39,7 @@ def identifier(name: str) -> str:
 
 @dataclass(frozen=True)
 class Metric:
-    """A named figure that follows from the results of a run.
+    """A named number that follows from the results of a run.
 
     Attributes
     ----------
