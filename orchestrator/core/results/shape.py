@@ -34,7 +34,7 @@ class _Variable(_Shape):
 
 
 class _Panel(_Shape):
-    common: bool
+    common: bool = False  # an envelope has none
 
 
 class _Picture(_Shape):
