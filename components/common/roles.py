@@ -39,6 +39,9 @@ class Role(StrEnum):
 
     TRANSMITTED = "force.transmitted"
     """Force (N) of a cushion on what carries it, downwards."""
+    BOX_INERTIA = "force.box_inertia"
+    """Force (N), downwards, that accelerates what stands between cushion and structure: a load cell
+    under it shows the transmitted force less this."""
     ON_BODY = "force.on_body"
     """Force (N) of a cushion on the body that strikes it, upwards."""
     PENETRATION = "penetration"

@@ -85,6 +85,18 @@ def box_share(c, i, w):
 
 
 @kernel
+def box_momentum(c, w, x, k):
+    """Return the momentum of the empty box (N s, upwards), which moves with the discs under it."""
+    if w[V.box_mass] == 0.0:
+        return 0.0
+    rate = view(x, k, A.v_rate)
+    total = 0.0
+    for i in range(c.n):
+        total += box_share(c, i, w) * rate[i + 1]
+    return w[V.box_mass] * total
+
+
+@kernel
 def box_stands_on_beam(w):
     """Return whether a box with mass or sand stands within the span, but for rounding.
 

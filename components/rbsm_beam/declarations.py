@@ -261,6 +261,15 @@ LAYOUT = Layout(
             source="Sonoda et al. 1993, eq. (4)",
         ),
         out(
+            "box.inertia_force",
+            "force that accelerates the empty box, mean over the step, positive downwards: load "
+            "cells between box and beam show transmitted_force less this (their zero is the "
+            "weight at rest)",
+            "N",
+            initial_dependencies=(),
+            role=Role.BOX_INERTIA,
+        ),
+        out(
             "midspan.deflection",
             "deflection of the midspan from the unloaded axis, positive downwards",
             "m",

@@ -7,6 +7,7 @@ from ..common.substeps import are_too_many, substep_count, substep_length
 from .chain import (
     axial_energy,
     bending_energy,
+    box_momentum,
     box_stands_on_beam,
     chain,
     deform,
@@ -79,6 +80,7 @@ def evaluate(w, x, k):
     hold(c, w, x, k)
     w[V.energy_damping], w[V.energy_work_contact] = 0.0, 0.0
     w[V.energy_work_support], w[V.energy_start] = 0.0, 0.0
+    w[V.box_inertia_force] = 0.0
     status = publish(w, x, k)
     w[V.midspan_start_strain], w[V.energy_strain_estimate] = w[V.midspan_strain], 0.0
     _place(view(w, k, A.support_mean_force_y), view(w, k, A.support_force_y))
@@ -116,7 +118,11 @@ def step(t, h, w, x, k):
     if are_too_many(h, w[V.internal_step]):
         return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
-    advance(n, substep_length(h, n, w[V.internal_step]), w, x, k)
+    dt = substep_length(h, n, w[V.internal_step])
+    c = chain(w, k)
+    before = box_momentum(c, w, x, k)
+    advance(n, dt, w, x, k)
+    w[V.box_inertia_force] = (before - box_momentum(c, w, x, k)) / (n * dt)
     return publish(w, x, k)
 
 

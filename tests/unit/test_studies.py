@@ -15,7 +15,15 @@ from rockshed.metrics import names
 from rockshed.papers import kernel_stamps
 from rockshed.papers.report import Part, cells, table
 from rockshed.papers.reproduction import DATA, PAGE, chosen, reproduce, studies
-from rockshed.papers.sonoda1993 import girders, mesh, prediction, rigid_base, section2, table2
+from rockshed.papers.sonoda1993 import (
+    figs17_18,
+    girders,
+    mesh,
+    prediction,
+    rigid_base,
+    section2,
+    table2,
+)
 from rockshed.papers.sonoda1993.fig19 import order
 from rockshed.papers.statistics import (
     by_power_law,
@@ -372,6 +380,62 @@ def test_energies_of_the_girders_are_shares_of_the_rocks_wherever_it_started():
     assert rows["girders' energy by eq. (7), longest / shortest span"].experiment == pytest.approx(
         7.6 / 5.6
     )
+
+
+@pytest.mark.parametrize(
+    ("ratios", "holds"), [((1.35, 1.4, 1.45), True), ((0.98, 0.82, 0.65), False)]
+)
+def test_a_model_meets_fig_24_where_every_span_does(ratios, holds):
+    by_case = {f"girders-{span:g}": ratio for span, ratio in zip(girders.SPANS, ratios)}
+    made = {
+        task.key: Outcome(
+            task.key,
+            COMPLETE,
+            options={},
+            metrics={
+                names.SETTLED_RATIO: by_case[task.request.target],
+                names.BEAM_ENERGY: 1.0,
+                names.BEAM_ENERGY_FROM_STRAIN: 1.0,
+            },
+        )
+        for task in girders.tasks(True)
+    }
+    rows = {
+        row.model: row for row in girders.rows(Outcomes(made, True)) if "fig. 24" in row.quantity
+    }
+    assert {row.verdict for row in rows.values()} == {"holds" if holds else "does not"}
+    assert rows["literal"].computed == pytest.approx(sum(ratios) / 3)
+    assert "8 m " in rows["literal"].note
+
+
+@pytest.mark.parametrize(("low", "holds"), [(0.8, True), (0.5, False)])
+def test_conclusion_4_holds_where_both_energies_are_within_a_quarter(low, holds):
+    """Made-up: test 4 as measured, test 10 at a part of what was measured, about 40 kgf cm."""
+    energy = {"lab-impact": 13.0, "lab-impact-10": 40.0 * low}
+    still = np.zeros(301)
+    made = {
+        task.key: Outcome(
+            task.key,
+            COMPLETE,
+            options={},
+            metrics={names.BEAM_ENERGY_FROM_STRAIN: energy[task.request.target] * kgf * 0.01},
+            series={
+                "time": np.linspace(0.0, 0.03, 301),
+                "sand.transmitted_force": still + 500.0 * kgf,
+                "beam.box.inertia_force": still + 100.0 * kgf,
+            },
+        )
+        for task in figs17_18.tasks(True)
+    }
+    rows = figs17_18.rows(Outcomes(made, True))
+    claims = [row for row in rows if row.quantity.startswith("conclusion 4")]
+    assert {row.verdict for row in claims} == {"holds" if holds else "does not"}
+    assert [row.computed for row in claims] == pytest.approx([100.0 * (low - 1.0)] * len(claims))
+    assert "calibrated, box of 15 kg" in {row.model for row in claims}
+    cells = [row for row in rows if "under the box, test 10" in row.quantity]
+    assert [row.computed for row in cells] == pytest.approx([400.0] * len(claims))
+    boxed = [task for task in figs17_18.tasks(True) if "box" in task.model]
+    assert [task.request.values["beam.box.mass"] for task in boxed] == [15.0, 15.0]
 
 
 def test_models_differ_in_what_is_run_and_a_rigid_base_knows_no_girders():

@@ -20,7 +20,7 @@ from ...metrics.names import (
     SETTLED_TRANSMITTED,
 )
 from ...runs.batch import Task
-from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs
+from ..study import Measure, Outcomes, Row, Study, detail, origin, row_of_runs, verdict
 from . import full_scale
 from .full_scale import SEED_NOTE, SHORT_GIRDERS, STEP_NOTE, Model, models, plot_forces, share
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 SPANS = {impact.span: impact for impact in impacts().values() if impact.span}
 """Impacts by their span (m)."""
+EXCESS = (1.3, 1.5)
+"""Transmitted force over that on the rock in figs 23 and 24, whose maxima differ by 30 to 50 %."""
 STOP = 0.15
 """End of the runs (s): energy and forces have had their peaks."""
 
@@ -60,6 +62,7 @@ def rows(outcomes: Outcomes) -> list[Row]:
                 for row in _springs_and_forces(impact, model, outcomes)
             ),
             *_over_spans(energies, model, outcomes),
+            _fig_24(model, outcomes),
         ]
     return listed
 
@@ -148,6 +151,31 @@ def _over_spans(energies: Sequence[Row], model: Model, outcomes: Outcomes) -> li
             **where,
         ),
     ]
+
+
+def _fig_24(model: Model, outcomes: Outcomes) -> Row:
+    """Return whether the transmitted force exceeds that on the rock by what figs 23, 24 show."""
+    ratios = [
+        row_of_runs(
+            Measure("", "1", 1.0, SETTLED_RATIO), _runs(impact, model, outcomes.quick), outcomes
+        ).computed
+        for impact in SPANS.values()
+    ]
+    found = [ratio for ratio in ratios if ratio is not None]
+    whole = len(found) == len(ratios)
+    every = [task for impact in SPANS.values() for task in _runs(impact, model, outcomes.quick)]
+    least, most = EXCESS
+    spans = ", ".join(f"{span:g} m {r:.2f}" for span, r in zip(SPANS, found, strict=False))
+    return Row(
+        "fig. 24: transmitted force 1.3 to 1.5 times that on the rock",
+        "1",
+        paper=0.5 * (least + most),
+        computed=sum(found) / len(found) if whole else None,
+        model=model.name,
+        verdict=verdict(least <= min(found) and max(found) <= most) if whole else "",
+        note=f"settled maxima: {spans}" if whole else "a span has no result",
+        **origin(every, outcomes),
+    )
 
 
 SHOWN = ("calibrated", "one-law")

@@ -244,7 +244,7 @@ STUDY = Study(
         "Errors and trends over tests are those of the mean over the seeds.",
         "Rows through a load cell: the same runs behind a causal low-pass of second order "
         "(Butterworth); the paper gives a natural frequency of 3200 Hz and a response up to about "
-        "1 kHz. The mass of the sand box is not modelled.",
+        "1 kHz. The box has no mass here; what one does is in figs 17 and 18.",
     ),
     stands_on=SHORT_IMPACTS,
 )
