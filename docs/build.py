@@ -26,6 +26,9 @@ READMES = {
 }
 """Pages by the file of the repository that they show."""
 
+SHOWN = {"orchestrator/__init__.py": "api/index.md"}
+"""Pages that are made of a module, by the module: links to it go to its page."""
+
 CONTENTS = {
     "Use": ("getting-started", "python", "command-line", "systems", "results", "fmus", "security"),
     "Physics": ("components/index", "papers", "sonoda1993"),
@@ -140,6 +143,8 @@ def resolved(source: str, target: str) -> str | None:
 
 def uri_of(place: str) -> str:
     """Return where the site has a file of the repository."""
+    if place in SHOWN:
+        return SHOWN[place]
     if place in sources():
         return page_of(place)
     if place.startswith("docs/"):
@@ -152,7 +157,7 @@ def linked_files(texts: dict[str, str]) -> list[str]:
     places = {
         resolved(source, link[2]) for source in texts for link in _LINK.finditer(texts[source])
     }
-    return sorted(place for place in places if place and place not in sources())
+    return sorted(place for place in places if place and place not in (*sources(), *SHOWN))
 
 
 def moved(source: str, text: str) -> str:
@@ -261,7 +266,7 @@ def old_names() -> str:
     """Return the table of the names that variables of components had before."""
     from rockshed.components.catalogue import component
 
-    lines = ["## Old names of parameters", "", "| component | old | new |", "|---|---|---|"]
+    lines = ["### Parameters", "", "| component | old | new |", "|---|---|---|"]
     for name in components().values():
         for variable in component(name).layout.variables:
             for old in getattr(variable, "formerly", ()):

@@ -6,6 +6,7 @@ Nothing is imported for it that builds or compiles.
 import os
 import re
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -30,6 +31,10 @@ __all__ = [
 FOLDER_VARIABLE = "ROCKSHED_FMU_DIR"
 """Environment variable that names the folder of built FMUs; by default it is ``fmus`` in the
 user's data folder. In it are ``python``, ``native`` and ``native-fmi3``."""
+
+
+_UNREADABLE = (OSError, LookupError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
+"""Errors that the reader of an archive ends in that is damaged."""
 
 
 def fmu_folder(runtime: Runtime = Runtime.PYTHON, fmi: Fmi = Fmi.TWO) -> Path:
@@ -149,15 +154,16 @@ def native_is_fresh(
     Returns
     -------
     bool
-        False too if it has no binary for this machine.
+        False too if it has no binary for this machine, or is damaged.
     """
     try:
         with zipfile.ZipFile(fmu_file(component, sizes, Runtime.NATIVE, destination, fmi)) as found:
-            return own_binary(component, fmi) in found.namelist() and _guid(
-                found.read(DESCRIPTION)
-            ) == stamp(component, sizes, fmi)
-    except (OSError, KeyError, zipfile.BadZipFile, BuildError):
+            is_here = own_binary(component, fmi) in found.namelist()
+            made_from = _guid(found.read(DESCRIPTION))
+            is_whole = found.testzip() is None
+    except (*_UNREADABLE, BuildError):
         return False
+    return is_here and is_whole and made_from == stamp(component, sizes, fmi)
 
 
 def _guid(description: bytes) -> str:

@@ -17,7 +17,7 @@ from filelock import FileLock, Timeout
 
 ALIVE = ".alive"
 """File that is locked as long as the process of a temporary folder lives."""
-_PREFIXES = ("rockshed_", "rockshed-")
+_PREFIXES = ("rockshed_", "rockshed-", ".rockshed-")
 _ATTEMPTS = 10
 """Most attempts to make a folder; one is lost where a sweep comes between making and locking."""
 _PATIENCE = 5.0
@@ -30,7 +30,9 @@ class TemporaryFolder:
     Parameters
     ----------
     prefix : str
-        Beginning of its name; ``rockshed_`` or ``rockshed-`` stand in front.
+        Beginning of its name; ``rockshed_``, ``rockshed-`` or ``.rockshed-`` stand in front.
+    place : Path, optional
+        Folder in which it is made; by default that of temporary files.
 
     Attributes
     ----------
@@ -38,9 +40,10 @@ class TemporaryFolder:
         Path of the folder.
     """
 
-    def __init__(self, prefix: str = "rockshed_") -> None:
-        _sweep_once(tempfile.gettempdir())
-        self.name, lock = _made(prefix)
+    def __init__(self, prefix: str = "rockshed_", place: Path | None = None) -> None:
+        where = str(place or tempfile.gettempdir())
+        sweep_once(where)
+        self.name, lock = _made(prefix, where)
         self._remove = weakref.finalize(self, _removed, self.name, lock)
 
     def cleanup(self) -> None:
@@ -59,10 +62,10 @@ class TemporaryFolder:
         self.cleanup()
 
 
-def _made(prefix: str) -> tuple[str, FileLock]:
+def _made(prefix: str, place: str) -> tuple[str, FileLock]:
     """Make a folder and lock it; without a lock where the file system has none."""
     for _ in range(_ATTEMPTS):
-        name = tempfile.mkdtemp(prefix=prefix)
+        name = tempfile.mkdtemp(prefix=prefix, dir=place)
         lock = _lock(Path(name))
         try:
             lock.acquire(timeout=_PATIENCE)
@@ -75,7 +78,7 @@ def _made(prefix: str) -> tuple[str, FileLock]:
         if Path(name, ALIVE).exists():
             return name, lock
         lock.release()
-    raise OSError(f"no temporary folder can be made in {tempfile.gettempdir()}")
+    raise OSError(f"no temporary folder can be made in {place}")
 
 
 def _lock(folder: Path) -> FileLock:
@@ -87,9 +90,20 @@ def _removed(name: str, lock: FileLock) -> None:
     shutil.rmtree(name, ignore_errors=True)
 
 
+def sweep_once(place: str = "") -> None:
+    """Remove temporary folders of processes that were killed, the first time that this is called.
+
+    Parameters
+    ----------
+    place : str
+        Where to look; by default the folder of temporary files.
+    """
+    _swept(place or tempfile.gettempdir())
+
+
 @cache
-def _sweep_once(place: str) -> None:
-    sweep(Path(place))
+def _swept(place: str) -> list[Path]:
+    return sweep(Path(place))
 
 
 def left_behind(place: Path | None = None) -> Iterator[tuple[Path, FileLock]]:

@@ -53,10 +53,11 @@ def discs_at(
     velocities: Pairs | None = None,
     spins: Sequence[float] | NDArray[np.float64] | None = None,
     parameters: Mapping[str, Any] | None = None,
+    elements: int = 4,
 ) -> Instance:
     """Discs at given centres (m) with given velocities (m/s) and spins (rad/s), in empty space
     unless parameters say otherwise."""
-    instance = cushion({**EMPTY_SPACE, **(parameters or {})}, len(positions))
+    instance = cushion({**EMPTY_SPACE, **(parameters or {})}, len(positions), elements)
     body = rows(instance)
     body[:, 0:2] = positions
     if velocities is not None:

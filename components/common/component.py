@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from .ports import Bond, Causality, Kind, Layout, NextEvent, Variable
 from .restoring import state_problem
 from .shown import Picture
+from .units import range_in_words
 
 OK = 0
 """Status of a kernel that did its work. Every other value is a key of :attr:`Component.faults`."""
@@ -533,34 +534,13 @@ def value_problems(variable: Variable, name: str, value: float) -> list[str]:
     if not np.isfinite(value):
         return [NOT_FINITE % (name, value, variable.description)]
     if not low <= value <= high:
-        words = allowed_range(variable)
+        words = range_in_words(variable.minimum, variable.maximum, variable.unit)
         return [
             OUT_OF_RANGE % (name, f"{value:.6g}", _suffix(variable), words, variable.description)
         ]
     if variable.kind in (Kind.INTEGER, Kind.ENUMERATION, Kind.BOOLEAN) and value != int(value):
         return [NOT_WHOLE % (name, f"{value:.6g}", variable.description)]
     return []
-
-
-def allowed_range(variable: Variable) -> str:
-    """Return the allowed range in words, with the unit; empty where there is no bound.
-
-    Parameters
-    ----------
-    variable : Variable
-        Its declaration.
-
-    Returns
-    -------
-    str
-        In words.
-    """
-    unit = _suffix(variable)
-    if variable.minimum is None:
-        return "" if variable.maximum is None else f"{variable.maximum:g}{unit} or less"
-    if variable.maximum is None:
-        return f"{variable.minimum:g}{unit} or more"
-    return f"{variable.minimum:g} to {variable.maximum:g}{unit}"
 
 
 def _suffix(variable: Variable) -> str:

@@ -39,6 +39,9 @@ class Role(StrEnum):
 
     TRANSMITTED = "force.transmitted"
     """Force (N) of a cushion on what carries it, downwards."""
+    BOX_INERTIA = "force.box_inertia"
+    """Force (N), downwards, that accelerates what stands between cushion and structure: a load cell
+    under it shows the transmitted force less this."""
     ON_BODY = "force.on_body"
     """Force (N) of a cushion on the body that strikes it, upwards."""
     PENETRATION = "penetration"
@@ -49,6 +52,10 @@ class Role(StrEnum):
     """Heights (m) of the axis of a structure, an array along it."""
     DEFLECTION = "deflection"
     """Deflection (m) of a structure, downwards."""
+    BENDING_MOMENT = "moment.bending"
+    """Bending moment (N m) in a structure, positive with tension below, a scalar or an array."""
+    SUPPORT_FORCE = "force.on_support"
+    """Vertical force (N) of a structure on its supports, upwards, a scalar or an array."""
     UNBALANCED = "unbalanced_force_ratio"
     """How far a cushion was from rest at the start, as a part of gravity."""
     HANDED_OVER = "motion.handed_over"

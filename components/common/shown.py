@@ -107,20 +107,51 @@ class Panel:
 
 
 @dataclass(frozen=True, slots=True)
+class Envelope:
+    """An array output along a component, in place of time.
+
+    Drawn are its envelope over the run and its values when one of them is farthest from zero.
+
+    Attributes
+    ----------
+    label : str
+        Quantity on the axis; the unit is added.
+    unit : str
+        Key of :data:`rockshed.components.common.units.SCREEN_UNITS`.
+    variable : str
+        Name of the array, without index.
+    along : str
+        Name of the array of its places (m) in order; those at the start are taken.
+    ends : str
+        Name of an array whose first two values are those half a spacing before the first place and
+        after the last one; empty for none.
+    """
+
+    label: str
+    unit: str
+    variable: str
+    along: str
+    ends: str = ""
+
+    def __post_init__(self) -> None:
+        _check_unit(self.label, self.unit)
+
+
+@dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture of a component: panels one below the other over one axis of time.
+    """A picture of a component: panels one below the other, curves over one axis of time.
 
     Attributes
     ----------
     name : str
         Name of the file without its ending. Components that declare one name are drawn into one
         picture.
-    panels : tuple of Panel
+    panels : tuple of Panel or Envelope
         From top to bottom.
     """
 
     name: str
-    panels: tuple[Panel, ...]
+    panels: tuple[Panel | Envelope, ...]
 
 
 def _check_unit(name: str, unit: str) -> None:

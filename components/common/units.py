@@ -14,7 +14,9 @@ cm3 = 1e-6
 cm4 = 1e-8
 ms = 1e-3
 us = 1e-6
-kgf = 9.80665
+standard_gravity = 9.80665
+"""Standard acceleration of gravity (m/s2)."""
+kgf = standard_gravity
 """Newton per kilogram-force. Sonoda et al. (1993) round it to 9.8."""
 tf = 1e3 * kgf
 tonne = 1e3
@@ -92,3 +94,26 @@ SCREEN_UNITS: dict[str, float] = {
     "kgf cm": kgf * cm,
 }
 """Units in which tables and pictures show values, with their size in SI."""
+
+
+def range_in_words(minimum: float | None, maximum: float | None, unit: str = "1") -> str:
+    """Return an allowed range in words.
+
+    Parameters
+    ----------
+    minimum, maximum : float, optional
+        Ends of the range, included; None where there is no bound.
+    unit : str
+        Unit of both; ``1`` for none.
+
+    Returns
+    -------
+    str
+        ``0 m or more``, ``1 m or less``, ``0 to 1 m``; empty where there is no bound.
+    """
+    suffix = "" if unit == "1" else f" {unit}"
+    if minimum is None:
+        return "" if maximum is None else f"{maximum:g}{suffix} or less"
+    if maximum is None:
+        return f"{minimum:g}{suffix} or more"
+    return f"{minimum:g} to {maximum:g}{suffix}"

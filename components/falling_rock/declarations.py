@@ -3,7 +3,7 @@
 from ..common.ports import Layout, choice, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.units import cm
+from ..common.units import cm, standard_gravity
 
 SPHERE, DISC, GIVEN = 1, 2, 3
 FREE, DRIVEN = 1, 2
@@ -42,7 +42,7 @@ LAYOUT = Layout(
         param(
             "gravity",
             "acceleration of gravity, downwards",
-            9.80665,
+            standard_gravity,
             "m/s2",
             minimum=0.0,
             role=Role.GRAVITY,

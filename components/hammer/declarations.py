@@ -3,9 +3,12 @@
 from ..common.ports import Layout, State, choice, inp, out, param, switch
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.units import cm, cm2
+from ..common.units import cm, cm2, standard_gravity
+from ..common.wave_port import Heard
 
 KINEMATICS, WAVES = 1, 2
+HEARD = Heard(*range(3))
+"""Places in ``heard``, which keeps the wave of the step before."""
 
 _UTO = "Uto et al. 1974, table 1: standard penetration test"
 
@@ -22,7 +25,12 @@ LAYOUT = Layout(
             maximum=1.0,
         ),
         param(
-            "gravity", "acceleration of gravity", 9.80665, "m/s2", minimum=0.0, role=Role.GRAVITY
+            "gravity",
+            "acceleration of gravity",
+            standard_gravity,
+            "m/s2",
+            minimum=0.0,
+            role=Role.GRAVITY,
         ),
         switch("weight", "whether the ram's weight acts during the blow too", True),
         param(
@@ -175,6 +183,7 @@ LAYOUT = Layout(
     (
         State("largest", lambda sizes: 1),
         State("ends", lambda sizes: 1),
+        State("heard", lambda sizes: len(HEARD)),
     ),
 )
 """Variables and hidden arrays of the hammer.

@@ -6,9 +6,9 @@ from ..common.component import OK
 from ..common.kernels import kernel, view
 from ..common.stepping import TOO_MANY_STEPS
 from ..common.substeps import are_too_many, substep_count, substep_length
-from ..common.wave_port import End, Ram, struck
+from ..common.wave_port import Course, End, Heard, Ram, course, struck
 from .cushion import cushion_force, met, steeper
-from .declarations import KINEMATICS, LAYOUT, WAVES
+from .declarations import HEARD, KINEMATICS, LAYOUT, WAVES
 from .faults import DIVERGED, NO_IMPEDANCE, RIGID_NEEDS_WAVES
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -37,6 +37,8 @@ def initialise(w, x, k):
     if w[V.port] == KINEMATICS and w[V.cushion_stiffness] == 0.0:
         return RIGID_NEEDS_WAVES
     view(x, k, A.largest)[0], view(x, k, A.ends)[0] = 0.0, 0.0
+    heard = view(x, k, A.heard)
+    heard[HEARD.wave], heard[HEARD.rate], heard[HEARD.length] = 0.0, 0.0, 0.0
     w[V.impact_velocity] = math.sqrt(2.0 * w[V.gravity] * w[V.drop_height] * w[V.efficiency])
     w[V.velocity], w[V.position] = w[V.impact_velocity], -w[V.gap]
     w[V.touching] = 1.0 if w[V.gap] == 0.0 and w[V.impact_velocity] > 0.0 else 0.0
@@ -89,14 +91,17 @@ def step(t, h, w, x, k):
         return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
     dt = substep_length(h, n, w[V.internal_step])
+    way = _hear(h, w, x, k)
     impulse = 0.0
     for i in range(n):
         now = t + i * dt
         if w[V.blow_interval] > 0.0 and now >= w[V.blows] * w[V.blow_interval] - _ROUNDING * dt:
             _strike_again(w, x, k)
-        impulse += dt * (
-            _rigid(now, dt, w) if w[V.cushion_stiffness] == 0.0 else _cushioned(now, dt, w, x, k)
-        )
+        if w[V.cushion_stiffness] == 0.0:
+            here = Course(way.start + i * dt * way.rate, way.rate, way.hidden)
+            impulse += dt * _rigid(now, dt, here, w)
+        else:
+            impulse += dt * _cushioned(now, dt, w, x, k)
     w[V.force] = impulse / (n * dt)
     if w[V.cushion_stiffness] == 0.0:
         w[V.end_force] = w[V.touching] * max(
@@ -162,12 +167,22 @@ def _mechanical(w, x, k):
 
 
 @kernel
-def _rigid(now, dt, w):
+def _hear(h, w, x, k):
+    """Return how the wave of the rod goes within the communication step, and keep its mean."""
+    kept = view(x, k, A.heard)
+    before = Heard(kept[HEARD.wave], kept[HEARD.rate], kept[HEARD.length])
+    way, heard = course(before, w[V.head_wave], h)
+    kept[HEARD.wave], kept[HEARD.rate], kept[HEARD.length] = heard.wave, heard.rate, heard.length
+    return way
+
+
+@kernel
+def _rigid(now, dt, way, w):
     """Return the mean force on the head (N) in a step of a rigid ram on the wave."""
     ram = Ram(w[V.position], w[V.velocity], w[V.touching], w[V.separation])
     end = End(w[V.head_impedance], w[V.head_wave], w[V.head_reached])
     drive = w[V.mass] * w[V.gravity] * w[V.weight]
-    ram, stroke = struck(ram, w[V.mass], drive, end, now, dt)
+    ram, stroke = struck(ram, w[V.mass], drive, end, way, now, dt)
     w[V.position], w[V.velocity] = ram.position, ram.velocity
     w[V.touching], w[V.separation] = ram.touching, ram.separation
     w[V.head_reached] += stroke.end_velocity * dt
@@ -197,13 +212,25 @@ def _cushioned(now, dt, w, x, k):
     at_end = cushion_force(_compression(w), largest[0], stiffness, restitution)
     view(x, k, A.ends)[0] = at_end
     if w[V.touching] > 0.0 and at_end == 0.0:
-        w[V.separation] = now + dt
+        slack = largest[0] * (1.0 - restitution * restitution)
+        w[V.separation] = now + dt * _way_down(start, _compression(w), slack)
     w[V.touching] = 1.0 if at_end > 0.0 else 0.0
     w[V.energy_work_head] -= force * head * dt
     w[V.energy_cushion_loss] += force * (_compression(w) - start) - (
         _cushion_energy(w, x, k) - kept
     )
     return force
+
+
+@kernel
+def _way_down(start, end, slack):
+    """Return the part of the way from start to end (m) at which a cushion is without force.
+
+    That is where its compression falls to ``slack`` (m).
+    """
+    if start <= slack or start <= end:
+        return 0.0
+    return min((start - slack) / (start - end), 1.0)
 
 
 @kernel

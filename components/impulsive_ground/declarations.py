@@ -27,6 +27,16 @@ _PLATE = 200.0 * cm2
 _R0, _R1 = 0.5519 * kgf, 874.0 * kgf
 """Ends of the resistance (N) by (12), for a weight of 14.70 kg that falls 30 cm on the plate of
 200 cm2: R_m at I = 0, and 2 R_m - R0."""
+_MASS = (
+    "impulse0",
+    "impulse0.mass",
+    "plate.mass",
+    "plate.radius",
+    "soil.depth",
+    "soil.spread",
+    "soil.density",
+    "soil.mass_form",
+)
 _PORT = (
     "port",
     "law",
@@ -40,13 +50,7 @@ _PORT = (
     "toe.impedance",
     "force.y",
     "damping",
-    "impulse0",
-    "plate.mass",
-    "plate.radius",
-    "soil.depth",
-    "soil.spread",
-    "soil.density",
-    "soil.mass_form",
+    *_MASS,
 )
 
 LAYOUT = Layout(
@@ -189,6 +193,15 @@ LAYOUT = Layout(
             "N.s",
             minimum=0.0,
         ),
+        param(
+            "impulse0.mass",
+            "mass of the body that gave impulse0 and moves on with the plate; without impulse0 "
+            "there is none",
+            14.70,
+            "kg",
+            minimum=0.0,
+            source=f"{_MOGAMI}, eq. (1): G is the weight of body and plate; third of four weights",
+        ),
         internal_step(1e-5),
         inp(
             "force.y",
@@ -251,16 +264,9 @@ LAYOUT = Layout(
         ),
         out(
             "virtual_mass",
-            "mass of plate and sand that moves",
+            "mass that moves: plate, sand, and the body that gave impulse0",
             "kg",
-            initial_dependencies=(
-                "plate.mass",
-                "plate.radius",
-                "soil.depth",
-                "soil.spread",
-                "soil.density",
-                "soil.mass_form",
-            ),
+            initial_dependencies=_MASS,
         ),
         stable_step(),
         out(
@@ -271,7 +277,7 @@ LAYOUT = Layout(
         ),
         out(
             "energy.kinetic",
-            "kinetic energy of plate and sand",
+            "kinetic energy of plate and sand, and of the body that gave impulse0",
             "J",
             role=Role.KINETIC,
             label="ground, kinetic and elastic",

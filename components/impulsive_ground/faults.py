@@ -7,8 +7,9 @@ DIVERGED = 20
 REFUSALS = {
     PLATE_OUTSIDE: "the plate of plate.radius = {plate.radius} m does not fit into the box of "
     "box.width = {box.width} m: reduce its radius, or set box.width = 0 for open ground",
-    NO_MASS: "nothing moves: plate.mass = {plate.mass} kg and the sand (soil.depth = {soil.depth} "
-    "m, soil.density = {soil.density} kg/m3) together have no mass: give one of them",
+    NO_MASS: "nothing moves: plate.mass = {plate.mass} kg, the sand (soil.depth = {soil.depth} m, "
+    "soil.density = {soil.density} kg/m3) and the body that gave impulse0 = {impulse0} N s "
+    "(impulse0.mass = {impulse0.mass} kg) together have no mass: give one of them",
     NO_RESISTANCE: "resistance.start and resistance.end are both 0, and nothing stops the plate: "
     "give one of them",
     OVERLOADED: "preload = {preload} N is more than the ground bears at rest: raise "

@@ -97,9 +97,18 @@ def problems(instance: "Instance") -> list[str]:
 
 @kernel
 def virtual_mass(w):
-    """Return the mass (kg) of plate and sand."""
-    return w[V.plate_mass] + soil_mass(
-        w[V.plate_radius], w[V.soil_depth], w[V.soil_spread], w[V.soil_density], w[V.soil_mass_form]
+    """Return the mass (kg) of plate and sand, and of the body that gave impulse0."""
+    body = w[V.impulse0_mass] if w[V.impulse0] > 0.0 else 0.0
+    return (
+        w[V.plate_mass]
+        + body
+        + soil_mass(
+            w[V.plate_radius],
+            w[V.soil_depth],
+            w[V.soil_spread],
+            w[V.soil_density],
+            w[V.soil_mass_form],
+        )
     )
 
 

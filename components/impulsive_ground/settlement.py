@@ -26,7 +26,7 @@ _UNIT_AREA = 100.0 * cm2
 def soil_mass(radius, depth, spread, density, form):
     """Return the virtual mass of the sand that moves with a plate.
 
-    It is the bracket of (1) without the plate.
+    It is the bracket of (1) without G, which is the plate and the body that fell on it.
 
     The sand is a frustum that widens downwards from the plate; its velocity falls linearly from the
     plate's to 0 at the bottom:

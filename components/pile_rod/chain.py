@@ -101,12 +101,9 @@ def _strike(time, dt, force, below, w, x, k):
     w[V.energy_work_head] += force * mean * dt
     w[V.energy_work_gravity] += load * mean * dt
     if w[V.ram_mass] > 0.0:
-        if (
-            ram[RAM.touching] > 0.0
-            and below <= 0.0
-            and view(x, k, A.place)[0] < view(x, k, A.place)[1]
-        ):
-            w[V.ram_separation] = time + dt
+        gap = view(x, k, A.place)[1] - view(x, k, A.place)[0]
+        if ram[RAM.touching] > 0.0 and gap > 0.0:
+            w[V.ram_separation] = time + dt - gap / (rate[1] - was)
         ram[RAM.touching] = 1.0 if below > 0.0 else 0.0
         w[V.energy_contact] += below * mean * dt
         book_head(below, mean, dt, w)

@@ -12,7 +12,7 @@ constant over a segment, so that jumps stay sharp.
 
 from ..common.kernels import kernel, view
 from ..common.smith_soil import gripped
-from ..common.wave_port import End, Ram, struck
+from ..common.wave_port import End, Heard, Ram, course, struck
 from .bookkeeping import book_head, book_soil, envelope, shaft_soil, toe_soil
 from .declarations import LAYOUT, MATCHED, PORT, RAM
 from .segments import below_toe, toe_is_fixed
@@ -105,7 +105,10 @@ def _ram(time, dt, force, wave, w, x, k):
     drive = force + w[V.ram_mass] * w[V.gravity]
     ram = Ram(state[RAM.position], state[RAM.velocity], state[RAM.touching], w[V.ram_separation])
     end = End(view(x, k, A.impedance)[0], wave, head)
-    ram, stroke = struck(ram, w[V.ram_mass], drive, end, time, dt)
+    heard = Heard(state[RAM.wave], state[RAM.rate], state[RAM.length])
+    way, heard = course(heard, wave, dt)
+    state[RAM.wave], state[RAM.rate], state[RAM.length] = heard.wave, heard.rate, heard.length
+    ram, stroke = struck(ram, w[V.ram_mass], drive, end, way, time, dt)
     state[RAM.position], state[RAM.velocity] = ram.position, ram.velocity
     state[RAM.touching], w[V.ram_separation] = ram.touching, ram.separation
     w[V.energy_contact] += stroke.force * (stroke.mass_velocity - stroke.end_velocity) * dt

@@ -34,10 +34,10 @@ CLOCK = Clock(*range(4))
 """Places in ``clock``: time (s) since the last whole internal step, impulses of the inputs (N s) in
 it, and the time (s) by which a rod that learns its forces afterwards is behind."""
 
-Ram = namedtuple("Ram", "position velocity touching")
-RAM = Ram(*range(3))
-"""Places in ``ram_state``: position (m) and velocity (m/s), downwards, and whether it lies on the
-head."""
+Ram = namedtuple("Ram", "position velocity touching wave rate length")
+RAM = Ram(*range(6))
+"""Places in ``ram_state``: position (m) and velocity (m/s), downwards, whether it lies on the head,
+and of the step before the wave (N) that came up to it, its rate (N/s) and the length (s)."""
 
 
 def _nodes(sizes: Sizes) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..common.component import Component
 from ..common.ports import Bond
-from ..common.shown import Curve, Panel, Picture
+from ..common.shown import Curve, Envelope, Panel, Picture
 from .declarations import LAYOUT, SIZES
 from .faults import FAULTS
 
@@ -40,6 +40,21 @@ COMPONENT = Component(
                     ),
                     second_unit="kgf cm",
                     references="peak_beam_energy_from_the_midspan_strain",
+                ),
+            ),
+        ),
+        Picture(
+            "moment",
+            (
+                Envelope("bending moment", "kN m", "moment", "position.x", "support.moment"),
+                Panel("moment at midspan", "kN m", (Curve("midspan.moment"),)),
+                Panel(
+                    "support reaction",
+                    "kN",
+                    (
+                        Curve("support.force.y[1]", "left", factor=-1.0),
+                        Curve("support.force.y[2]", "right", factor=-1.0),
+                    ),
                 ),
             ),
         ),

@@ -11,7 +11,8 @@ support. With it every disc has the same formula, and the end half-bar has the a
 * ``mass``, shape (n): mass of the discs (kg); ``kick``: their change of rate in a step under a unit
   force (m/s/N);
 * ``load.x``, ``load.y``, shape (n): held forces with the couples of the torques (N);
-* ``support.height``, shape (2): heights of the supports (m).
+* ``support.height``, shape (supports): heights of the supports (m); ``reaction``: forces of the
+  beam on them (N, upwards).
 """
 
 from collections import namedtuple
@@ -25,10 +26,15 @@ WALL_HINGE, END_HINGE = 4.0, 4.0 / 3.0
 """Stiffness of the hinges at a fixed support and at the disc next to it, in units of EI/R.
 
 The beam's length that bends in them is R/4 and 3R/4 (all others: R)."""
+BEARING = 16.0
+"""Stiffness of an inner support, in units of EI/R3: that of the chain's own stiffest shape.
 
-Chain = namedtuple("Chain", "n fixed spacing bending axial drag viscosity gravity")
-"""Constants: number of discs, whether supports are fixed, R (m), EI/R2 (N), EA/R (N/m), Rayleigh
-factors of mass (1/s) and stiffness (s), gravity (m/s2)."""
+What it yields is of the third order in R, below the error of the chain."""
+
+Chain = namedtuple("Chain", "n supports fixed spacing bending axial bearing drag viscosity gravity")
+"""Constants: numbers of discs and supports, whether the outer ones are fixed, R (m), EI/R2 (N),
+EA/R (N/m), stiffness of an inner support (N/m), Rayleigh factors of mass (1/s) and stiffness (s),
+gravity (m/s2)."""
 
 
 @kernel
@@ -36,12 +42,15 @@ def chain(w, k):
     """Return the constants that follow from the parameters."""
     n = k[A.force_x + 1]
     spacing = w[V.span] / n
+    bending = w[V.elastic_modulus] * w[V.section_second_moment] / (spacing * spacing)
     return Chain(
         n,
+        k[A.support_height + 1],
         w[V.supports] == FIXED,
         spacing,
-        w[V.elastic_modulus] * w[V.section_second_moment] / (spacing * spacing),
+        bending,
         w[V.elastic_modulus] * w[V.section_area] / spacing,
+        BEARING * bending / spacing,
         w[V.damping_mass],
         w[V.damping_stiffness],
         w[V.gravity],
@@ -76,6 +85,18 @@ def box_share(c, i, w):
 
 
 @kernel
+def box_momentum(c, w, x, k):
+    """Return the momentum of the empty box (N s, upwards), which moves with the discs under it."""
+    if w[V.box_mass] == 0.0:
+        return 0.0
+    rate = view(x, k, A.v_rate)
+    total = 0.0
+    for i in range(c.n):
+        total += box_share(c, i, w) * rate[i + 1]
+    return w[V.box_mass] * total
+
+
+@kernel
 def box_stands_on_beam(w):
     """Return whether a box with mass or sand stands within the span, but for rounding.
 
@@ -84,6 +105,22 @@ def box_stands_on_beam(w):
     margin, from_left = 1e-9 * w[V.span], w[V.box_left] - w[V.axis_x]
     empty = w[V.box_mass] == 0.0 and w[V.cushion_weight] == 0.0
     return empty or (from_left >= -margin and from_left + w[V.box_width] <= w[V.span] + margin)
+
+
+@kernel
+def supports_have_places(w, k):
+    """Return whether each inner support has a disc of its own, and the outer ones have none."""
+    element = view(w, k, A.support_element)
+    n = k[A.force_x + 1]
+    if element[0] != 0.0 or element[1] != 0.0:
+        return False
+    for s in range(2, len(element)):
+        if not 1.0 <= element[s] <= n or element[s] != int(element[s]):
+            return False
+        for other in range(2, s):
+            if element[other] == element[s]:
+                return False
+    return True
 
 
 @kernel
@@ -130,6 +167,10 @@ def deform(c, displacement_factor, rate_factor, w, x, k):
     v[0] = 2.0 * (displacement_factor * height[0] + rate_factor * speed[0]) - v[1]
     v[n + 1] = 2.0 * (displacement_factor * height[1] + rate_factor * speed[1]) - v[n]
     _bend(c, x, k)
+    element, reaction = view(w, k, A.support_element), view(x, k, A.reaction)
+    for s in range(2, c.supports):
+        below = displacement_factor * height[s] + rate_factor * speed[s]
+        reaction[s] = c.bearing * (v[int(element[s])] - below)
 
 
 @kernel
@@ -166,16 +207,17 @@ def wall_moments(c, x, k):
 
 
 @kernel
-def reactions(c, w, x, k):
-    """Return the forces of the beam on the left and right support (N, upwards).
+def react(c, w, x, k):
+    """Set the forces of the beam on the outer supports, in the present shape.
 
-    They follow from the moment equilibrium of the end half-bars.
+    They follow from the moment equilibrium of the end half-bars. Those on inner supports are set
+    with the shape.
     """
     moment, torque = view(x, k, A.hinge_moment), view(w, k, A.torque)
+    reaction = view(x, k, A.reaction)
     n = c.n
-    return -(moment[1] - moment[0] + torque[0]) / c.spacing, (
-        moment[n + 1] - moment[n] + torque[n - 1]
-    ) / c.spacing
+    reaction[0] = -(moment[1] - moment[0] + torque[0]) / c.spacing
+    reaction[1] = (moment[n + 1] - moment[n] + torque[n - 1]) / c.spacing
 
 
 @kernel
@@ -266,9 +308,22 @@ def move(c, dt, w, x, k):
         view(x, k, A.v_rate),
         view(x, k, A.v),
     )
+    _lift(c, dt, w, x, k)
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
-    height[0] += dt * speed[0]
-    height[1] += dt * speed[1]
+    for s in range(c.supports):
+        height[s] += dt * speed[s]
+
+
+@kernel
+def _lift(c, dt, w, x, k):
+    """Add what the inner supports do to the discs above them in a step dt (s)."""
+    element, reaction = view(w, k, A.support_element), view(x, k, A.reaction)
+    rate, v, kick = view(x, k, A.v_rate), view(x, k, A.v), view(x, k, A.kick)
+    for s in range(2, c.supports):
+        i = int(element[s])
+        gained = -kick[i - 1] * reaction[s]
+        rate[i] += gained
+        v[i] += dt * gained
 
 
 @kernel
@@ -309,7 +364,10 @@ def axial_energy(c, x, k):
 
 @kernel
 def bending_energy(c, x, k):
-    """Return the energy of the hinges (J) in the present shape: 1/2 sum M2 / k_M."""
+    """Return the energy of the hinges (J) in the present shape: 1/2 sum M2 / k_M.
+
+    That of the inner supports is in it.
+    """
     moment = view(x, k, A.hinge_moment)
     n = c.n
     total = 0.0
@@ -319,7 +377,11 @@ def bending_energy(c, x, k):
         left, right = wall_moments(c, x, k)
         total += (1.0 / END_HINGE - 1.0) * (moment[1] * moment[1] + moment[n] * moment[n])
         total += (left * left + right * right) / WALL_HINGE
-    return 0.5 * total / (c.bending * c.spacing)
+    reaction = view(x, k, A.reaction)
+    held = 0.0
+    for s in range(2, c.supports):
+        held += reaction[s] * reaction[s]
+    return 0.5 * total / (c.bending * c.spacing) + 0.5 * held / c.bearing
 
 
 @kernel

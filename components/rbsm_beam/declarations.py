@@ -10,7 +10,9 @@ SIMPLE, FIXED = 1, 2
 
 SIZES = {
     "elements": Size(24, 2, 2000, "rigid discs of the chain"),
-    "support_count": Size(2, 2, 2, "supports: 1 is the left, 2 the right one"),
+    "support_count": Size(
+        2, 2, 100, "supports: 1 is the left, 2 the right one, all others stand between them"
+    ),
 }
 
 _SONODA = "Sonoda et al. 1993, sec. 4: H-100x50x7, span 120 cm, discs of 5 cm"
@@ -19,6 +21,7 @@ _AT_REST = (
     "span",
     "axis.y",
     "supports",
+    "support.element",
     "elastic_modulus",
     "section.area",
     "section.second_moment",
@@ -43,9 +46,15 @@ def _padded(sizes: Sizes) -> int:
     return sizes["elements"] + 2
 
 
+def _supports(sizes: Sizes) -> int:
+    return sizes["support_count"]
+
+
 LAYOUT = Layout(
     (
-        param("span", "distance of the supports", 120 * cm, "m", minimum=1e-3, source=_SONODA),
+        param(
+            "span", "distance of the outer supports", 120 * cm, "m", minimum=1e-3, source=_SONODA
+        ),
         param("axis.x", "x of the left support", 0.0, "m"),
         param(
             "axis.y",
@@ -60,6 +69,15 @@ LAYOUT = Layout(
             ("simple", "fixed"),
             "simple",
             source=_SONODA,
+        ),
+        param(
+            "support.element",
+            "disc under which an inner support stands, counted from the left; 0 for supports 1 and "
+            "2, which are the ends",
+            0.0,
+            size="support_count",
+            minimum=0.0,
+            maximum=2000.0,
         ),
         param(
             "elastic_modulus",
@@ -190,11 +208,22 @@ LAYOUT = Layout(
             "support.velocity.y",
             "span",
         ),
-        _per_element(
+        out(
             "moment",
-            "bending moment at the disc's centre, positive with tension below",
+            "bending moment of the whole section at the disc's centre, positive with tension below",
             "N.m",
-            *_AT_REST,
+            size="elements",
+            initial_dependencies=_AT_REST,
+            role=Role.BENDING_MOMENT,
+        ),
+        out(
+            "support.moment",
+            "bending moment of the whole section at the support, positive with tension below; 0 "
+            "at the ends of a beam on simple supports",
+            "N.m",
+            size="support_count",
+            initial_dependencies=_AT_REST,
+            role=Role.BENDING_MOMENT,
         ),
         out(
             "support.force.y",
@@ -202,6 +231,7 @@ LAYOUT = Layout(
             "load)",
             "N",
             size="support_count",
+            role=Role.SUPPORT_FORCE,
         ),
         out(
             "support.mean_force.y",
@@ -229,6 +259,15 @@ LAYOUT = Layout(
             "N",
             initial_dependencies=("force.y",),
             source="Sonoda et al. 1993, eq. (4)",
+        ),
+        out(
+            "box.inertia_force",
+            "force that accelerates the empty box, mean over the step, positive downwards: load "
+            "cells between box and beam show transmitted_force less this (their zero is the "
+            "weight at rest)",
+            "N",
+            initial_dependencies=(),
+            role=Role.BOX_INERTIA,
         ),
         out(
             "midspan.deflection",
@@ -261,7 +300,7 @@ LAYOUT = Layout(
         ),
         out(
             "energy.bending",
-            "elastic energy of the bending springs",
+            "elastic energy of the bending springs, those of inner supports included",
             "J",
             source="Sonoda et al. 1993, eq. (6)",
         ),
@@ -324,6 +363,10 @@ LAYOUT = Layout(
         State("kick", lambda sizes: sizes["elements"]),
         State("load.x", lambda sizes: sizes["elements"]),
         State("load.y", lambda sizes: sizes["elements"]),
-        State("support.height", lambda sizes: sizes["support_count"]),
+        State("support.height", _supports),
+        State("reaction", _supports),
+        State("jump", _supports),
+        State("influence", lambda sizes: _supports(sizes) ** 2),
+        State("rest.load", lambda sizes: sizes["elements"]),
     ),
 )

@@ -2,13 +2,16 @@
 
 from ..common.stepping import STEPPING_FAULTS
 
-DIVERGED, BOX_OFF_BEAM = range(1, 3)
+DIVERGED, BOX_OFF_BEAM, NO_PLACE = range(1, 4)
 
 FAULTS = {
     **STEPPING_FAULTS,
     BOX_OFF_BEAM: "the box, from box.left = {box.left} m on, {box.width} m wide, does not stand "
     "within the span from axis.x = {axis.x} m on, {span} m long, and has mass or sand in it: give "
     "box.left and box.width, or box.mass = 0 and cushion.weight = 0",
+    NO_PLACE: "support.element: every support from number 3 on needs a disc of its own to stand "
+    "under, a whole number from 1 (left) to the number of elements, and supports 1 and 2, which "
+    "are the ends, have 0: give support.element[3] and on",
     DIVERGED: "the beam diverged: a displacement exceeds half the span ({span} m) or is no longer "
     "a number (midspan deflection {midspan.deflection} m, transmitted force {transmitted_force} "
     "N); internal_step is {internal_step} s and the largest stable one {stable_step} s: reduce "

@@ -7,6 +7,7 @@ from ..common.substeps import are_too_many, substep_count, substep_length
 from .chain import (
     axial_energy,
     bending_energy,
+    box_momentum,
     box_stands_on_beam,
     chain,
     deform,
@@ -16,11 +17,13 @@ from .chain import (
     kinetic_energy,
     move,
     potential,
-    reactions,
+    react,
     set_kicks,
+    supports_have_places,
+    wall_moments,
 )
 from .declarations import LAYOUT
-from .faults import BOX_OFF_BEAM, DIVERGED
+from .faults import BOX_OFF_BEAM, DIVERGED, NO_PLACE
 from .statics import rest, stable_step
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -40,10 +43,12 @@ def initialise(w, x, k):
     Returns
     -------
     int
-        Status, OK or BOX_OFF_BEAM.
+        Status: OK, BOX_OFF_BEAM or NO_PLACE.
     """
     if not box_stands_on_beam(w):
         return BOX_OFF_BEAM
+    if not supports_have_places(w, k):
+        return NO_PLACE
     c = chain(w, k)
     distribute(c, w, x, k)
     w[V.radius] = 0.5 * c.spacing
@@ -75,17 +80,21 @@ def evaluate(w, x, k):
     hold(c, w, x, k)
     w[V.energy_damping], w[V.energy_work_contact] = 0.0, 0.0
     w[V.energy_work_support], w[V.energy_start] = 0.0, 0.0
+    w[V.box_inertia_force] = 0.0
     status = publish(w, x, k)
     w[V.midspan_start_strain], w[V.energy_strain_estimate] = w[V.midspan_strain], 0.0
     _place(view(w, k, A.support_mean_force_y), view(w, k, A.support_force_y))
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
-    view(w, k, A.support_work)[0], view(w, k, A.support_work)[1] = 0.0, 0.0
+    work = view(w, k, A.support_work)
+    for s in range(len(work)):
+        work[s] = 0.0
     return status
 
 
 @kernel
-def _place(pair, values):
-    pair[0], pair[1] = values[0], values[1]
+def _place(target, values):
+    for s in range(len(target)):
+        target[s] = values[s]
 
 
 @kernel
@@ -109,7 +118,11 @@ def step(t, h, w, x, k):
     if are_too_many(h, w[V.internal_step]):
         return TOO_MANY_STEPS
     n = substep_count(h, w[V.internal_step])
-    advance(n, substep_length(h, n, w[V.internal_step]), w, x, k)
+    dt = substep_length(h, n, w[V.internal_step])
+    c = chain(w, k)
+    before = box_momentum(c, w, x, k)
+    advance(n, dt, w, x, k)
+    w[V.box_inertia_force] = (before - box_momentum(c, w, x, k)) / (n * dt)
     return publish(w, x, k)
 
 
@@ -137,30 +150,33 @@ def advance(n, dt, w, x, k):
     set_kicks(c, dt, x, k)
     before = potential(c, w, x, k)
     settle(c, w, x, k)
-    left, right = _move_and_react(c, n, dt, w, x, k)
-    speed, mean = view(w, k, A.support_velocity_y), view(w, k, A.support_mean_force_y)
-    mean[0], mean[1] = left / n, right / n
+    _move_and_react(c, n, dt, w, x, k)
     w[V.energy_work_contact] += potential(c, w, x, k) - before
-    w[V.energy_work_support] -= dt * (left * speed[0] + right * speed[1])
+    speed, mean = view(w, k, A.support_velocity_y), view(w, k, A.support_mean_force_y)
     work = view(w, k, A.support_work)
-    work[0] -= dt * left * speed[0]
-    work[1] -= dt * right * speed[1]
+    power = 0.0
+    for s in range(c.supports):
+        power += mean[s] * speed[s]
+        work[s] -= dt * mean[s] * speed[s]
+        mean[s] /= n
+    w[V.energy_work_support] -= dt * power
 
 
 @kernel
 def _move_and_react(c, n, dt, w, x, k):
-    """Advance by n steps of dt (s); return the sums of the forces on both supports (N)."""
+    """Advance by n steps of dt (s); leave the sums of the forces on the supports in their mean."""
     damped = c.drag > 0.0 or c.viscosity > 0.0
-    left, right = 0.0, 0.0
+    total, reaction = view(w, k, A.support_mean_force_y), view(x, k, A.reaction)
+    for s in range(c.supports):
+        total[s] = 0.0
     for _ in range(n):
         if damped:
             w[V.energy_damping] += dt * dissipation(c, w, x, k)
         deform(c, 1.0, c.viscosity, w, x, k)
-        at_left, at_right = reactions(c, w, x, k)
-        left += at_left
-        right += at_right
+        react(c, w, x, k)
+        for s in range(c.supports):
+            total[s] += reaction[s]
         move(c, dt, w, x, k)
-    return left, right
 
 
 @kernel
@@ -179,16 +195,22 @@ def settle(c, w, x, k):
         Integer state.
     """
     height, given = view(x, k, A.support_height), view(w, k, A.support_position_y)
-    left, right = given[0] - height[0], given[1] - height[1]
-    if left == 0.0 and right == 0.0:
+    work, reaction = view(w, k, A.support_work), view(x, k, A.reaction)
+    jump = view(x, k, A.jump)
+    stays = True
+    for s in range(c.supports):
+        jump[s] = given[s] - height[s]
+        stays &= jump[s] == 0.0
+    if stays:
         return
-    work = view(w, k, A.support_work)
     for _ in range(2):
         deform(c, 1.0, 0.0, w, x, k)
-        at_left, at_right = reactions(c, w, x, k)
-        w[V.energy_work_support] -= 0.5 * (left * at_left + right * at_right)
-        work[0] -= 0.5 * left * at_left
-        work[1] -= 0.5 * right * at_right
+        react(c, w, x, k)
+        done = 0.0
+        for s in range(c.supports):
+            done += jump[s] * reaction[s]
+            work[s] -= 0.5 * jump[s] * reaction[s]
+        w[V.energy_work_support] -= 0.5 * done
         _place(height, given)
 
 
@@ -231,7 +253,8 @@ def _publish_forces(c, w, x, k):
         total -= on_discs[i]
     w[V.transmitted_force] = total
     deform(c, 1.0, c.viscosity, w, x, k)
-    on_supports[0], on_supports[1] = reactions(c, w, x, k)
+    react(c, w, x, k)
+    _place(on_supports, view(x, k, A.reaction))
 
 
 @kernel
@@ -249,7 +272,18 @@ def _publish_places(c, w, x, k):
     )
     _publish_axis(c.n, w[V.axis_y], 0.0, view(x, k, A.v), view(w, k, A.position_y))
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.hinge_moment), view(w, k, A.moment))
+    _publish_support_moments(c, w, x, k)
     _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_shape), view(w, k, A.angle))
+
+
+@kernel
+def _publish_support_moments(c, w, x, k):
+    """Write the moments at the walls, and above inner supports those of their discs."""
+    target, element = view(w, k, A.support_moment), view(w, k, A.support_element)
+    moment = view(x, k, A.hinge_moment)
+    target[0], target[1] = wall_moments(c, x, k)
+    for s in range(2, c.supports):
+        target[s] = moment[int(element[s])]
 
 
 @kernel

@@ -28,11 +28,84 @@ def rest(c, w, x, k):
     v_rate, height = view(x, k, A.v_rate), view(x, k, A.support_height)
     for i in range(c.n + 2):
         u[i] = u_rate[i] = v_rate[i] = 0.0
-    rise = height[1] - height[0]
+    load = view(x, k, A.rest_load)
+    for i in range(c.n):
+        load[i] = _weight(c, i, w, x, k)
+    _bear(c, w, x, k)
+    _sag(c, height[0], height[1] - height[0], x, k)
+
+
+@kernel
+def _sag(c, height, rise, x, k):
+    """Set moments and deflections of the chain under the loads at rest, its ends where they are.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    height, rise : float
+        Height of the left support, and of the right one above it (m).
+    x : ndarray of float64
+        State.
+    k : ndarray of int64
+        Integer state.
+    """
     moment = view(x, k, A.hinge_moment)
-    _weight_moments(c, w, x, k)
+    _load_moments(c, view(x, k, A.rest_load), moment)
     _add_redundant_moments(c, rise, moment)
-    _deflect(c, rise, height[0], moment, view(x, k, A.v))
+    _deflect(c, rise, height, moment, view(x, k, A.v))
+
+
+@kernel
+def _bear(c, w, x, k):
+    """Take what the inner supports bear from the loads at rest.
+
+    Each bears what its stiffness makes of the way by which the beam without inner supports sinks
+    below it and their forces lift the beam again: one equation for each, with the influence of each
+    force on each place.
+    """
+    if c.supports == 2:
+        return
+    load, v, height = view(x, k, A.rest_load), view(x, k, A.v), view(x, k, A.support_height)
+    element, borne = view(w, k, A.support_element), view(x, k, A.reaction)
+    influence = view(x, k, A.influence)
+    count = c.supports
+    _sag(c, height[0], height[1] - height[0], x, k)
+    for s in range(2, count):
+        borne[s] = height[s] - v[int(element[s])]
+    for i in range(c.n):
+        load[i] = 0.0
+    for s in range(2, count):
+        load[int(element[s]) - 1] = -1.0
+        _sag(c, 0.0, 0.0, x, k)
+        load[int(element[s]) - 1] = 0.0
+        for other in range(2, count):
+            influence[other * count + s] = v[int(element[other])]
+        influence[s * count + s] += 1.0 / c.bearing
+    _solve(count, influence, borne)
+    for i in range(c.n):
+        load[i] = _weight(c, i, w, x, k)
+    for s in range(2, count):
+        load[int(element[s]) - 1] -= borne[s]
+
+
+@kernel
+def _solve(count, matrix, right):
+    """Solve the equations of the inner supports, by elimination; the solution is left in right.
+
+    The matrix is symmetric and positive definite, so no rows need to be exchanged.
+    """
+    for i in range(2, count):
+        for row in range(i + 1, count):
+            factor = matrix[row * count + i] / matrix[i * count + i]
+            for column in range(i, count):
+                matrix[row * count + column] -= factor * matrix[i * count + column]
+            right[row] -= factor * right[i]
+    for back in range(2, count):
+        i = count + 1 - back
+        for column in range(i + 1, count):
+            right[i] -= matrix[i * count + column] * right[column]
+        right[i] /= matrix[i * count + i]
 
 
 @kernel
@@ -42,19 +115,18 @@ def _weight(c, i, w, x, k):
 
 
 @kernel
-def _weight_moments(c, w, x, k):
-    """Set the moments at the discs of a simply supported chain under its weights.
+def _load_moments(c, load, moment):
+    """Set the moments at the discs of a simply supported chain under loads (N, downwards).
 
     They come from the left reaction, then disc by disc.
     """
-    moment = view(x, k, A.hinge_moment)
     n = c.n
     shear = 0.0
     for i in range(n):
-        shear += _weight(c, i, w, x, k) * (n - i - 0.5) / n
+        shear += load[i] * (n - i - 0.5) / n
     moment[1] = 0.5 * c.spacing * shear
     for i in range(n - 1):
-        shear -= _weight(c, i, w, x, k)
+        shear -= load[i]
         moment[i + 2] = moment[i + 1] + c.spacing * shear
 
 
@@ -113,7 +185,8 @@ def stable_step(c, w, x, k):
 
     both roots stay in the unit circle for dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest
     frequency decides: that of a chain of discs as light as the lightest one, which more mass can
-    only lower. It is exact without a box or with one that leaves no disc free.
+    only lower. It is exact without a box or with one that leaves no disc free. An inner support
+    raises its square by no more than its stiffness over that mass.
 
     Parameters
     ----------
@@ -133,6 +206,8 @@ def stable_step(c, w, x, k):
     bending = (
         _fixed_frequency2(c, mass, w, x, k) if c.fixed else 16.0 * c.bending / (mass * c.spacing)
     )
+    if c.supports > 2:
+        bending += c.bearing / mass
     omega2 = max(_axial_frequency2(c, mass), bending)
     decay = c.drag + c.viscosity * omega2
     return 4.0 / (decay + math.sqrt(decay * decay + 4.0 * omega2))
@@ -177,7 +252,8 @@ def _highest_frequency2(c, mass, parity, w, x, k):
     Overwrites the state.
     """
     v, moment, height = view(x, k, A.v), view(x, k, A.hinge_moment), view(x, k, A.support_height)
-    height[0] = height[1] = 0.0
+    for s in range(c.supports):
+        height[s] = 0.0
     for i in range(c.n + 2):
         v[i] = 0.0
     v[1], v[c.n] = 1.0, parity

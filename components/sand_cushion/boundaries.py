@@ -8,6 +8,14 @@ import math
 from collections import namedtuple
 
 from ..common.kernels import inlined, kernel, view
+from .beam_surface import (
+    Lever,
+    foot_of,
+    lever_at,
+    load_surface,
+    surface_height,
+    surface_velocity,
+)
 from .bodies import beam_count, bodies_of
 from .contact_law import (
     Approach,
@@ -38,7 +46,7 @@ V, A = LAYOUT.scalar, LAYOUT.array
 
 DISC, WALL, FLOOR, BEAM_TOP, ABSENT = range(5)
 """Geometries: a round body; an upright plane, for the rock with an upper end; a level plane; the
-beam's top, straight from centre to centre; nothing."""
+beam's top as a surface; nothing."""
 NOBODY, ITSELF, BEAM = range(3)
 """Carriers of the force on a boundary."""
 
@@ -50,12 +58,12 @@ RIGID_FLOOR = Boundary(FLOOR, KIND.base, KIND.rock_base, NOBODY, transmits=1, be
 BEAM_AS_SURFACE = RIGID_FLOOR._replace(geometry=BEAM_TOP, carrier=BEAM, beam_mass=1)
 NO_BASE = RIGID_FLOOR._replace(geometry=ABSENT)
 
-Surface = namedtuple("Surface", "nx ny gap vx vy")
-"""A boundary near a body: normal from the body to it, gap (m, negative when they overlap) and
-velocity of its surface at the contact (m/s)."""
+Surface = namedtuple("Surface", "nx ny gap vx vy lever")
+"""A boundary near a body: normal from the body to it, gap (m, negative when they overlap), velocity
+of its surface at the contact (m/s), and where the beam carries it, if it does."""
 
-Lever = namedtuple("Lever", "left right share")
-"""A place on the beam: the beam discs left and right of it, and the share of the right one."""
+_NOWHERE = Lever(0, 0, 0.0)
+"""Place on the beam of what the beam does not carry."""
 
 Edges = namedtuple("Edges", "owner partner spring plastic roll boundary law sums")
 """Contacts with boundaries, an element a contact: number of disc or rock, number of the boundary,
@@ -152,76 +160,6 @@ def describe_boundaries(w, k):
 
 
 @inlined
-def lever_at(x, bodies):
-    """Return the :class:`Lever` of a place ``x`` (m) on the beam.
-
-    Parameters
-    ----------
-    x : float
-        Place (m).
-    bodies : Bodies
-        Columns of all bodies.
-
-    Returns
-    -------
-    Lever
-    """
-    first, last = bodies.rock + 1, bodies.end - 1
-    if first == last:
-        return Lever(first, first, 0.0)
-    begin, gaps = bodies.x[first], last - first
-    position = (x - begin) / (bodies.x[last] - begin) * gaps
-    left = min(gaps - 1, max(0, math.floor(position)))
-    return Lever(first + left, first + left + 1, min(1.0, max(0.0, position - left)))
-
-
-@inlined
-def beam_top(lever, bodies):
-    """Return the height (m) of the beam's top at a place.
-
-    Parameters
-    ----------
-    lever : Lever
-        Place on the beam.
-    bodies : Bodies
-        Columns of all bodies.
-
-    Returns
-    -------
-    float
-        Height (m).
-    """
-    return (
-        (1.0 - lever.share) * bodies.y[lever.left]
-        + lever.share * bodies.y[lever.right]
-        + bodies.radius[lever.left]
-    )
-
-
-@inlined
-def beam_velocity(lever, bodies):
-    """Return the velocity (m/s) of the beam's top at a place, to the right and upwards.
-
-    Parameters
-    ----------
-    lever : Lever
-        Place on the beam.
-    bodies : Bodies
-        Columns of all bodies.
-
-    Returns
-    -------
-    tuple of float
-        Velocity (m/s).
-    """
-    left, right, share = lever.left, lever.right, lever.share
-    vx = (1.0 - share) * (bodies.vx[left] - bodies.spin[left]) + share * (
-        bodies.vx[right] - bodies.spin[right]
-    )
-    return vx, (1.0 - share) * bodies.vy[left] + share * bodies.vy[right]
-
-
-@inlined
 def face_of(boundary, w):
     """Return the x (m) of a wall's inner face.
 
@@ -271,6 +209,7 @@ def touch_disc(i, b, bodies):
         distance - bodies.radius[i] - bodies.radius[b],
         bodies.vx[b] + turning * ny,
         bodies.vy[b] - turning * nx,
+        _NOWHERE,
     )
 
 
@@ -298,12 +237,12 @@ def touch_base(i, boundary, w, bodies):
     xi, yi, ri = bodies.x[i], bodies.y[i], bodies.radius[i]
     inside = w[V.box_left] <= xi <= w[V.box_left] + w[V.box_width]
     if i == bodies.rock and w[V.box_wall_height] != UNBOUNDED and not inside:
-        return Surface(0.0, -1.0, UNBOUNDED, 0.0, 0.0)
+        return Surface(0.0, -1.0, UNBOUNDED, 0.0, 0.0, _NOWHERE)
     if boundary.geometry == FLOOR:
-        return Surface(0.0, -1.0, yi - w[V.base_y] - ri, 0.0, 0.0)
-    lever = lever_at(xi, bodies)
-    vx, vy = beam_velocity(lever, bodies)
-    return Surface(0.0, -1.0, yi - beam_top(lever, bodies) - ri, vx, vy)
+        return Surface(0.0, -1.0, yi - w[V.base_y] - ri, 0.0, 0.0, _NOWHERE)
+    foot = foot_of(xi, yi, bodies)
+    vx, vy = surface_velocity(foot.lever, bodies)
+    return Surface(foot.nx, foot.ny, foot.height - ri, vx, vy, foot.lever)
 
 
 @inlined
@@ -328,21 +267,21 @@ def touch_wall(i, boundary, w, bodies):
     xi, ri = bodies.x[i], bodies.radius[i]
     face = face_of(boundary, w)
     nx = float(boundary.side)
-    foot, vy = w[V.base_y], 0.0
+    foot, vy, lever = w[V.base_y], 0.0, _NOWHERE
     if boundary.carrier == BEAM:
         lever = lever_at(face, bodies)
-        foot = beam_top(lever, bodies)
-        _, vy = beam_velocity(lever, bodies)
+        foot = surface_height(lever, bodies)
+        _, vy = surface_velocity(lever, bodies)
     out, over = (xi - face) * nx, bodies.y[i] - foot - w[V.box_wall_height]
     endless = i != bodies.rock or w[V.box_wall_height] == UNBOUNDED
     if endless or (over <= 0.0 and out <= 0.0):
-        return Surface(nx, 0.0, (xi - face) * -nx - ri, 0.0, vy)
+        return Surface(nx, 0.0, (xi - face) * -nx - ri, 0.0, vy, lever)
     beyond = min(out, 0.0) + max(out - w[V.box_wall_thickness], 0.0)
     above = max(over, 0.0)
     distance = math.sqrt(beyond * beyond + above * above)
     if distance == 0.0:
-        return Surface(nx, 0.0, -out - ri, 0.0, vy)
-    return Surface(-nx * beyond / distance, -above / distance, distance - ri, 0.0, vy)
+        return Surface(nx, 0.0, -out - ri, 0.0, vy, lever)
+    return Surface(-nx * beyond / distance, -above / distance, distance - ri, 0.0, vy, lever)
 
 
 @inlined
@@ -376,50 +315,7 @@ def touch(i, b, boundary, w, bodies):
 
 
 @inlined
-def load_beam(a, share, fx, fy, bodies):
-    """Give beam disc a its share of a force (N) at the beam's top.
-
-    Parameters
-    ----------
-    a : int
-        Number of the beam disc.
-    share : float
-        From 0 to 1.
-    fx : float
-        Force to the right (N).
-    fy : float
-        Force upwards (N).
-    bodies : Bodies
-        Columns of all bodies.
-    """
-    bodies.force_x[a] += share * fx
-    bodies.force_y[a] += share * fy
-    bodies.turn[a] -= share * fx
-
-
-@inlined
-def load_beam_at(x, fx, fy, bodies):
-    """Hand a force (N) at the place ``x`` (m) of the beam's top to the two discs beside it.
-
-    Parameters
-    ----------
-    x : float
-        Place (m).
-    fx : float
-        Force to the right (N).
-    fy : float
-        Force upwards (N).
-    bodies : Bodies
-        Columns of all bodies.
-    """
-    lever = lever_at(x, bodies)
-    load_beam(lever.left, 1.0 - lever.share, fx, fy, bodies)
-    if lever.right != lever.left:
-        load_beam(lever.right, lever.share, fx, fy, bodies)
-
-
-@inlined
-def carry(b, boundary, foot, force, surface, bodies):
+def carry(b, boundary, force, surface, bodies):
     """Hand the force on boundary b to whoever carries it.
 
     Parameters
@@ -428,8 +324,6 @@ def carry(b, boundary, foot, force, surface, bodies):
         Number of the boundary.
     boundary : Boundary
         Row of the table of boundaries.
-    foot : float
-        Place (m) on the beam where the force goes in, if the beam carries it.
     force : tuple of float
         To the right and upwards (N). A wall has no mass, and hands down the vertical part.
     surface : Surface
@@ -443,7 +337,7 @@ def carry(b, boundary, foot, force, surface, bodies):
         bodies.force_y[b] += fy
         bodies.turn[b] += surface.ny * fx - surface.nx * fy
     elif boundary.carrier == BEAM:
-        load_beam_at(foot, 0.0 if boundary.geometry == WALL else fx, fy, bodies)
+        load_surface(surface.lever, 0.0 if boundary.geometry == WALL else fx, fy, bodies)
 
 
 # --- contacts ---
@@ -583,7 +477,7 @@ def approach_of(i, overlap, surface, bodies):
 
 
 @inlined
-def hand_on(i, b, boundary, response, surface, w, bodies):
+def hand_on(i, b, boundary, response, surface, bodies):
     """Give the contact force to body i and boundary b; returns what counts as transmitted (N).
 
     Parameters
@@ -598,8 +492,6 @@ def hand_on(i, b, boundary, response, surface, w, bodies):
         Forces of the contact law (N).
     surface : Surface
         Geometry and velocity at the contact.
-    w : ndarray of float64
-        Variables of the instance.
     bodies : Bodies
         Columns of all bodies.
 
@@ -614,8 +506,7 @@ def hand_on(i, b, boundary, response, surface, w, bodies):
     bodies.force_x[i] -= fx
     bodies.force_y[i] -= fy
     bodies.turn[i] += tangential
-    foot = face_of(boundary, w) if boundary.geometry == WALL else bodies.x[i]
-    carry(b, boundary, foot, (fx, fy), surface, bodies)
+    carry(b, boundary, (fx, fy), surface, bodies)
     return fy if boundary.transmits == 1 else 0.0
 
 
@@ -659,7 +550,7 @@ def press_on(p, dt, rolls, w, bodies, edges):
         return let_go(p, lost, kind, edges)
     response = respond(approach, spring, slip_resistance(1.0, law, dt), law, dt)
     edges.spring[p] = response.spring
-    edges.sums[SUM.transmitted] -= hand_on(i, b, boundary, response, surface, w, bodies)
+    edges.sums[SUM.transmitted] -= hand_on(i, b, boundary, response, surface, bodies)
     if rolls and law.rolling > 0.0:
         roll_on(p, boundary.geometry == DISC, response.normal, law, dt, bodies, edges)
     return Work(

@@ -13,6 +13,7 @@ import math
 from collections import namedtuple
 
 from ..common.kernels import inlined, kernel, view
+from .beam_surface import foot_of, top_of
 from .bodies import bodies_of, disc_count
 from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PART, PLANES, ROW, SUM
 
@@ -133,14 +134,61 @@ def listed_gap(w):
     return skin
 
 
-@kernel
-def boundary_travel(x, k):
-    """Return the longest way (m) that the rock or a beam disc has gone since the list was made.
+@inlined
+def landmark(b, w, bodies):
+    """Return the point (m) that tells how far the rock or a beam disc has gone.
 
     Parameters
     ----------
-    x, k : ndarray
-        State and integers of the instance.
+    b : int
+        Number of the boundary.
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    tuple of float
+        To the right and upwards: the top of a disc under a surface, which goes along when the disc
+        turns, else the centre.
+    """
+    if b > bodies.rock and w[V.base] == BEAM_SURFACE:
+        return top_of(b, bodies)
+    return bodies.x[b], bodies.y[b]
+
+
+@inlined
+def leverage(w, bodies):
+    """Return how much farther than a landmark a boundary can go: a surface beyond its last tops.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    float
+        1 or more.
+    """
+    first, last = bodies.rock + 1, bodies.end - 1
+    if w[V.base] != BEAM_SURFACE or first == last:
+        return 1.0
+    left, right = bodies.x[first + 1] - bodies.x[first], bodies.x[last] - bodies.x[last - 1]
+    return 1.0 + 2.0 * bodies.radius[first] / min(left, right)
+
+
+@kernel
+def boundary_travel(w, x, k):
+    """Return the longest way (m) that the rock or the beam has gone since the list was made.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
 
     Returns
     -------
@@ -148,12 +196,16 @@ def boundary_travel(x, k):
         Way (m).
     """
     bodies, reference = bodies_of(x, k), view(x, k, A.boundary_reference)
-    longest = 0.0
+    of_rock, of_beam = 0.0, 0.0
     for b in range(bodies.rock, bodies.end):
         at = 2 * (b - bodies.rock)
-        dx, dy = bodies.x[b] - reference[at], bodies.y[b] - reference[at + 1]
-        longest = max(longest, dx * dx + dy * dy)
-    return math.sqrt(longest)
+        mark_x, mark_y = landmark(b, w, bodies)
+        dx, dy = mark_x - reference[at], mark_y - reference[at + 1]
+        if b == bodies.rock:
+            of_rock = dx * dx + dy * dy
+        else:
+            of_beam = max(of_beam, dx * dx + dy * dy)
+    return max(math.sqrt(of_rock), math.sqrt(of_beam) * leverage(w, bodies))
 
 
 @kernel
@@ -170,7 +222,7 @@ def is_stale(w, x, k):
     bool
     """
     travel = view(x, k, A.sums)[SUM.travelled]
-    return 2.0 * max(travel, boundary_travel(x, k)) > SKIN * w[V.disc_radius]
+    return 2.0 * max(travel, boundary_travel(w, x, k)) > SKIN * w[V.disc_radius]
 
 
 @kernel
@@ -418,17 +470,13 @@ def list_discs(w, x, k):
 
 
 @kernel
-def boundary_partners(i, top, w, bodies, partner, at):
+def boundary_partners(i, w, bodies, partner, at):
     """List the boundaries near disc i, or near the rock; returns the end of the list.
-
-    ``top`` is the highest point (m) of the base.
 
     Parameters
     ----------
     i : int
         Number of the disc, or of the rock.
-    top : float
-        Highest point of the base (m).
     w : ndarray of float64
         Variables of the instance.
     bodies : Bodies
@@ -456,7 +504,10 @@ def boundary_partners(i, top, w, bodies, partner, at):
     if w[V.box_left] + w[V.box_width] - xi < reach:
         partner[at] = bodies.end + 1
         at += 1
-    if w[V.base] != BEAM_DISCS and yi - top < reach:
+    height = yi - w[V.base_y]
+    if w[V.base] == BEAM_SURFACE:
+        height = foot_of(xi, yi, bodies).height
+    if w[V.base] != BEAM_DISCS and height < reach:
         partner[at] = bodies.end + 2
         at += 1
     return at
@@ -475,7 +526,7 @@ def list_edges(w, x, k):
     -------
     bool
     """
-    bodies, row, top = bodies_of(x, k), view(k, k, A.edge_row), base_top(w, x, k)
+    bodies, row = bodies_of(x, k), view(k, k, A.edge_row)
     owner, partner = view(k, k, A.edge_body), view(k, k, A.edge_partner)
     most = bodies.end - bodies.rock + PLANES
     at = 0
@@ -483,7 +534,7 @@ def list_edges(w, x, k):
         row[i] = at
         if at + most > partner.size:
             return False
-        end = boundary_partners(i, top, w, bodies, partner, at)
+        end = boundary_partners(i, w, bodies, partner, at)
         for p in range(at, end):
             owner[p] = i
         at = end
@@ -659,7 +710,7 @@ def rebuild(w, x, k):
         inherit_edges(view(x, k, A.edge_plastic), view(x, k, A.edge_plastic_before), k)
     bodies, reference = bodies_of(x, k), view(x, k, A.boundary_reference)
     for b in range(bodies.rock, bodies.end):
-        reference[2 * (b - bodies.rock)] = bodies.x[b]
-        reference[2 * (b - bodies.rock) + 1] = bodies.y[b]
+        at = 2 * (b - bodies.rock)
+        reference[at], reference[at + 1] = landmark(b, w, bodies)
     view(x, k, A.sums)[SUM.travelled] = 0.0
     return True

@@ -10,7 +10,7 @@ from ..common.component import Size
 from ..common.ports import Indices, Layout, Sizes, State, choice, count, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.units import cm, deg, kgf
+from ..common.units import cm, deg, kgf, standard_gravity
 
 MOST_THREADS = 64
 """Threads that can share the work of a step."""
@@ -29,7 +29,7 @@ SIZES = {
     "elements": Size(24, 1, 2_000, "number of beam discs that the sand may touch"),
 }
 
-CALIBRATED_STIFFNESS_FACTOR = 0.37
+CALIBRATED_STIFFNESS_FACTOR = 0.342
 """Factor on the stiffness for locked rotation (1): fitted to table 5 and to the static test (fig.
 13) of the paper, not derived."""
 
@@ -254,7 +254,7 @@ LAYOUT = Layout(
         param(
             "gravity",
             "acceleration of gravity, downwards",
-            9.80665,
+            standard_gravity,
             "m/s2",
             minimum=0.0,
             role=Role.GRAVITY,
@@ -400,7 +400,7 @@ LAYOUT = Layout(
             "what carries the sand: a rigid floor, the beam's top as a surface, or the beam's "
             "discs as discs",
             ("floor", "beam_surface", "beam_discs"),
-            "beam_discs",
+            "beam_surface",
         ),
         choice(
             "base.shape",

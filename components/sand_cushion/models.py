@@ -20,11 +20,14 @@ class SandModel:
         Parameters that differ from the component's start values.
     prepared : bool
         Whether the layer is prepared in the state of the case's soil.
+    beam_base : str
+        Base where the sand lies on a beam.
     """
 
     summary: str
     parameters: Mapping[str, float | str]
     prepared: bool = False
+    beam_base: str = "beam_surface"
 
 
 ONE_LAW_MODULUS = 35.0
@@ -44,6 +47,7 @@ MODELS: Mapping[str, SandModel] = {
     "literal": SandModel(
         "eq. (1) to the letter: three freedoms a disc, no factor",
         {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"},
+        beam_base="beam_discs",
     ),
     "one-law": SandModel(
         "one contact law for all tests: discs of many sizes that resist rolling, yield and stick; "
@@ -81,7 +85,9 @@ def model_of(values: Mapping[str, float | str]) -> str | None:
     own = _start_values({key for model in MODELS.values() for key in model.parameters})
     for name, model in MODELS.items():
         wanted = {**own, **model.parameters}
-        if all(_same(values[key], wanted[key]) for key in wanted if key not in _FREE):
+        if values["base"] in ("floor", model.beam_base) and all(
+            _same(values[key], wanted[key]) for key in wanted if key not in _FREE
+        ):
             return name
     return None
 

@@ -21,7 +21,7 @@ from ..common.ports import (
 )
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
-from ..common.units import kN
+from ..common.units import kN, standard_gravity
 
 SPHERE, DISC, GIVEN = 1, 2, 3
 PRINTED, NONE, CONSISTENT = 1, 2, 3
@@ -166,7 +166,7 @@ LAYOUT = Layout(
         param(
             "gravity",
             "acceleration of gravity, downwards",
-            9.80665,
+            standard_gravity,
             "m/s2",
             minimum=1e-3,
             role=Role.GRAVITY,

@@ -13,7 +13,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -26,6 +25,7 @@ from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import Component
 from rockshed.components.common.kept import keep, kept
 from rockshed.components.common.ports import Sizes
+from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
 
 from ..description.documentation import documentation
@@ -105,7 +105,7 @@ _OPTIONS = (
     "-ffp-contract=off",
     "-s",
 )
-_PYTHON_REMAINS = "FMUs with Python inside need no compiler: `rockshed build --runtime python`"
+_PYTHON_REMAINS = 'FMUs with Python inside, runtime="python", need no compiler'
 
 
 def own_platform() -> str:
@@ -297,9 +297,9 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
     sound = {name: content for name, content in found.items() if content is not None}
     if sound.keys() == set(platforms):
         return sound
-    with tempfile.TemporaryDirectory(prefix="rockshed_") as work:
-        _compile_or_refuse(component, sizes, platforms, Path(work))
-        objects = {name: (Path(work) / f"{name}.o").read_bytes() for name in platforms}
+    with TemporaryFolder() as work:
+        _compile_or_refuse(component, sizes, platforms, work)
+        objects = {name: (work / f"{name}.o").read_bytes() for name in platforms}
     for name, path in files.items():
         with suppress(OSError):  # then it is compiled again next time
             keep(path, objects[name])
@@ -431,8 +431,7 @@ def _linked(
     BuildError
         The compiler fails; its messages.
     """
-    with tempfile.TemporaryDirectory(prefix="rockshed_") as folder:
-        work = Path(folder)
+    with TemporaryFolder() as work:
         for source, content in sources.items():
             (work / source).write_bytes(content)
         command = [

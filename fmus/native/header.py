@@ -17,10 +17,10 @@ from rockshed.components.common.component import (
     UNKNOWN_STATUS,
     Component,
     Instance,
-    allowed_range,
 )
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 from rockshed.components.common.restoring import INDEX_WRONG, NUMBER_NOT_FINITE, TABLE_DIFFERS
+from rockshed.components.common.units import range_in_words
 
 from ..python import conduct
 
@@ -141,7 +141,7 @@ def _variables(component: Component, sizes: Sizes) -> Iterator[dict[str, object]
             "low": -sys.float_info.max if bounds[0] is None else bounds[0],
             "high": sys.float_info.max if bounds[1] is None else bounds[1],
             "unit": "" if variable.unit == "1" else f" {variable.unit}",
-            "range": allowed_range(variable),
+            "range": range_in_words(*bounds, variable.unit),
         }
         first += len(variable.element_names(sizes))
 

@@ -8,12 +8,9 @@ from functools import cached_property
 from html import escape
 from importlib import import_module
 from pathlib import Path
-from shutil import rmtree
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from ..core.errors import refusing_unwritable
@@ -22,6 +19,7 @@ from ..core.results.own_files import refuse_foreign
 from ..core.results.run_folder import RunFolder
 from ..files import naming
 from ..tables import Table
+from ..temporary import ALIVE, TemporaryFolder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,42 +107,17 @@ def shared_folder(folder: str | Path, names: Sequence[str]) -> Iterator[Path]:
     missing = [parent for parent in parents if not parent.exists()]
     with refusing_unwritable(target):
         target.mkdir(parents=True, exist_ok=True)
-        _remove_abandoned(target)
-        place = TemporaryDirectory(prefix=_SHARED, dir=target)
+        place = TemporaryFolder(".rockshed-", target)
     try:
-        with place as name, _locked(Path(name)):
-            yield Path(name)
-            written = [file for file in Path(name).iterdir() if file.name != _LOCK]
+        with place as inside:
+            yield inside
+            written = [file for file in inside.iterdir() if file.name != ALIVE]
             for file in written:
                 os.replace(file, target / file.name)
     finally:
         for parent in missing:
             with suppress(OSError):  # it is not empty
                 parent.rmdir()
-
-
-_SHARED, _LOCK = ".rockshed-", ".alive"
-
-
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Lock a folder as long as this process works in it."""
-    lock = FileLock(folder / _LOCK)
-    lock.acquire(timeout=0)
-    try:
-        yield
-    finally:
-        lock.release()
-
-
-def _remove_abandoned(folder: Path) -> None:
-    """Remove folders in which analyses wrote that were killed."""
-    for left in folder.glob(f"{_SHARED}*/{_LOCK}"):
-        lock = FileLock(left)
-        with suppress(Timeout, OSError):
-            lock.acquire(timeout=0)
-            rmtree(left.parent, ignore_errors=True)
-            lock.release()
 
 
 class Result(ABC):

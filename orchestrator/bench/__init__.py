@@ -1,1 +1,1 @@
-"""Speed and price of coupling, each figure as a ratio within one interleaved run."""
+"""Speed and price of coupling, each quantity as a ratio within one interleaved run."""

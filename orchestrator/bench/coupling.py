@@ -3,9 +3,7 @@
 Times are those of the processor: both run on one thread, and others use the machine too.
 """
 
-import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 from time import thread_time
 
 from rockshed.fmus.build import BuildError, Runtime, build_if_needed
@@ -14,6 +12,7 @@ from rockshed.fmus.native.fmu import CPU
 from ..cases.sonoda1993 import lab_system, tests
 from ..core.run import simulate
 from ..core.system.system import SystemSpec
+from ..temporary import TemporaryFolder
 from .interleave import Contestant
 from .monolithic import from_system
 from .peer import Peer
@@ -75,8 +74,8 @@ def co_simulation(coupling: str, runtime: Runtime = Runtime.PYTHON) -> Contestan
     system = lab(coupling, runtime)
 
     def work() -> float:
-        with tempfile.TemporaryDirectory() as folder:
-            run = simulate(system, Path(folder) / "run")
+        with TemporaryFolder() as folder:
+            run = simulate(system, folder / "run")
         return float(run.provenance["cpu_time"]["exchanges"])
 
     return work

@@ -5,7 +5,6 @@ Two relays have 50 inputs and 150 outputs each.
 
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
@@ -19,6 +18,7 @@ from ..core.loop.initialisation import free, initialise, instantiate
 from ..core.run import sources_of
 from ..core.system.planning import make_plan
 from ..core.system.system import SystemSpec, system_from
+from ..temporary import TemporaryFolder
 from ..versions import version_of
 from .exchange_peer import INPUTS, STEP
 from .interleave import Contestant
@@ -68,9 +68,9 @@ class Pair:
 
     def __init__(self, runtime: Runtime, measurements: int) -> None:
         self._stack = ExitStack()
-        folder = self._stack.enter_context(tempfile.TemporaryDirectory(prefix="rockshed_"))
+        folder = self._stack.enter_context(TemporaryFolder())
         self.steps = _STEPS[runtime]
-        self._file = build_component(RELAY, destination=Path(folder), runtime=runtime)
+        self._file = build_component(RELAY, destination=folder, runtime=runtime)
         self.contestants: dict[str, Contestant] = {OURS: self._own_loop(measurements)}
         self.missing: dict[str, str] = {}
         for tool, package in PEERS.items():

@@ -1,11 +1,10 @@
-"""The benchmark as one table of figures."""
+"""The benchmark as one table."""
 
 import json
 import os
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
@@ -16,6 +15,7 @@ from pathlib import Path
 from rockshed.fmus.build import BuildError, Runtime
 from rockshed.fmus.native.fmu import CPU
 
+from ..temporary import TemporaryFolder
 from . import coupling, discs, rockfall
 from .exchange import BARE, OURS, PEERS, Pair
 from .interleave import interleave
@@ -141,9 +141,9 @@ def start_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure a warm start of the command, to the first exchange and to its end."""
     first: list[float] = []
     whole: list[float] = []
-    with tempfile.TemporaryDirectory() as folder:
+    with TemporaryFolder() as folder:
         for _ in range(rounds + 1):
-            to_first_exchange, to_end = _timed_start(Path(folder) / "run")
+            to_first_exchange, to_end = _timed_start(folder / "run")
             first.append(to_first_exchange)
             whole.append(to_end)
     name = "rockshed run lab-impact, warm"

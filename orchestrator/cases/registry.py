@@ -9,6 +9,7 @@ from typing import cast
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import Component
+from rockshed.components.common.units import ms
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
@@ -16,7 +17,7 @@ from ..core.system.system import SystemSpec, Value
 from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test
-from .sand_models import Changes, SandLayer, Soil, changes, sand_model
+from .sand_models import Changes, SandLayer, Soil, changes, lattice_height, sand_model
 
 ComponentSizes = Mapping[str, Mapping[str, int]]
 """Sizes by component of the system: ``{"sand": {"discs": 370}}``."""
@@ -148,7 +149,7 @@ def model_changes(chosen: Case, name: str | None, values: Mapping[str, Value]) -
         raise InputRefused(
             [
                 Problem(
-                    f"--model {name}",
+                    f"model {name}",
                     f"{chosen.name} has no sand that takes a model",
                     "leave it out",
                 )
@@ -252,6 +253,35 @@ def _same(one: Value, other: Value | None) -> bool:
         return str(one) == str(other)
 
 
+def _start_above(
+    layer: SandLayer, system: SystemSpec, sizes: ComponentSizes
+) -> Mapping[str, Value]:
+    """Return the start of the rock above a lattice of other discs, or in another box."""
+    if _of_sand(system, "packing") != "square":
+        return {}
+    with suppress(ValueError, ArithmeticError):  # no number, or none above 0: the FMU says so
+        discs = sizes["sand"]["discs"]
+        width, radius = (float(_of_sand(system, key)) for key in ("box.width", "disc.radius"))
+        more = lattice_height(discs, width, radius) - lattice_height(
+            discs, layer.width, layer.disc_radius
+        )
+        if abs(more) > 1e-9 * layer.height:
+            start = float(system.components["rock"].parameters["position0.y"])
+            return {"rock.position0.y": start + more}
+    return {}
+
+
+def _of_sand(system: SystemSpec, key: str) -> Value:
+    """Return the value that a parameter of the sand has in a system."""
+    for entry in system.shared.values():
+        if f"sand.{key}" in entry.targets:
+            return entry.value
+    given = system.components["sand"].parameters
+    return (
+        given[key] if key in given else cast(Value, _declared_value(component("SandCushion"), key))
+    )
+
+
 def _laboratory(test: sonoda1993.Test) -> Case:
     def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return sonoda1993.lab_system(
@@ -281,6 +311,7 @@ def _laboratory(test: sonoda1993.Test) -> Case:
         one_size=("sand.elements", "beam.elements"),
         references=partial(sonoda1993.references, test),
         layer=sonoda1993.layer(test),
+        derived=partial(_start_above, sonoda1993.layer(test)),
         other_names=(numbered,) if numbered != name else (),
     )
 
@@ -302,6 +333,7 @@ def _static_test() -> Case:
         make=make,
         references=static_test.references,
         layer=static_test.LAYER_OF_SAND,
+        derived=partial(_start_above, static_test.LAYER_OF_SAND),
     )
 
 
@@ -312,13 +344,14 @@ def _shed_on_piles() -> Case:
         )
 
     def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
-        with suppress(
-            ValueError, ZeroDivisionError
-        ):  # a value that is no number, or 0: its FMU says so
-            return shed_on_piles.derived(system, sizes["sand"]["discs"], sizes["beam"]["elements"])
-        return {}
+        values = dict(_start_above(layer, system, sizes))
+        with suppress(ValueError, ArithmeticError):  # no number, or 0: the FMU says so
+            discs, elements = sizes["sand"]["discs"], sizes["beam"]["elements"]
+            values |= shed_on_piles.derived(system, discs, elements)
+        return values
 
     impact = full_scale.impacts()[shed_on_piles.GIRDERS]
+    layer = full_scale.layer(impact)
     segments = {"segments": shed_on_piles.PILE.segments}
     return Case(
         shed_on_piles.NAME,
@@ -342,7 +375,7 @@ def _shed_on_piles() -> Case:
         make=make,
         one_size=("sand.elements", "beam.elements"),
         derived=derived,
-        layer=full_scale.layer(impact),
+        layer=layer,
     )
 
 
@@ -372,10 +405,12 @@ def _spt() -> Case:
     )
 
 
-_FULL_SCALE_COUPLINGS = {
-    "paper": "sand first, inputs held, exchange every 0.05 ms",
-    "impulse": "sand first, kinematics extrapolated, mean forces, exchange every 0.2 ms",
-}
+def _full_scale_couplings(impact: full_scale.Impact) -> Mapping[str, str]:
+    paper, impulse = (f"{impact.steps[name] / ms:g} ms" for name in ("paper", "impulse"))
+    return {
+        "paper": f"sand first, inputs held, exchange every {paper}",
+        "impulse": f"sand first, kinematics extrapolated, mean forces, exchange every {impulse}",
+    }
 
 
 def _weight_on_beam(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
@@ -399,6 +434,10 @@ def _full_scale(impact: full_scale.Impact) -> Case:
             sizes["sand"]["elements"],
         )
 
+    def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
+        return {**_weight_on_beam(system, sizes), **_start_above(layer, system, sizes)}
+
+    layer = full_scale.layer(impact)
     beam = {"beam": "RBSMBeam"} if impact.span else {}
     elements = {"elements": impact.elements}
     return Case(
@@ -406,12 +445,12 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         f"Sonoda et al. 1993, full scale: {impact.summary}",
         models={"sand": "SandCushion", "rock": "FallingRock", **beam},
         sizes={"sand": {"discs": impact.discs, **elements}, **dict.fromkeys(beam, elements)},
-        couplings=_FULL_SCALE_COUPLINGS,
+        couplings=_full_scale_couplings(impact),
         make=make,
         one_size=("sand.elements", "beam.elements") if beam else (),
-        derived=_weight_on_beam,
+        derived=derived,
         references=partial(full_scale.references, impact),
-        layer=full_scale.layer(impact),
+        layer=layer,
     )
 
 
@@ -435,7 +474,7 @@ def _slope_to_cushion() -> Case:
             "beam": elements,
             "rock": {"cells": slope_to_cushion.cells()},
         },
-        couplings=_FULL_SCALE_COUPLINGS,
+        couplings=_full_scale_couplings(impact),
         make=make,
         one_size=("sand.elements", "beam.elements"),
         derived=_weight_on_beam,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
-from rockshed.components.common.units import cm, kgf
+from rockshed.components.common.units import cm, kgf, standard_gravity
 from rockshed.components.sand_cushion.models import MODELS, SPREAD, SandModel
 
 from ..core.errors import InputRefused, Problem
@@ -124,13 +124,30 @@ def sand_model(name: str) -> SandModel:
     """
     if name not in MODELS:
         raise InputRefused(
-            [
-                Problem(
-                    f"--model {name}", "there is no such model of the sand", nearest(name, MODELS)
-                )
-            ]
+            [Problem(f"model {name}", "there is no such model of the sand", nearest(name, MODELS))]
         )
     return MODELS[name]
+
+
+def lattice_height(discs: int, width: float, radius: float) -> float:
+    """Return the height of a square lattice of discs.
+
+    Parameters
+    ----------
+    discs : int
+        Number of discs.
+    width : float
+        Of the box (m).
+    radius : float
+        Of a disc (m).
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
+    columns = max(1, math.floor(width / (2.0 * radius) * (1.0 + 1e-9)))
+    return math.ceil(discs / columns) * 2.0 * radius
 
 
 @cache
@@ -156,7 +173,7 @@ def discs_of(layer: SandLayer, solid_fraction: float) -> int:
 
 
 def model_values(name: str) -> dict[str, Value]:
-    """Return the values of a model that takes nothing from the soil.
+    """Return the values of a model that takes nothing from the soil, for sand on a floor.
 
     Parameters
     ----------
@@ -192,16 +209,18 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
         Values, sizes and keys of the system.
     """
     values: dict[str, Value] = {f"sand.{name}": value for name, value in model.parameters.items()}
+    if layer.on_beam:
+        values["sand.base"] = model.beam_base
     if not model.prepared:
         return Changes(values)
     state = soil or layer.soil
     largest = 2.0 * layer.disc_radius * (1.0 + SPREAD)
     clearance = 1.5 * largest
-    gained = 2.0 * 9.80665 * clearance if layer.falling else 0.0
+    gained = 2.0 * standard_gravity * clearance if layer.falling else 0.0
     values |= {
         "sand.cohesion": state.cohesion,
         "sand.solid_fraction": state.solid_fraction,
-        "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / 9.80665),
+        "sand.settling.time": _SETTLING * math.sqrt(layer.disc_radius / standard_gravity),
     }
     if layer.dropped:
         values |= {
@@ -210,8 +229,6 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
         }
     if layer.step:
         values["sand.internal_step"] = layer.step
-    if layer.on_beam:
-        values["sand.base"] = "beam_surface"
     return Changes(
         values,
         {"sand.discs": discs_of(layer, state.solid_fraction)},

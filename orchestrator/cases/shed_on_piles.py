@@ -11,6 +11,8 @@ gravity is 0 in them.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rockshed.components.common.units import cm2, kgf, standard_gravity
+
 from ..core.system.system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from . import full_scale
 from .spt import toe_bond, toe_connections
@@ -62,7 +64,7 @@ class Pile:
     @property
     def weight(self) -> float:
         """Weight of the rod (N), without the soil."""
-        return self.length * self.area * self.density * full_scale.GRAVITY
+        return self.length * self.area * self.density * standard_gravity
 
 
 PILE = Pile()
@@ -91,7 +93,9 @@ def shed_system(
     base = full_scale.full_scale_system(
         fmus, full_scale.impacts()[GIRDERS], "impulse", discs, elements
     )
-    components = dict(base.components)
+    girders = base.components["beam"]
+    undamped = {**girders.parameters, "damping.stiffness": 0.0}
+    components = {**base.components, "beam": girders.model_copy(update={"parameters": undamped})}
     connections = list(base.connections)
     bonds = dict(base.bonds)
     for number, side in enumerate(SIDES, 1):
@@ -232,5 +236,5 @@ def derived(system: SystemSpec, discs: int, elements: int) -> dict[str, Value]:
     return values
 
 
-_STEEL = 2.1e6 * 9.80665e4
+_STEEL = 2.1e6 * kgf / cm2
 """Young's modulus (Pa) that RBSMBeam has where none is given."""

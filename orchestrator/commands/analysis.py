@@ -1,8 +1,8 @@
 """Parts of the commands of all analyses: progress, names of options, display of a result."""
 
+import re
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from typing import Any
 
 from ..analyses.frame import Result, StageProgress
@@ -38,16 +38,34 @@ def stages(screen: Screen) -> Iterator[StageProgress]:
         yield progress
 
 
+_OPTIONS = {
+    "values": "--set",
+    "sizes": "--size",
+    "folder": "--output-dir",
+    "platforms": "--platform",
+    "certificates": "--tls-ca, --tls-cert and --tls-key",
+}
+"""Options by the argument of the library, where the two have different names."""
+_ASSIGNED = re.compile(r"(?<![\w.'\"])(\w+)=(?:\"([^\"]*)\"|(True|\.\.\.)|([\d.]+(?:e[+-]?\d+)?))")
+"""An argument with its value, as the library writes them: ``runtime="native"``, ``folder=...``."""
+
+
 @contextmanager
-def options_named(options: Collection[str], target: str = "") -> Iterator[None]:
+def options_named(
+    arguments: Collection[str], target: str = "", given: Collection[str] | None = None
+) -> Iterator[None]:
     """Name the arguments of a function in its refusals as the options of a command.
 
     Parameters
     ----------
-    options : collection of str
-        Arguments that are options: a problem of ``scheduler x`` is shown as ``--scheduler x``.
+    arguments : collection of str
+        Arguments that are options: ``scheduler x`` is shown as ``--scheduler x``, and
+        ``runtime="native"`` in a text as ``--runtime native``.
     target : str
         What they change: ``lab-impact: stop_time`` is shown as ``--stop-time``.
+    given : collection of str, optional
+        Those of them that can be the place of a problem, by default all. What a file has under
+        the same name is not the fault of an option that was not given.
 
     Raises
     ------
@@ -57,16 +75,50 @@ def options_named(options: Collection[str], target: str = "") -> Iterator[None]:
     try:
         yield
     except InputRefused as refusal:
-        problems = [_of_option(problem, options, target) for problem in refusal.problems]
+        places = arguments if given is None else given
+        problems = [
+            Problem(
+                _place(problem.where, places, target),
+                in_options(problem.what, arguments),
+                in_options(problem.remedy, arguments),
+            )
+            for problem in refusal.problems
+        ]
         raise InputRefused(problems) from None
 
 
-def _of_option(problem: Problem, options: Collection[str], target: str) -> Problem:
-    where = problem.where.removeprefix(f"{target}: ")
-    name, blank, rest = where.partition(" ")
-    if name not in options:
-        return problem
-    return replace(problem, where=f"--{name.replace('_', '-')}{blank}{rest}")
+def _place(where: str, arguments: Collection[str], target: str) -> str:
+    name, blank, rest = where.removeprefix(f"{target}: ").partition(" ")
+    return f"{_option(name)}{blank}{rest}" if name in arguments else where
+
+
+def _option(argument: str) -> str:
+    return _OPTIONS.get(argument, f"--{argument.replace('_', '-')}")
+
+
+def in_options(text: str, arguments: Collection[str]) -> str:
+    """Write the arguments in a text of the library as the options of a command.
+
+    Parameters
+    ----------
+    text : str
+        With arguments as Python writes them: ``runtime="native"``, ``folder=...``.
+    arguments : collection of str
+        Those that are options.
+
+    Returns
+    -------
+    str
+        ``--runtime native``, ``--output-dir``.
+    """
+
+    def written(found: re.Match[str]) -> str:
+        argument, word, _, number = found.groups()
+        if argument not in arguments:
+            return found[0]
+        return " ".join(filter(None, (_option(argument), word or number)))
+
+    return _ASSIGNED.sub(written, text)
 
 
 def show(screen: Screen, result: Result) -> None:
@@ -111,6 +163,6 @@ def as_json(result: Result) -> dict[str, Any]:
         "status": result.status,
         "folder": str(result.folder),
         "warnings": result.warnings,
-        "figures": [metric.as_entry() for metric in result.metric_list()],
+        "metrics": [metric.as_entry() for metric in result.metric_list()],
         "pictures": [str(file) for file in result.pictures],
     }

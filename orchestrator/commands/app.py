@@ -29,8 +29,8 @@ COMMANDS = {
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find E_bar of a sand from a spring constant or a load-penetration curve.",
     "rockfall": "Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.",
-    "doctor": "Look at kept code, compilers, leftovers of killed runs, and what is slow.",
     "pile": "Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph.",
+    "doctor": "Look at kept code, compilers, leftovers of killed runs, and what is slow.",
 }
 """Commands by name, each a module of this package, with the first line of its help."""
 

@@ -26,7 +26,7 @@ def command(
 ) -> None:
     """Measure speed and price of the coupling.
 
-    All figures are ratios within interleaved rounds. Takes some minutes.
+    Everything measured is a ratio within interleaved rounds. Takes some minutes.
     """
     with opened(quiet, as_json) as screen:
         wanted = part or list(PARTS)
@@ -51,7 +51,7 @@ def command(
 
 
 def _table(rows: Sequence[BenchmarkRow]) -> Table:
-    titles = ("figure", "measured", "unit", "as a multiple of", "goal")
+    titles = ("quantity", "measured", "unit", "as a multiple of", "goal")
     table = Table(titles, right=("measured",))
     for row in rows:
         goal = "" if row.goal is None else f"at most {row.goal:.3g}"

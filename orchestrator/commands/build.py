@@ -7,9 +7,13 @@ import typer
 
 from ..core.errors import Problem
 from ..runs.building import Export, build_all
+from .analysis import options_named
 from .assignments import sizes_of
 from .options import Quiet
 from .screen import opened
+
+_OPTIONS = ("sizes", "runtime", "platforms", "fmi", "folder")
+"""Arguments of the library that are options of the command."""
 
 _Names = Annotated[
     list[str] | None, typer.Argument(metavar="COMPONENT", help="All of them by default.")
@@ -55,7 +59,7 @@ def command(
     """Build FMUs of components, always anew."""
     problems: list[Problem] = []
     export = Export(runtime, platform or [], fmi)
-    with opened(quiet) as screen, screen.busy("building"):
+    with opened(quiet) as screen, screen.busy("building"), options_named(_OPTIONS):
         sizes = sizes_of(size or [], problems)
         for file in build_all(components or [], sizes, output_dir, export, problems):
             screen.say(f"{file}  {file.stat().st_size / 1024:.0f} KiB")

@@ -29,10 +29,13 @@ STIFFNESSES = {
 }
 """Units of spring constants and their sizes (N/m)."""
 
+_OPTIONS = ("rotation", "values", "seeds", "workers", "folder")
+"""Arguments of the analysis that are options of the command."""
+
 _Curve = Annotated[
     str | None,
     typer.Argument(
-        metavar="[CURVE.csv|sonoda1993]",
+        metavar="CURVE.csv|sonoda1993",
         show_default=False,
         help="Measured load-penetration curve, columns `penetration (cm)` and `load (kgf)` or "
         "other units; or table 4 of the paper.",
@@ -80,7 +83,7 @@ def command(
             raise InputRefused(problems)
         measurement = measurement_from(target, stiffness)
         try:
-            with options_named(("rotation", "seeds")), stages(screen) as progress:
+            with options_named(_OPTIONS), stages(screen) as progress:
                 result = calibrate(
                     measurement,
                     rotation=rotation,

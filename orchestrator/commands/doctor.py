@@ -5,12 +5,18 @@ from typing import Annotated
 import typer
 
 from ..runs import health
+from ..temporary import sweep
+from .analysis import in_options
 from .options import RESULTS
 from .screen import opened
 
 _Clean = Annotated[
     bool,
-    typer.Option("--clean", help="Remove kept code; it is compiled anew when it is needed."),
+    typer.Option(
+        "--clean",
+        help="Remove kept code, which is compiled anew when it is needed, and temporary folders of "
+        "killed runs. Results stay, unfinished ones too.",
+    ),
 ]
 
 
@@ -19,7 +25,9 @@ def command(clean: _Clean = False) -> None:
     with opened() as screen:
         if clean:
             freed = health.clean(health.kept_files())
-            screen.say(f"{freed / 1e6:.1f} MB of kept code removed")
+            swept = len(sweep())
+            folders = "folder" if swept == 1 else "folders"
+            screen.say(f"{freed / 1e6:.1f} MB of kept code and {swept} temporary {folders} removed")
             return
         left = health.leftover_table(RESULTS)
         for table in (health.place_table(), health.cache_table(), health.tool_table(), left):
@@ -27,6 +35,6 @@ def command(clean: _Clean = False) -> None:
                 screen.show(table, "")
         reasons = health.slow_reasons()
         for reason in reasons:
-            screen.say(f"slow: {reason}")
+            screen.say(f"slow: {in_options(reason, ('runtime',))}")
         if not reasons:
             screen.say("nothing makes it slow")

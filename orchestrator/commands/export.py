@@ -8,6 +8,7 @@ import typer
 from ..core.errors import Problem
 from ..runs.request import Request
 from ..runs.system import System
+from .analysis import options_named
 from .assignments import sizes_of, values_of
 from .options import Assignments, CaseSizes, CouplingScheme, ModelName, Target
 from .screen import opened
@@ -29,4 +30,6 @@ def command(
         values = values_of("--set", set_ or [], problems)
         sizes = sizes_of(size or [], problems)
         request = Request(target, values, sizes, coupling, model=model)
-        screen.say(str(System.prepared(request, screen.note, problems).save(folder)))
+        with options_named(("values", "sizes", "coupling", "model"), target):
+            system = System.prepared(request, screen.note, problems)
+        screen.say(str(system.save(folder)))

@@ -10,6 +10,7 @@ from ..runs.inspection import describe_fmu
 from ..runs.request import Request
 from ..runs.system import System
 from ..runs.target import is_fmu
+from .analysis import options_named
 from .options import ModelName
 from .screen import opened
 
@@ -31,7 +32,8 @@ def command(target: _Subject, toml: _Toml = False, model: ModelName = None) -> N
         if is_fmu(target):
             screen.overview(describe_fmu(Path(target)))
             return
-        system = System.prepared(Request(target, model=model))
+        with options_named(("model",), target):
+            system = System.prepared(Request(target, model=model))
         if toml:
             screen.out.file.write(system_text(system.spec))
         else:

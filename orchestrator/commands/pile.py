@@ -41,6 +41,6 @@ def command(
         if is_cold(["Hammer", "PileRod"]):
             screen.note(COLD_START)
         pictures = not no_figures
-        with options_named(("blows",)), stages(screen) as progress:
+        with options_named(("blows", "folder")), stages(screen) as progress:
             result = pile(site, blows=blows, folder=folder, pictures=pictures, progress=progress)
         show(screen, result)

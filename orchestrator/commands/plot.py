@@ -9,7 +9,7 @@ from ..analyses.saved import saved_result
 from ..core.errors import InputRefused, Problem
 from ..core.results.run_folder import running_folder
 from ..runs.run import read_run
-from .analysis import stages
+from .analysis import options_named, stages
 from .drawing import draw
 from .options import Quiet
 from .screen import opened
@@ -27,7 +27,7 @@ _Pictures = Annotated[
 
 def command(run: _Folder, output_dir: _Pictures = None, quiet: Quiet = False) -> None:
     """Draw a run again, also one that failed or was killed."""
-    with opened(quiet) as screen:
+    with opened(quiet) as screen, options_named(("folder",)):
         result = saved_result(run)
         if result is not None:
             with stages(screen) as progress:

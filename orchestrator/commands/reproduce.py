@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from ..papers.reproduction import PAPERS, Reproduction, reproduce
+from .analysis import options_named
 from .options import RESULTS, Json, Quiet, Workers
 from .screen import INTERRUPTED, Screen, opened
 
@@ -14,7 +15,7 @@ _Only = Annotated[
     list[str] | None, typer.Option(metavar="STUDY", help="This study only. May be repeated.")
 ]
 _Quick = Annotated[
-    bool, typer.Option("--quick", help="One run where the full reproduction has ten seeds.")
+    bool, typer.Option("--quick", help="One seed in the place of eight or ten, and fewer models.")
 ]
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/PAPER.")]
 
@@ -30,18 +31,18 @@ def command(
 ) -> None:
     """Carry out the studies of a paper.
 
-    Computed figures stand beside printed and measured ones: table, JSON, figures, HTML page.
+    What is computed stands beside what was printed and measured: table, JSON, figures, HTML page.
     """
     with opened(quiet, as_json) as screen:
         folder = output_dir or RESULTS / paper
-        with screen.counting("runs") as done:
+        with options_named(("only", "folder")), screen.counting("runs") as done:
             made = reproduce(paper, folder, only or [], quick, workers, screen.note, done)
         if as_json:
             screen.dump(made.content)
         else:
             _show(made, folder, screen)
         if made.interrupted:
-            screen.warn("interrupted: rows without a figure were not run")
+            screen.warn("interrupted: rows without a value were not run")
             raise typer.Exit(INTERRUPTED)
 
 

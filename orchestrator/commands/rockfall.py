@@ -20,7 +20,16 @@ from .streams import tell_leftovers
 
 PRESETS = {"paper": 200}
 """Numbers of trials by name. The paper's is N = 10 / alpha with alpha = 0.05."""
-_OPTIONS = ("trials", "seed", "replay", "animation", "workers", "scheduler")
+_OPTIONS = (
+    "trials",
+    "seed",
+    "replay",
+    "animation",
+    "workers",
+    "scheduler",
+    "certificates",
+    "folder",
+)
 """Arguments of the analysis that are options of the command."""
 
 _Site = Annotated[

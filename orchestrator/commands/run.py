@@ -14,7 +14,7 @@ from ..runs.request import AUTO, Request
 from ..runs.run import Run
 from ..runs.simulation import simulate
 from ..runs.system import System
-from .analysis import options_named
+from .analysis import in_options, options_named
 from .assignments import sizes_of, values_of
 from .drawing import draw
 from .options import (
@@ -30,6 +30,20 @@ from .options import (
 from .results_place import results_folder
 from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
 from .streams import stdout_for_results, tell_leftovers
+
+_OF_CASES = ("values", "sizes", "coupling", "model", "load_cell", "runtime", "in_process")
+OPTIONS = (
+    *_OF_CASES,
+    "folder",
+    "stop_time",
+    "exchange_step",
+    "output_interval",
+    "state_interval",
+    "master",
+    "tolerance",
+    "allow_unstable",
+)
+"""Arguments of the library that are options of the command."""
 
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
 
@@ -140,6 +154,13 @@ def _chosen(**options: Any) -> dict[str, Any]:
     return {name: value for name, value in options.items() if value is not None}
 
 
+def _given(request: Request) -> set[str]:
+    """Return the arguments of a request that are other than their defaults."""
+    plain = Request(request.target)
+    given = (name for name in _OF_CASES if getattr(request, name) != getattr(plain, name))
+    return {*given, *request.options}
+
+
 def _simulate(
     request: Request,
     problems: list[Problem],
@@ -149,17 +170,18 @@ def _simulate(
 ) -> Run:
     """Carry out a run; one that fails or is interrupted gives what was computed until then."""
     with screen.progress("preparing") as progress:
-        with options_named(request.options, request.target):
+        with options_named(OPTIONS, request.target, _given(request)):
             system = System.prepared(request, screen.note, problems)
         facts = system.job.facts
         if "runtime" in facts:
-            screen.note(f"{facts['runtime']} FMUs ({facts['runtime_reason']})")
+            reason = in_options(facts["runtime_reason"], OPTIONS)
+            screen.note(f"{facts['runtime']} FMUs ({reason})")
         folder = output_dir or _folder(system, screen)
         if is_cold(system.job.components):
             progress.describe(COLD_START)
         tell_leftovers(folder, screen)
         try:
-            with options_named(request.options):
+            with options_named(OPTIONS, given=request.options):
                 return simulate(
                     system,
                     folder,
@@ -247,6 +269,6 @@ def _as_data(done: Run, pictures: list[Path]) -> dict[str, Any]:
         "error": done.error,
         "warnings": done.warnings,
         "caption": done.caption,
-        "figures": [metric.as_entry() for metric in done.metrics.values()],
+        "metrics": [metric.as_entry() for metric in done.metrics.values()],
         "pictures": [str(file) for file in pictures],
     }

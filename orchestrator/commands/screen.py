@@ -35,7 +35,7 @@ OK, RUN_FAILED, REFUSED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 WIDTH_ELSEWHERE = 160
 """Characters in a line where the results do not go to a terminal."""
 
-COLD_START = "compiling kernels, first run only (about a minute)"
+COLD_START = "compiling kernels, first run only (a minute or two)"
 
 
 _SURE_AFTER = 2.0
@@ -238,7 +238,7 @@ class Screen:
         problem = "" if self._knows_cache else cache_problem()
         self._knows_cache = True
         if problem:
-            self.warn(f"kernels are compiled at every start, about a minute: {problem}")
+            self.warn(f"kernels are compiled at every start, a minute or two: {problem}")
 
     def fail(self, text: str) -> None:
         """Say why the command did not go on."""

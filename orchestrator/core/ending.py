@@ -61,6 +61,19 @@ def asked_to_end(handler: Handler) -> Iterator[Callable[[], None]]:
         put_back()
 
 
+@contextmanager
+def put_off() -> Iterator[None]:
+    """Let requests to end wait for the end of the block.
+
+    Some libraries cannot be interrupted while they start processes.
+    """
+    requests: list[int] = []
+    with asked_to_end(lambda number, frame: requests.append(number)):
+        yield
+    if requests:
+        signal.raise_signal(requests[0])
+
+
 def interrupt(number: int, frame: FrameType | None) -> None:
     """Raise the exception of Ctrl-C, whatever the request was.
 

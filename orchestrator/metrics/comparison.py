@@ -14,7 +14,7 @@ from . import names
 from .caption import caption as caption
 from .cushion import still_in_contact, still_sinking
 from .doubts import warnings as warnings
-from .energy import driven, impact_energy
+from .energy import driven, impact_energy, weightless
 from .headlines import headlines
 from .reported import reported
 
@@ -66,6 +66,10 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.DURATION: ("duration on the rock", (Scale("ms", 1),)),
     names.PENETRATION: ("penetration", (Scale("cm", 2),)),
     names.DEFLECTION: ("peak midspan deflection", (Scale("mm", 3),)),
+    names.PEAK_MOMENT: ("peak bending moment", (Scale("kN m", 3),)),
+    names.PEAK_MOMENT_AT: ("  at", _TIME),
+    names.PEAK_REACTION: ("peak support reaction", (Scale("kN", 2),)),
+    names.PEAK_REACTION_AT: ("  at", _TIME),
     names.IMPACT_ENERGY: ("impact energy E0", _ENERGY),
     names.BEAM_ENERGY: ("peak beam energy (5), (6)", _ENERGY),
     names.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
@@ -79,7 +83,7 @@ _HUGE = 1e7
 """Numbers from here on, of runs that went astray, are written with an exponent."""
 _TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compared"
 _TOO_SHALLOW = (
-    "the rock is not driven 4 cm deep: there is no secant spring constant; raise --stop-time"
+    "the rock is not driven 4 cm deep: there is no secant spring constant; let the run end later"
 )
 _STILL = (
     "the force on the rock has not ended: impulse and duration would be larger with a later stop "
@@ -240,10 +244,14 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     Returns
     -------
     list of str
-        Why something is not compared, where references that are only about right (≈) come from, and
-        what the end of the run has cut off.
+        Why something is not compared, weights that are left out, where references that are only
+        about right (≈) come from, and what the end of the run has cut off.
     """
     remarks = list(_references(run).remarks)
+    remarks += [
+        f"{name}: its gravity is 0, so moment and reactions are those beyond its own weight"
+        for name in weightless(run)
+    ]
     if still_sinking(run):
         return [*remarks, _TOO_SHALLOW if driven(run) else _TOO_SHORT]
     origins = [

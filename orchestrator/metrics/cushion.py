@@ -10,7 +10,7 @@ from . import contents, names
 from .energy import driven
 from .filtering import load_cell, low_pass
 from .load_curve import DEPTH, LoadCurve, driven_curve
-from .roles import column, elements, members, owners, parameters
+from .roles import column, elements, members, owners, parameters, recorded
 from .values import Samples, extreme, integral, of_each
 
 SETTLING = 0.5
@@ -122,11 +122,36 @@ def _forces(run: StoredRun, cushion: str) -> Iterator[Metric]:
 def _through_load_cell(run: StoredRun, cushion: str) -> Iterator[Metric]:
     """Yield the peak through the load cell that the run was asked to have."""
     cut_off = run.provenance.get("load_cell")
-    transmitted = column(run, cushion, Role.TRANSMITTED)
-    if cut_off and transmitted and run.series["time"].size > 1:
-        shown = load_cell(run.series["time"], run.series[transmitted], cut_off)
+    force = force_under_box(run, cushion)
+    if cut_off and force is not None and run.series["time"].size > 1:
+        shown = load_cell(run.series["time"], force, cut_off)
         yield Metric(names.PEAK_LOAD_CELL, float(shown.max()), "N")
         yield Metric(names.LOAD_CELL_CUT_OFF, cut_off, "1/s")
+
+
+def force_under_box(run: StoredRun, cushion: str) -> Samples | None:
+    """Return the force that passes from a cushion's box to the structure, downwards.
+
+    It is the transmitted force without what accelerates the box that stands between them.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    cushion : str
+        Name of the component in the system.
+
+    Returns
+    -------
+    array of float, shape (rows,), or None
+        In N; None if the transmitted force was not recorded. Boxes of several cushions cannot be
+        told apart, and are left out.
+    """
+    transmitted = column(run, cushion, Role.TRANSMITTED)
+    if transmitted is None:
+        return None
+    boxes = recorded(run, Role.BOX_INERTIA) if len(cushions(run)) == 1 else []
+    return run.series[transmitted] - sum(run.series[box.column] for box in boxes)
 
 
 def cut_off(run: StoredRun, cushion: str) -> float | None:
@@ -273,5 +298,6 @@ def still_sinking(run: StoredRun) -> bool:
         if (name := column(run, cushion, Role.PENETRATION))
     ]
     return any(
-        int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0 for depth in depths
+        depth.size == 0 or int(depth.argmax()) == depth.size - 1 or float(depth.max()) <= 0.0
+        for depth in depths
     )

@@ -37,10 +37,13 @@ def warnings(run: StoredRun) -> list[str]:
     list of str
         A sentence each, with a remedy.
     """
+    told = list(run.provenance.get("warnings", []))
+    if not run.time.size:
+        return told
     found = headlines(run)
     texts = [
         *meaningless(run),
-        *run.provenance.get("warnings", []),
+        *told,
         *_open_balance(run, found),
         *(text for structure in structures(run) for text in _other_weight(run, structure)),
         *(text for cushion in cushions(run) for text in _restless(run, cushion)),

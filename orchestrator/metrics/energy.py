@@ -3,12 +3,14 @@
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
 from rockshed.components.common.roles import Role
 
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import names
-from .roles import column, owners, parameter, recorded
+from .roles import all_samples, column, owners, parameter, recorded
 from .values import Samples, extreme, of_each
 
 
@@ -149,7 +151,7 @@ def structures(run: StoredRun) -> list[str]:
 
 
 def of_structures(run: StoredRun) -> Iterator[Metric]:
-    """Yield deflection and energies of each structure.
+    """Yield deflection, moment, reactions and energies of each structure.
 
     Parameters
     ----------
@@ -163,8 +165,44 @@ def _of_structure(run: StoredRun, structure: str) -> Iterator[Metric]:
     deflection = column(run, structure, Role.DEFLECTION)
     if deflection is not None:
         yield Metric(names.DEFLECTION, extreme(run, deflection)[0], "m")
+    yield from _peak_moment(run, structure)
+    yield from _reactions(run, structure)
     for name, energy in _structure_energies(run, structure):
         yield Metric(name, energy, "J")
+
+
+def _peak_moment(run: StoredRun, structure: str) -> Iterator[Metric]:
+    """Yield the bending moment farthest from zero, with its sign, and its time."""
+    moments = all_samples(run, structure, Role.BENDING_MOMENT)
+    if moments.size:
+        place, row = np.unravel_index(np.abs(moments).argmax(), moments.shape)
+        yield Metric(names.PEAK_MOMENT, float(moments[place, row]), "N.m")
+        yield Metric(names.PEAK_MOMENT_AT, float(run.series["time"][row]), "s")
+
+
+def _reactions(run: StoredRun, structure: str) -> Iterator[Metric]:
+    """Yield the largest force of a support on the structure, upwards, and its time."""
+    forces = all_samples(run, structure, Role.SUPPORT_FORCE)
+    if forces.size:
+        _, row = np.unravel_index(forces.argmin(), forces.shape)
+        yield Metric(names.PEAK_REACTION, -float(forces.min()), "N")
+        yield Metric(names.PEAK_REACTION_AT, float(run.series["time"][row]), "s")
+
+
+def weightless(run: StoredRun) -> list[str]:
+    """Return the structures whose moments and reactions leave out their own weight.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    return [
+        name
+        for name in structures(run)
+        if parameter(run, name, Role.GRAVITY) == 0.0
+        and all_samples(run, name, Role.SUPPORT_FORCE).size
+    ]
 
 
 def _structure_energies(run: StoredRun, structure: str) -> Iterator[tuple[str, float]]:

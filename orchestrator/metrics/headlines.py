@@ -25,8 +25,10 @@ def headlines(run: StoredRun) -> list[Metric]:
     Returns
     -------
     list of Metric
-        Without references, in the order of the tables.
+        Without references, in the order of the tables; none of a run without a row.
     """
+    if not run.time.size:
+        return []
     declared = [entry.metric for entry in reported(run)]
     cushions, machine = list(of_cushions(run)), list(_of_machine(run))
     return [*cushions, *machine, *of_structures(run), *declared, *of_system(run)]

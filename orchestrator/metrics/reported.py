@@ -16,7 +16,7 @@ from .values import extreme
 
 @dataclass(frozen=True)
 class ReportedMetric:
-    """A declared figure and how it is shown.
+    """A declared metric and how it is shown.
 
     Attributes
     ----------
@@ -46,6 +46,8 @@ def reported(run: StoredRun) -> Iterator[ReportedMetric]:
         for variable, told in facts.get("variables", {}).items():
             name = f"{component}.{variable}"
             for figure in told.get("reported", ()):
+                if figure["statistic"] not in _STATISTICS:  # of a later version
+                    continue
                 value = _value(run, name, figure["statistic"])
                 if value is not None:
                     words = of_component(component, figure["name"])

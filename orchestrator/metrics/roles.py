@@ -43,6 +43,10 @@ class Member:
         return f"{self.component}.{self.variable}"
 
 
+_ROLES = frozenset(map(str, Role))
+"""All roles; results may name others, which a later version has."""
+
+
 def members(run: StoredRun, role: Role) -> list[Member]:
     """Return the variables that are declared with a role, or with a kind of it.
 
@@ -62,7 +66,7 @@ def members(run: StoredRun, role: Role) -> list[Member]:
         Member(component, variable, Role(told["role"]), told.get("label", ""))
         for component, facts in run.provenance["components"].items()
         for variable, told in facts.get("variables", {}).items()
-        if told.get("role") and role.includes(told["role"])
+        if told.get("role") in _ROLES and role.includes(told["role"])
     ]
 
 
@@ -123,6 +127,32 @@ def elements(run: StoredRun, name: str) -> list[NDArray[np.float64]]:
         One for each element.
     """
     return [values for key, values in run.series.items() if key.startswith(f"{name}[")]
+
+
+def all_samples(run: StoredRun, component: str, role: Role) -> NDArray[np.float64]:
+    """Return the series of a component's outputs with a role, elements of arrays included.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component : str
+        Name of the component in the system.
+    role : Role
+        The role that is asked for.
+
+    Returns
+    -------
+    array of float, shape (outputs, rows)
+        Of those that were recorded.
+    """
+    columns = [member.column for member in members(run, role) if member.component == component]
+    listed = [
+        series
+        for name in columns
+        for series in ([run.series[name]] if name in run.series else elements(run, name))
+    ]
+    return np.array(listed).reshape(len(listed), run.series["time"].size)
 
 
 def parameters(run: StoredRun, component: str) -> dict[str, Any]:

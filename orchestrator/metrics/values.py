@@ -31,9 +31,9 @@ def extreme(run: StoredRun, column: str) -> tuple[float, float]:
     time : float
         In s.
     """
-    known = {metric.name: metric.value for metric in run.metrics.values()}
-    if f"{column} maximum" in known:
-        return float(known[f"{column} maximum"]), float(known[f"{column} maximum at"])
+    value, at_time = _watched(run, f"{column} maximum"), _watched(run, f"{column} maximum at")
+    if value is not None and at_time is not None:
+        return value, at_time
     at = int(run.series[column].argmax())
     return float(run.series[column][at]), float(run.series["time"][at])
 
@@ -53,12 +53,17 @@ def integral(run: StoredRun, column: str) -> float:
     float
         Over all exchanges if the run watched the output and has ended, else over the rows.
     """
-    name = f"{column} integral"
-    known = next((metric.value for metric in run.metrics.values() if metric.name == name), None)
+    known = _watched(run, f"{column} integral")
     if known is not None:
-        return float(known)
+        return known
     values, time = run.series[column], run.series["time"]
     return float((0.5 * (values[1:] + values[:-1]) * (time[1:] - time[:-1])).sum())
+
+
+def _watched(run: StoredRun, name: str) -> float | None:
+    """Return what the run itself has found; None if it did not watch, or has not ended."""
+    values = (metric.value for metric in run.metrics.values() if metric.name == name)
+    return next((float(value) for value in values if not isinstance(value, str)), None)
 
 
 def of_each(

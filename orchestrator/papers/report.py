@@ -1,7 +1,7 @@
 """Rows of studies as tables and as plain data."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +21,19 @@ HEADINGS = (
     "to paper",
     "to exp.",
     "model",
+    "verdict",
 )
 NUMBERS = HEADINGS[2:8]
 
 
 @dataclass(frozen=True)
 class Part:
-    """Result of a study: its rows, and its figures as files."""
+    """Result of a study: its rows, its figures as files, and its stamps by name."""
 
     study: Study
     rows: Sequence[Row]
     figures: Sequence[Path] = ()
+    stamps: Mapping[str, str] = field(default_factory=dict)
 
 
 def cells(row: Row) -> tuple[str, ...]:
@@ -40,7 +42,7 @@ def cells(row: Row) -> tuple[str, ...]:
     Parameters
     ----------
     row : Row
-        A claim has its verdict behind the model.
+        A line of the report.
 
     Returns
     -------
@@ -56,7 +58,8 @@ def cells(row: Row) -> tuple[str, ...]:
         _number(row.spread),
         _percent(row.deviation(row.paper)),
         _percent(row.deviation(row.experiment)),
-        ": ".join(filter(None, (row.model, row.verdict))),
+        row.model,
+        row.verdict,
     )
 
 
@@ -76,7 +79,7 @@ def _percent(deviation: float | None) -> str:
 
 
 def table(part: Part) -> Table:
-    """Return the table of a study without the details.
+    """Return the table of a study without the details and without empty columns.
 
     Parameters
     ----------
@@ -88,11 +91,13 @@ def table(part: Part) -> Table:
     Table
         The notes of rows without a value, and of claims, are the notes of the table.
     """
-    made = Table(HEADINGS, right=NUMBERS, title=part.study.title)
-    for row in part.rows:
-        if row.detail:
-            continue
-        made.add(*cells(row))
+    shown = [row for row in part.rows if not row.detail]
+    lines = [cells(row) for row in shown]
+    used = [place for place in range(len(HEADINGS)) if any(line[place] for line in lines)]
+    headings = [HEADINGS[place] for place in used]
+    made = Table(headings, right=NUMBERS, title=part.study.title)
+    for row, line in zip(shown, lines, strict=True):
+        made.add(*(line[place] for place in used))
         if row.note and (is_empty(row) or row.verdict):
             made.notes.append(f"{row.quantity}: {row.note}")
     return made
@@ -139,6 +144,7 @@ def _study_data(part: Part, folder: Path) -> dict[str, Any]:
         "name": part.study.name,
         "title": part.study.title,
         "notes": list(part.study.notes),
+        "stamps": dict(part.stamps),
         "figures": [file.relative_to(folder).as_posix() for file in part.figures],
         "rows": [row_data(row) for row in part.rows],
     }

@@ -3,7 +3,7 @@
 import os
 import shutil
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
@@ -22,6 +22,7 @@ from ..runs.kept import KeptRuns
 from ..tables import Table
 from ..temporary import TemporaryFolder
 from ..versions import versions
+from .kernel_stamps import stamps
 from .page import page
 from .report import Part, as_data, table
 from .study import Outcomes, Study
@@ -120,7 +121,7 @@ def chosen(paper: str, only: Sequence[str]) -> list[Study]:
     known = studies(paper)
     names = [study.name for study in known]
     problems = [
-        Problem(f"--only {name}", "there is no such study", nearest(name, names))
+        Problem(f"only {name}", "there is no such study", nearest(name, names))
         for name in only
         if name not in names
     ]
@@ -168,17 +169,21 @@ def reproduce(
         Unknown paper or study, or a folder that cannot be written; nothing has been run.
     """
     selected = chosen(paper, only)
-    remedy = "name another folder with --output-dir"
+    remedy = "name another folder: folder=..."
     refuse_foreign(folder, (DATA, PAGE), remedy)
     with refusing_unwritable(folder / FIGURES, remedy):
         (folder / FIGURES).mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]
+    stamped = stamps(selected)
     kept = KeptRuns(folder / FINISHED)
     outcomes = Outcomes(run_all(tasks, workers, note, counted, kept), quick)
     with TemporaryFolder() as drawn:
-        parts = [_part(study, outcomes, drawn, folder / FIGURES) for study in selected]
+        parts = [
+            _part(study, outcomes, stamped[study.name], drawn, folder / FIGURES)
+            for study in selected
+        ]
     facts = {
         "paper": PAPERS[paper],
         "started": started,
@@ -196,11 +201,13 @@ def reproduce(
     return made
 
 
-def _part(study: Study, outcomes: Outcomes, drawn: Path, figures: Path) -> Part:
+def _part(
+    study: Study, outcomes: Outcomes, stamped: Mapping[str, str], drawn: Path, figures: Path
+) -> Part:
     """Return the rows of a study, and its figures, which are drawn elsewhere first."""
     rows = study.rows(outcomes)
     files = study.draw(outcomes, rows, drawn)
-    return Part(study, rows, [_put(file, figures / file.name) for file in files])
+    return Part(study, rows, [_put(file, figures / file.name) for file in files], stamped)
 
 
 def _put(file: Path, target: Path) -> Path:

@@ -54,6 +54,16 @@ def by_power_law(x: Sequence[float], y: Sequence[float], at: float) -> float:
     return factor * at**exponent
 
 
+def mean_of_equals(x: Sequence[float], y: Sequence[float], at: float) -> float:
+    """Return the mean of the y whose x is the same."""
+    return float(np.mean([value for place, value in zip(x, y, strict=True) if place == at]))
+
+
+def in_proportion(x: Sequence[float], y: Sequence[float], at: float) -> float:
+    """Return ``at`` times the mean ratio (geometric) of y to x."""
+    return float(at * np.exp(np.mean(np.log(np.divide(y, x)))))
+
+
 def leave_one_out(x: Sequence[float], y: Sequence[float], predictor: Predictor) -> list[float]:
     """Predict each y from all the others.
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..runs.batch import COMPLETE, Outcome, Task
+from ..runs.request import Request
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,25 @@ def verdict(holds: bool) -> str:
     return "holds" if holds else "does not"
 
 
+def shortened(task: Task, stop_time: float) -> Request:
+    """Return the beginning of a run, for :attr:`Study.stands_on`.
+
+    Parameters
+    ----------
+    task : Task
+        The run.
+    stop_time : float
+        End of the beginning (s).
+
+    Returns
+    -------
+    Request
+        Without FMU files: components run in the process that carries it out.
+    """
+    options = {**task.request.options, "stop_time": stop_time}
+    return replace(task.request, options=options, in_process=True)
+
+
 def _no_tasks(quick: bool) -> list[Task]:
     return []
 
@@ -107,6 +127,9 @@ class Study:
         From outcomes, rows and a folder to the figures, as files.
     notes : sequence of str
         Remarks for the reader, one sentence each.
+    stands_on : mapping of str to Request
+        Short runs by name, through all the kernels that the study's own runs go through: what
+        they give tells whether kept results come from the present kernel.
     """
 
     name: str
@@ -116,6 +139,7 @@ class Study:
     tasks: Callable[[bool], list[Task]] = _no_tasks
     draw: Callable[[Outcomes, Sequence[Row], Path], list[Path]] = _no_figures
     notes: Sequence[str] = ()
+    stands_on: Mapping[str, Request] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -153,6 +153,6 @@ def _declared(run: StoredRun, component: str, *roles: Role) -> list[str]:
 
 
 def _make(folder: Path) -> None:
-    with refusing_unwritable(folder, "name another folder with --output-dir"):
+    with refusing_unwritable(folder, "name another folder: folder=..."):
         folder.mkdir(parents=True, exist_ok=True)
         TemporaryFile(dir=folder).close()

@@ -1,4 +1,4 @@
-"""Pictures that components declare as data: curves of their outputs, in panels over the time."""
+"""Pictures that components declare as data: curves of their outputs over time, and envelopes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +14,7 @@ from ..core.results.metric import identifier
 from ..core.results.reading import StoredRun
 from ..metrics.energy import load_at_rest
 from ..metrics.names import without_component
+from .envelope import draw_envelope
 from .references import KnownMetrics, draw_references
 from .style import (
     BEAM,
@@ -41,6 +42,23 @@ class _Panel:
     told: Mapping[str, Any]
     components: list[str] = field(default_factory=list)
 
+    @property
+    def is_envelope(self) -> bool:
+        """Whether it is drawn along the component and not over time."""
+        return "along" in self.told
+
+    @property
+    def common(self) -> bool:
+        """Whether all components that declare it are drawn into one."""
+        return bool(self.told.get("common"))
+
+    @property
+    def needed(self) -> str:
+        """Output without which it is not drawn."""
+        if self.is_envelope:
+            return f"{self.told['variable']}[1]"
+        return str(self.told["curves"][0]["variable"])
+
 
 @dataclass(frozen=True)
 class DeclaredPicture:
@@ -59,11 +77,9 @@ class DeclaredPicture:
 
     @property
     def columns(self) -> list[str]:
-        """Columns of the results without which it is not drawn: the first curve of each panel."""
+        """Columns of the results without which it is not drawn: the first one of each panel."""
         return [
-            f"{component}.{panel.told['curves'][0]['variable']}"
-            for panel in self.panels
-            for component in panel.components
+            f"{component}.{panel.needed}" for panel in self.panels for component in panel.components
         ]
 
     def draw(self, run: StoredRun, known: KnownMetrics, file: Path) -> None:
@@ -78,15 +94,18 @@ class DeclaredPicture:
         file : Path
             File of the picture.
         """
-        time = run.series["time"] / ms
         with figure(run, file, WIDTH, 1.0 + _PANEL * len(self.panels)) as made:
-            rows = made.subplots(len(self.panels), 1, sharex=True, squeeze=False).ravel()
-            owners = {panel.components[0] for panel in self.panels if not panel.told["common"]}
+            rows = made.subplots(len(self.panels), 1, squeeze=False).ravel()
+            owners = {panel.components[0] for panel in self.panels if not panel.common}
             for axes, panel in zip(rows, self.panels, strict=True):
-                _draw_panel(run, panel, axes, several=len(owners) > 1)
-                _draw_known(panel, known, axes)
-            rows[-1].set(xlabel="time (ms)")
-            over_time(rows[-1], time)
+                owner = f"{panel.components[0]}: " if len(owners) > 1 and not panel.common else ""
+                if panel.is_envelope:
+                    draw_envelope(run, panel.components[0], panel.told, axes, owner)
+                else:
+                    _draw_panel(run, panel, axes, owner)
+                    _draw_known(panel, known, axes)
+            drawn = zip(rows, self.panels, strict=True)
+            _share_time(run, [axes for axes, panel in drawn if not panel.is_envelope])
 
 
 def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
@@ -107,16 +126,26 @@ def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
         for picture in facts.get("pictures", ()):
             panels = pictures.setdefault(picture["name"], [])
             for told in picture["panels"]:
-                shared = [p for p in panels if told["common"] and p.told == told]
+                shared = [p for p in panels if p.common and p.told == told]
                 panels += [] if shared else [_Panel(told)]
                 (shared or panels[-1:])[0].components.append(component)
     return [
-        DeclaredPicture(name, sorted(panels, key=lambda panel: panel.told["common"]))
+        DeclaredPicture(name, sorted(panels, key=lambda panel: panel.common))
         for name, panels in pictures.items()
     ]
 
 
-def _draw_panel(run: StoredRun, panel: _Panel, axes: Axes, several: bool) -> None:
+def _share_time(run: StoredRun, rows: Sequence[Axes]) -> None:
+    """Give the panels of curves one axis of time, labelled at the lowest one."""
+    for axes in rows[:-1]:
+        axes.sharex(rows[-1])
+        axes.tick_params(labelbottom=False)
+    for axes in rows[-1:]:
+        axes.set(xlabel="time (ms)")
+        over_time(axes, run.series["time"] / ms)
+
+
+def _draw_panel(run: StoredRun, panel: _Panel, axes: Axes, owner: str) -> None:
     """Draw the curves of a panel."""
     told = panel.told
     colours = cycle(_COLOURS)
@@ -129,7 +158,6 @@ def _draw_panel(run: StoredRun, panel: _Panel, axes: Axes, several: bool) -> Non
         if unit in _FORCES and (load := load_at_rest(run, component)):
             _note(axes, f"beyond the load at rest, {abs(load) / SCREEN_UNITS[unit]:.1f} {unit}")
     axes.axhline(0.0, color=GREY, linewidth=0.7)
-    owner = f"{panel.components[0]}: " if several and not told["common"] else ""
     shown = "" if unit == "1" else f" ({unit})"
     shown += "\ndownwards" if told["downwards"] else ""
     axes.set(ylabel=f"{owner}{told['label']}{shown}")
@@ -151,7 +179,7 @@ def _draw_curve(
     values = curve["factor"] * run.series[name]
     if curve["from_start"]:
         values = values - values[0]
-    words = [component] if panel.told["common"] else []
+    words = [component] if panel.common else []
     label = ", ".join(filter(None, [*words, curve["label"]]))
     axes.plot(
         run.series["time"] / ms,

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -14,7 +16,11 @@ from .style import WIDTH, over_time, styled
 _PANEL = 2.2
 """Height of a panel (inch)."""
 _LEGEND_LINES = 12
-"""Variables in a panel from which on the legend has two columns."""
+"""Variables in a column of the legend of a panel."""
+_LEGEND_COLUMN = 1.6
+"""Width of a further column of the legend (inch)."""
+_COLOURS = 10
+"""Variables in a panel that have a colour of the style; more of them have a scale of colours."""
 
 
 def draw(variables: Sequence[Series], caption: Sequence[str]) -> Figure:
@@ -36,7 +42,8 @@ def draw(variables: Sequence[Series], caption: Sequence[str]) -> Figure:
     for variable in variables:
         panels.setdefault(variable.unit, []).append(variable)
     height = 0.8 + _PANEL * max(len(panels), 1)
-    with styled(caption, WIDTH, height) as figure:
+    columns = max(map(_columns, panels.values()), default=1)
+    with styled(caption, WIDTH + _LEGEND_COLUMN * (columns - 1), height) as figure:
         axes = figure.subplots(max(len(panels), 1), sharex=True, squeeze=False)[:, 0]
         for panel, (unit, members) in zip(axes, panels.items(), strict=False):
             _panel(panel, unit, members)
@@ -50,6 +57,8 @@ def _panel(axes: Axes, unit: str, members: Sequence[Series]) -> None:
     time = members[0].time
     short = bool(time.size) and float(time[-1]) < 1.0
     scale = ms if short else 1.0
+    if len(members) > _COLOURS:
+        axes.set_prop_cycle(color=colormaps["viridis"](np.linspace(0.0, 1.0, len(members))))
     for variable in members:
         axes.plot(time / scale, variable.values, label=f"{variable.name}")
     if time.size:
@@ -57,5 +66,9 @@ def _panel(axes: Axes, unit: str, members: Sequence[Series]) -> None:
     axes.set_ylabel("" if unit == "1" else unit)
     axes.set_xlabel("time (ms)" if short else "time (s)")
     axes.label_outer(remove_inner_ticks=True)
-    columns = 1 + len(members) // _LEGEND_LINES
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=_columns(members))
+
+
+def _columns(members: Sequence[Series]) -> int:
+    """Return the number of columns of a legend."""
+    return -(-len(members) // _LEGEND_LINES)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.system.system import SystemSpec
 from ..temporary import TemporaryFolder
-from .building import Note, silent
+from .building import FmusOf, Note, case_fmus, each_once, silent
 from .job import prepare
 from .kept import KeptRuns
 from .outcome import Outcome
@@ -105,8 +105,9 @@ class Task:
 
     @property
     def settings(self) -> list[str]:
-        """Values of the request that differ from the case, as ``name=value``."""
-        return [f"{name}={value}" for name, value in self.request.values.items()]
+        """Values and sizes of the request that differ from the case, as ``name=value``."""
+        changed = {**self.request.values, **self.request.sizes}
+        return [f"{name}={value}" for name, value in changed.items()]
 
     @property
     def key(self) -> str:
@@ -171,7 +172,8 @@ def run_all(
     InputRefused
         A task cannot be prepared.
     """
-    orders = [_order(task, note) for task in {task.key: task for task in tasks}.values()]
+    fmus_of = each_once()
+    orders = [_order(task, note, fmus_of) for task in {task.key: task for task in tasks}.values()]
     outcomes = _ended(orders, kept)
     if outcomes:
         note(f"{len(outcomes)} of {len(orders)} runs have ended before, and are not run again")
@@ -225,9 +227,14 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
     return run_one(_order(task, note))
 
 
-def _order(task: Task, note: Note) -> _Order:
+def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
-    system = prepare(task.request, note).system
+    system = prepare(task.request, note, fmus_of=fmus_of).system
+    return _Order(task.key, slim(system), task.allow_unstable)
+
+
+def slim(system: SystemSpec) -> SystemSpec:
+    """Return a system that records the variables of :data:`COLUMNS` and no states."""
     components = {
         name: spec.model_copy(update={"record_states": False})
         for name, spec in system.components.items()
@@ -237,7 +244,7 @@ def _order(task: Task, note: Note) -> _Order:
         "record": [column for column in COLUMNS if column.partition(".")[0] in components],
         "state_interval": None,
     }
-    return _Order(task.key, system.model_copy(update=changes), task.allow_unstable)
+    return system.model_copy(update=changes)
 
 
 def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
@@ -346,7 +353,7 @@ def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: flo
         run.status,
         str(failure) if failure else "",
         failure.time if failure else None,
-        _metrics(run) if run.status == COMPLETE else {},
+        metrics_of(run) if run.status == COMPLETE else {},
         dict(run.series),
         _options(components),
         {name: str(facts["sha256"]) for name, facts in components.items()},
@@ -354,7 +361,7 @@ def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: flo
     )
 
 
-def _metrics(run: "StoredRun") -> dict[str, float]:
+def metrics_of(run: "StoredRun") -> dict[str, float]:
     """Return the numbers of a run by the names of the metrics."""
     from ..metrics.headlines import headlines
 

@@ -81,13 +81,13 @@ def case_sizes(
     for name, value in _with_one_size(chosen, numbers, problems).items():
         owner, _, size = name.partition(".")
         if name not in known:
-            problems.append(_no_size(f"--size {name}", chosen.models, name, known))
+            problems.append(_no_size(f"sizes {name}", chosen.models, name, known))
         elif not is_whole(value):
             problems.append(_not_whole(name, value))
         else:
             sizes[owner][size] = int(value)
     for owner, model in chosen.models.items():
-        problems += range_problems(f"--size, {owner}", model, sizes[owner])
+        problems += range_problems(f"sizes of {owner}", model, sizes[owner])
     return sizes
 
 
@@ -95,12 +95,12 @@ def _no_size(where: str, models: Mapping[str, str], name: str, known: Sequence[s
     """Refuse a size that a component of a case does not have; it may be a variable of it."""
     owner, _, key = name.partition(".")
     if owner in models and key in {v.name for v in component(models[owner]).layout.variables}:
-        return Problem(where, f"{key} is no size, but a variable", f"use --set {name}=VALUE")
+        return Problem(where, f"{key} is no size, but a variable", f"give {name} with values=...")
     return Problem(where, "there is no such size", nearest(name, known))
 
 
 def _not_whole(name: str, value: object) -> Problem:
-    return Problem(f"--size {name}", f"{value!r} is no whole number", "give a whole number")
+    return Problem(f"sizes {name}", f"{value!r} is no whole number", "give a whole number")
 
 
 def _with_one_size(
@@ -111,7 +111,7 @@ def _with_one_size(
     if len(set(given.values())) > 1:
         problems.append(
             Problem(
-                "--size",
+                "sizes",
                 f"{', '.join(f'{n} = {v}' for n, v in given.items())}, and they are one number",
                 "give one of them",
             )
@@ -202,6 +202,30 @@ def case_fmus(
     return CaseFmus(files, runtime.value, reason)
 
 
+FmusOf = Callable[[Case, Mapping[str, Mapping[str, int]], Note, str], CaseFmus]
+"""Functions with the parameters of :func:`case_fmus`."""
+
+
+def each_once() -> FmusOf:
+    """Return :func:`case_fmus` for a batch of runs, which looks at every FMU once.
+
+    To look whether an FMU is up to date takes as long as to make it: of a thousand runs with the
+    same components and sizes the first one pays for all.
+    """
+    found: dict[object, CaseFmus] = {}
+
+    def fmus_of(
+        chosen: Case, sizes: Mapping[str, Mapping[str, int]], note: Note, wanted: str = AUTO
+    ) -> CaseFmus:
+        components = [(name, model, *sizes[name].items()) for name, model in chosen.models.items()]
+        key = (tuple(components), wanted)
+        if key not in found:
+            found[key] = case_fmus(chosen, sizes, note, wanted)
+        return found[key]
+
+    return fmus_of
+
+
 def _build_if_needed(
     name: str, model: str, sizes: Mapping[str, int], runtime: Runtime, file: Path, note: Note
 ) -> None:
@@ -236,7 +260,7 @@ def _best_runtime(
         if fmu_file(component(chosen.models[name]), sizes[name], Runtime.NATIVE).is_file()
     ]
     why = f"native {' and '.join(there)} out of date" if there else "there are no native ones"
-    return Runtime.PYTHON, f"{why}; --runtime native makes them"
+    return Runtime.PYTHON, f'{why}; runtime="native" makes them'
 
 
 def _changed_at(file: Path) -> int:
@@ -424,22 +448,21 @@ def _export_problems(export: Export) -> list[Problem]:
 
     runtime = export.chosen_runtime
     problems = [
-        Problem(f"--platform {name}", "there is no such platform", nearest(name, PLATFORMS))
+        Problem(f"platforms {name}", "there is no such platform", nearest(name, PLATFORMS))
         for name in export.platforms
         if name not in PLATFORMS
     ]
     if runtime not in (*Runtime, BOTH):
         choice = f"choose one of {', '.join(Runtime)}, {BOTH}"
-        problems.append(Problem("--runtime", f"{runtime!r} is unknown", choice))
+        problems.append(Problem("runtime", f"{runtime!r} is unknown", choice))
     elif export.platforms and runtime == Runtime.PYTHON:
         reason = "is for native FMUs; those with Python inside run everywhere"
-        problems.append(Problem("--platform", reason, "add --runtime native"))
+        problems.append(Problem("platforms", reason, 'add runtime="native"'))
     if export.fmi not in list(Fmi):
         reason = "there is no such version of FMI here"
-        problems.append(Problem(f"--fmi {export.fmi}", reason, "choose 2 or 3"))
+        problems.append(Problem(f"fmi {export.fmi}", reason, "choose 2 or 3"))
     elif export.fmi == Fmi.THREE and runtime != Runtime.NATIVE:
-        where = f"--fmi 3 --runtime {runtime}"
-        problems.append(Problem(where, ONLY_NATIVE, "add --runtime native"))
+        problems.append(Problem(f"runtime {runtime}", ONLY_NATIVE, 'add runtime="native"'))
     return problems
 
 
@@ -456,7 +479,7 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Probl
     have = "have" if len(names) > 1 else "has"
     problems = [
         Problem(
-            f"--size {size}",
+            f"sizes {size}",
             f"{' and '.join(names)} {have} no such size",
             _other(size, known, names),
         )
@@ -468,7 +491,7 @@ def _size_problems(names: Sequence[str], sizes: Mapping[str, int]) -> list[Probl
         return problems
     for name in names:
         its_sizes = {s: n for s, n in sizes.items() if s in component(name).sizes}
-        problems += range_problems(f"--size, {name}", name, its_sizes)
+        problems += range_problems(f"sizes of {name}", name, its_sizes)
     return problems
 
 

@@ -3,7 +3,6 @@
 import os
 import re
 import stat
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,15 +16,15 @@ from rockshed.fmus.parts import BuildError, Runtime
 from rockshed.fmus.places import fmu_folder, native_is_fresh
 
 from ..core.loop import machine_code
+from ..core.results.run_folder import unfinished
 from ..tables import Table
+from ..temporary import left_behind
 from ..versions import versions
 
 _STAMP = re.compile(r"[0-9a-f]{16}")
 _OBJECT = re.compile(rf"\w+-({'|'.join(PLATFORMS)})-[0-9a-f]{{24}}\.o")
 _LOOP = re.compile(r"loop-[0-9a-f]{24}\.o")
 _UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.tmp")
-_TEMPORARY = ("rockshed_*", "rockshed-*")
-_OF_KILLED_RUNS = ("*.running", ".*.old", ".*.lock")
 _PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "fmpy", "pythonfmu", "matplotlib", "typer")
 
 
@@ -152,7 +151,7 @@ def _compiler_in_words(platform: str) -> str:
 
 
 def leftover_table(results: Path) -> Table:
-    """Return a table of what killed runs have left, or runs that still go on have there.
+    """Return a table of what killed runs have left.
 
     Parameters
     ----------
@@ -162,23 +161,21 @@ def leftover_table(results: Path) -> Table:
     Returns
     -------
     Table
-        Unfinished results and locks among the results, and this user's unpacked FMUs in the
-        temporary folder.
+        Unfinished results, which may be of runs that go on, and this user's temporary folders
+        whose processes are gone.
     """
-    table = Table(("left by killed runs, or of runs that go on", "number", "the first"))
-    for folder, patterns in ((results, _OF_KILLED_RUNS), (Path(tempfile.gettempdir()), _TEMPORARY)):
-        for pattern in patterns:
-            found = sorted(path for path in folder.glob(pattern) if _is_ours(path))
-            if found:
-                table.add(str(folder / pattern), str(len(found)), found[0].name)
+    table = Table(("left by killed runs", "number", "the first", "how it goes"))
+    runs = unfinished(results)
+    if runs:
+        how = "with the next complete run of this name; until then it can be drawn"
+        table.add(
+            "unfinished results, if not of a run that goes on", str(len(runs)), str(runs[0]), how
+        )
+    folders = [folder for folder, _ in left_behind()]
+    if folders:
+        how = "with the next run, or a cleaning"
+        table.add("temporary folders", str(len(folders)), str(folders[0]), how)
     return table
-
-
-def _is_ours(path: Path) -> bool:
-    try:
-        return path.lstat().st_uid == getattr(os, "geteuid", lambda: path.lstat().st_uid)()
-    except OSError:
-        return False
 
 
 def slow_reasons() -> list[str]:
@@ -191,18 +188,18 @@ def slow_reasons() -> list[str]:
     """
     reasons = []
     if problem := cache_problem():
-        reasons.append(f"kernels are compiled at every start, about a minute: {problem}")
+        reasons.append(f"kernels are compiled at every start, a minute or two: {problem}")
     cold = [name for name in NAMES if not has_kernels(component(name).folder)]
     if cold and not problem:
         reasons.append(
-            f"the first use compiles the kernels of {', '.join(cold)}, about a minute, once"
+            f"the first use compiles the kernels of {', '.join(cold)}, a minute or two, once"
         )
     stale = [name for name in NAMES if not _is_native_ready(name)]
     if stale:
         reasons.append(
             f"native FMUs are missing or older than their sources ({', '.join(stale)}): FMUs with "
-            "Python take up to five times as long in a co-simulation; `rockshed build --runtime "
-            "native` makes them"
+            "Python take up to five times as long in a co-simulation; `rockshed build` with "
+            'runtime="native" makes them'
         )
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         reasons.append("NUMBA_DISABLE_JIT is set: kernels run without being compiled")

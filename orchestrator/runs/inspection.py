@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Port
-from ..core.fmu.fmu_slave import READABLE, FmuFile, UnusableError, read_description
+from ..core.fmu.fmu_slave import READABLE, UNREADABLE_XML, FmuFile, UnusableError, read_description
 from ..core.fmu.slave import REAL
 from ..core.run import sources_of
 from ..core.system.plan import Plan
@@ -103,7 +103,7 @@ def _terminals(xml: bytes | None) -> list[str | Table]:
         return []
     try:
         found = list(ElementTree.fromstring(xml).iter("Terminal"))
-    except ElementTree.ParseError as error:
+    except UNREADABLE_XML as error:
         return [f"warning: {_TERMINALS} cannot be read: {error}"]
     table = Table(("terminals", "members", ""))
     for terminal in found:
@@ -184,7 +184,7 @@ def describe_system(job: Job) -> Overview:
     system = job.system
     plan = make_plan(system, {**sources_of(system), **job.sources})
     parts: list[str | Table] = [
-        f"{system.name}: {system.description}\n"
+        f"{system.name}{': ' if system.description else ''}{system.description}\n"
         f"{system.master} master, order {', '.join(plan.order)}; exchange every "
         f"{system.exchange_step:g} s until {system.stop_time:g} s; {len(plan.inputs)} values a "
         f"time in {len(system.connections)} connections"

@@ -28,7 +28,7 @@ from ..core.fmu.slave import Source
 from ..core.system.renaming import with_present_names
 from ..core.system.system import ONE_VALUE, SystemSpec, load_system, system_from, with_values
 from ..metrics.filtering import LOAD_CELL_ROWS
-from .building import Note, case_fmus, case_sizes, own_sizes, silent
+from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .request import AUTO, Request
 from .target import wrong_target
 
@@ -67,7 +67,12 @@ class Job:
         return frozenset(case(self.facts["case"]).models.values())
 
 
-def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] = ()) -> Job:
+def prepare(
+    request: Request,
+    note: Note = silent,
+    problems: Sequence[Problem] = (),
+    fmus_of: FmusOf = case_fmus,
+) -> Job:
     """Make the system of a request; FMUs that are missing or out of date are built.
 
     Parameters
@@ -78,6 +83,8 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
         Called with a line for each FMU that is built.
     problems : sequence of Problem
         Problems that the caller has with the request, refused together with those seen here.
+    fmus_of : callable
+        Finds or builds the FMUs of a case.
 
     Returns
     -------
@@ -99,7 +106,7 @@ def prepare(request: Request, note: Note = silent, problems: Sequence[Problem] =
     if request.is_file:
         job = _from_file(request, known)
     else:
-        job = _from_case(case(request.target), request, known, note)
+        job = _from_case(case(request.target), request, known, note, fmus_of)
     system = _changed(job.system, request, known)
     known += _load_cell_problems(request, system)
     if known:
@@ -154,7 +161,7 @@ def _without_foreign_values(request: Request, problems: list[Problem]) -> Reques
 
 def _a_size(name: str, value: object) -> Problem:
     what = "is a size, which an FMU is built with, and no parameter"
-    return Problem(name, what, f"give it as a size: --size {name}={value}")
+    return Problem(name, what, f"give {name} = {value} with sizes=...")
 
 
 def _why_no_number(value: object) -> str:
@@ -177,19 +184,15 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
-    for option, remedy, asked in (
-        ("--size", "build the FMUs with `rockshed build --size`", request.sizes),
-        ("--model", "set the parameters of its sand", request.model),
-        (
-            "--coupling",
-            "set --master, --exchange-step and the components' parameters",
-            request.coupling,
-        ),
-        ("--in-process", "a system file names FMU files", request.in_process),
-        ("--runtime", "a system file names FMU files", request.runtime != AUTO),
+    for argument, remedy, asked in (
+        ("sizes", "build its FMUs in these sizes", request.sizes),
+        ("model", "set the parameters of its sand", request.model),
+        ("coupling", "set master, exchange_step and the components' parameters", request.coupling),
+        ("in_process", "a system file names FMU files", request.in_process),
+        ("runtime", "a system file names FMU files", request.runtime != AUTO),
     ):
         if asked:
-            problems.append(Problem(option, "is for cases only", remedy))
+            problems.append(Problem(argument, "is for cases only", remedy))
     if problems:
         raise InputRefused(problems)
     facts = {
@@ -217,7 +220,9 @@ def _loaded(file: Path) -> SystemSpec:
         raise InputRefused([*refusal.problems, *more]) from None
 
 
-def _from_case(chosen: Case, request: Request, problems: list[Problem], note: Note) -> Job:
+def _from_case(
+    chosen: Case, request: Request, problems: list[Problem], note: Note, fmus_of: FmusOf
+) -> Job:
     """Make the system of a case in the sizes of the request, with the model of the sand.
 
     Raises
@@ -239,7 +244,7 @@ def _from_case(chosen: Case, request: Request, problems: list[Problem], note: No
         files = {name: f"{made} (in process)" for name, made in chosen.models.items()}
         sources = _in_process(chosen, sizes)
     else:
-        fmus = case_fmus(chosen, sizes, note, request.runtime)
+        fmus = fmus_of(chosen, sizes, note, request.runtime)
         facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
         files = dict(fmus.files)
     base = chosen.make(files, sizes, coupling)
@@ -254,19 +259,19 @@ def _coupling_problems(chosen: Case, coupling: str) -> list[Problem]:
     if coupling in chosen.couplings:
         return []
     choice = f"choose one of {', '.join(chosen.couplings)}"
-    return [Problem("--coupling", f"{coupling!r} is unknown", choice)]
+    return [Problem("coupling", f"{coupling!r} is unknown", choice)]
 
 
 def _runtime_problems(request: Request) -> list[Problem]:
     known = (AUTO, "native", "python")
     if request.runtime not in known:
         choice = f"choose one of {', '.join(known)}"
-        return [Problem("--runtime", f"{request.runtime!r} is unknown", choice)]
+        return [Problem("runtime", f"{request.runtime!r} is unknown", choice)]
     if request.in_process and request.runtime != AUTO:
         return [
             Problem(
-                "--runtime",
-                "is for FMUs, and --in-process runs without them",
+                "runtime",
+                "is for FMUs, and in_process=True runs without them",
                 "leave one of them out",
             )
         ]
@@ -320,10 +325,10 @@ def _load_cell_problems(request: Request, system: SystemSpec) -> list[Problem]:
     remedy = "give a lower one"
     if request.load_cell > 0.0:
         longest = 1.0 / (LOAD_CELL_ROWS * request.load_cell)
-        remedy += f", or --output-interval {longest:.2g} or less"
+        remedy += f", or output_interval={longest:.2g} or less"
     return [
         Problem(
-            "--load-cell",
+            "load_cell",
             f"{request.load_cell:g} Hz: rows every {interval / ms:g} ms carry a cut-off above 0 "
             f"and up to {fastest:.4g} Hz, {LOAD_CELL_ROWS:g} rows for each period",
             remedy,

@@ -55,8 +55,8 @@ class System:
         Parameters
         ----------
         path : str or Path
-            A TOML file, as ``rockshed info CASE --toml`` shows one, or a folder that :meth:`save`
-            wrote. Relative paths of FMUs count from the folder of the file.
+            A TOML file, as ``rockshed export`` writes one, or a folder that :meth:`save` wrote.
+            Relative paths of FMUs count from the folder of the file.
 
         Returns
         -------
@@ -354,7 +354,7 @@ class System:
         Parameters
         ----------
         name : str
-            Name of the value, for :meth:`with_values` and ``--set``.
+            Name of the value, for :meth:`with_values`.
         value : bool, int, float or str
             In SI units.
         targets : str or sequence of str

@@ -31,7 +31,7 @@ def wrong_target(target: str) -> Problem | None:
     if is_fmu(target):
         remedy = (
             "look into it with `rockshed info`, and name it in a system file; "
-            "`rockshed info lab-impact --toml` shows one"
+            "`rockshed export` writes one"
         )
         return Problem(target, f"is an FMU, and {_SYSTEMS}", remedy)
     if path.suffix.lower() in (".ssp", ".ssd"):

@@ -234,3 +234,50 @@ def test_the_couple_of_a_torque_does_the_torques_work():
     instance.step(0.0, 2e-3)
     expected = instance["torque"] @ (instance["angle"] - before)
     assert instance["energy.work.contact"] == pytest.approx(expected, rel=1e-10)
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+def test_load_cells_under_the_box_carry_what_moves_and_holds_the_bare_beam(gravity):
+    """Momentum of the beam without its box: from the cells, its weight and the supports."""
+    box, sand = 15.0, 80.0
+    chosen = {"box.mass": box, "gravity": gravity, "cushion.weight": sand}
+    made = beam(**chosen)
+    generator, impulse, seen = np.random.default_rng(3), 0.0, 0.0
+    for n in range(400):
+        made["force.y"] = -sand / N - 500.0 * generator.random(N)
+        made.step(n * EXCHANGE, EXCHANGE)
+        cells = made["transmitted_force"] - made["box.inertia_force"]
+        held = cells + (box + N * MASS) * gravity + made["support.mean_force.y"].sum()
+        impulse -= EXCHANGE * held
+        seen = max(seen, abs(made["box.inertia_force"]))
+    momentum = MASS * made["velocity.y"].sum()
+    assert seen > 100.0
+    assert momentum == pytest.approx(impulse, abs=1e-9)
+
+
+def test_the_inertia_of_the_box_is_its_mass_times_acceleration():
+    """Supports that rise with 1 - cos at 2 Hz, slowly against the 60 Hz of beam and box.
+
+    The start is a jump of the acceleration: the beam swings, which leaves 4 % of it in the means.
+    """
+    made = beam(**{"box.mass": 15.0})
+    height, omega = 0.05, 2.0 * math.pi * 2.0
+    readings, exchange = [], 1e-4
+    for n in range(2500):
+        time = n * exchange
+        made["support.position.y"] = height * (1.0 - math.cos(omega * time))
+        made["support.velocity.y"] = height * omega * math.sin(omega * (time + 0.5 * exchange))
+        made.step(time, exchange)
+        readings.append(made["box.inertia_force"])
+    largest = 15.0 * height * omega**2
+    for first, last in ((0, 600), (600, 1900), (1250, 2500)):
+        speeds = [height * omega * math.sin(omega * row * exchange) for row in (first, last)]
+        mean = -15.0 * (speeds[1] - speeds[0]) / ((last - first) * exchange)
+        assert np.mean(readings[first:last]) == pytest.approx(mean, abs=0.04 * largest)
+
+
+def test_without_a_box_nothing_is_taken_from_the_cells():
+    made = beam()
+    made["force.y"] = -500.0
+    made.step(0.0, EXCHANGE)
+    assert made["box.inertia_force"] == 0.0

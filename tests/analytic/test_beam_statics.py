@@ -275,3 +275,20 @@ def test_fixed_beam_with_one_support_raised():
         errors.append(instance["support.force.y[1]"] / (12 * EI * 1e-3 / SPAN**3) - 1)
     assert abs(errors[1]) < 1e-2
     assert errors[0] / errors[1] == pytest.approx(9, rel=0.1)
+
+
+def test_the_moment_at_the_wall_of_a_uniform_load_is_hogging_and_converges_to_a_twelfth():
+    """-q L2/12 by the books; the chain is off by the order of 1/N2, and simple supports have none."""
+    errors = []
+    for n in (21, 63):
+        instance = beam(n, supports="fixed")
+        instance["force.y"] = -LOAD / n
+        come_to_rest(instance)
+        left, right = instance["support.moment"]
+        assert left == pytest.approx(right, rel=1e-7)
+        errors.append(left / (-LOAD * SPAN / 12) - 1)
+    assert abs(errors[1]) < 1e-2
+    assert errors[0] / errors[1] == pytest.approx(9, rel=0.1)
+    free = beam(24)
+    free["force.y"] = -LOAD / 24
+    assert list(come_to_rest(free)["support.moment"]) == [0.0, 0.0]

@@ -71,6 +71,39 @@ def test_through_the_wave_port_it_is_st_venants_mass(exchange, steps, tolerance)
     assert hammer["velocity"] == pytest.approx(exact.rebound(), abs=tolerance * exact.speed)
 
 
+@pytest.mark.parametrize("alpha", [-1.0, -0.5])
+@pytest.mark.parametrize(("segments", "steps"), [(67, 1), (200, 1), (100, 5), (143, 5), (200, 10)])
+def test_the_time_of_separation_is_of_second_order_in_the_exchange(alpha, segments, steps):
+    """Of the wave the hammer knows the mean over a step alone, and that has many inside."""
+    parameters = {"toe__reflection": alpha}
+    exact = StVenant(63.5, math.sqrt(2 * 9.80665 * 0.75), IMPEDANCE, 10.0 / 5120.0, alpha)
+    end = exact.separation()
+    duration = end + 2 * steps * exact.travel_time / segments
+    hammer, _, _ = blow(steps, duration, segments=segments, rod_parameters=parameters)
+    assert hammer["separation"] == pytest.approx(end, rel=0.1 * (steps / segments) ** 2)
+
+
+@pytest.mark.parametrize("step", [1e-5, 4e-6])
+@pytest.mark.parametrize("restitution", [1.0, 0.3])
+def test_a_cushion_lets_the_ram_go_within_a_step(step, restitution):
+    """Half a period of the way in, restitution times as long out: second order in the step."""
+    hammer = named(
+        HAMMER.instance(),
+        {
+            "port": "kinematics",
+            "cushion__stiffness": 1e8,
+            "cushion__restitution": restitution,
+            "weight": 0.0,
+            "internal_step": step,
+        },
+    )
+    hammer.initialise()
+    for n in range(500):
+        hammer.step(n * 1e-5, 1e-5)
+    exact = 0.5 * math.pi * math.sqrt(63.5 / 1e8) * (1.0 + restitution)
+    assert hammer["separation"] == pytest.approx(exact, rel=5e5 * step**2)
+
+
 def test_hammer_and_rod_agree_on_the_head_and_the_coupling_makes_no_energy():
     hammer, struck, (_, known, shown) = blow(10, 6e-3)
     np.testing.assert_allclose(known, shown, atol=1e-12)

@@ -105,6 +105,28 @@ def test_separation_and_rebound_of_the_ram(alpha):
     assert made["ram.speed"] == pytest.approx(exact.rebound(), abs=1e-4 * exact.speed)
 
 
+@pytest.mark.parametrize("alpha", [-1.0, -0.5])
+@pytest.mark.parametrize("segments", [100, 250, 333, 500, 667, 1001])
+def test_the_time_of_separation_is_of_second_order_at_every_number_of_segments(alpha, segments):
+    """The wave falls to the force of the ram within a step, at another part of it for each number.
+
+    A step is 0.3 to 0.5 of the time divided by the number of segments: taken at a step's end or
+    start, the error would be up to half of that.
+    """
+    made = rod(segments, **reflecting(alpha))
+    exact = closed_form(made).separation()
+    march(made, int(exact / made["time_step"]) + 3, "head.position")
+    assert made["ram.separation"] == pytest.approx(exact, rel=0.15 / segments**2)
+
+
+@pytest.mark.parametrize("segments", [50, 333])
+def test_a_wave_with_a_sharp_front_separates_ram_and_rod_at_the_front(segments):
+    """The toe is free: its tension wave takes the whole force away at once, at 2 L/c."""
+    made = rod(segments, **reflecting(1.0))
+    march(made, 2 * segments + 3, "head.position")
+    assert made["ram.separation"] == pytest.approx(2.0 * made["travel_time"], rel=1e-12)
+
+
 def test_the_ram_comes_back_to_the_head_and_never_goes_into_it():
     """The toe's rebound throws the ram back upwards, after a first separation in which it still went down."""
     made = rod(100, ram__mass=63.5, toe__resistance=60e3)

@@ -71,7 +71,7 @@ def test_the_gap_is_the_distance_to_the_block(sand, out, over, side):
     body = sand.state("body").reshape(-1, 8)
     body[1, 0], body[1, 1] = x, y
     inner = LEFT if side < 0.0 else LEFT + WIDTH
-    nx, ny, gap, vx, vy = touching(sand, 1, 3 if side < 0.0 else 4)
+    nx, ny, gap, vx, vy, _ = touching(sand, 1, 3 if side < 0.0 else 4)
     expected, (ex, ey) = nearest_of_block(x, y, inner, inner + side * THICK)
     assert gap + RADIUS == pytest.approx(expected, abs=1e-6)
     assert (nx, ny) == pytest.approx((ex, ey), abs=2e-3 / expected * 1e-1 + 1e-6)
@@ -134,7 +134,7 @@ def test_a_rock_that_grazes_the_edge_is_turned_by_it():
 
 def test_a_rock_on_a_wall_that_stands_on_the_beam_weighs_on_the_beam():
     """The wall counts its height from the beam's top beside it, and hands the force down by the
-    lever rule."""
+    lever rule, with the moment that it has: it stands half a disc outside the first centre."""
     height = 0.3
     sand = cushion(
         {
@@ -164,14 +164,16 @@ def test_a_rock_on_a_wall_that_stands_on_the_beam_weighs_on_the_beam():
     force = sand["rock.force.y"]
     assert force > 10.0
     assert sand["rock.force.x"] == 0.0
-    assert np.sum(sand["beam.force.y"] - without) == pytest.approx(-force, rel=1e-6)
-    assert sand["beam.force.y"][0] - without[0] == pytest.approx(-force, rel=1e-6)
+    brought = sand["beam.force.y"] - without
+    assert np.sum(brought) == pytest.approx(-force, rel=1e-6)
+    assert sand["beam.position.x"] @ brought == pytest.approx(0.0, abs=1e-6 * force)
+    assert brought[:2] == pytest.approx((-1.5 * force, 0.5 * force), rel=1e-6)
 
 
 def test_sand_does_not_see_where_a_wall_ends(sand):
     body = sand.state("body").reshape(-1, 8)
     body[0, 0], body[0, 1] = LEFT + 0.004, TOP + 3.0
-    nx, ny, gap, _, _ = touching(sand, 0, 3)
+    nx, ny, gap, *_ = touching(sand, 0, 3)
     assert (nx, ny, gap) == (-1.0, 0.0, pytest.approx(-0.001))
 
 

@@ -13,12 +13,23 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from rockshed.commands.analysis import options_named
 from rockshed.commands.app import COMMANDS, app
 from rockshed.commands.screen import spoken
+from rockshed.core.errors import InputRefused, Problem
 from rockshed.core.results.reading import read_run
 from rockshed.core.system.system import load_system
 
-PICTURES = {"overview.png", "sand.png", "forces.png", "penetration.png", "beam.png", "energy.png"}
+EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
+PICTURES = {
+    "overview.png",
+    "sand.png",
+    "forces.png",
+    "penetration.png",
+    "beam.png",
+    "moment.png",
+    "energy.png",
+}
 SHORT = ["--stop-time", "0.001", "--no-figures"]
 
 
@@ -185,9 +196,9 @@ def test_a_load_cell_that_was_asked_for_is_in_the_results(rockshed, tmp_path):
         "--json",
     ]
     made = rockshed(*arguments, "--load-cell", "1000", "--output-dir", tmp_path / "run")
-    figures = {entry["name"]: entry for entry in json.loads(made.stdout)["figures"]}
+    metrics = {entry["name"]: entry for entry in json.loads(made.stdout)["metrics"]}
     peak, seen = (
-        figures[f"peak transmitted force{through}"]["value"]
+        metrics[f"peak transmitted force{through}"]["value"]
         for through in ("", " through the load cell")
     )
     assert 0.98 * peak < seen < peak
@@ -271,7 +282,7 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     )
     content = json.loads(result.stdout)
     assert content["status"] == "complete"
-    by_name = {figure["name"]: figure for figure in content["figures"]}
+    by_name = {metric["name"]: metric for metric in content["metrics"]}
     peak = by_name["peak transmitted force"]
     measured, computed = peak["references"]["experiment"], peak["references"]["paper"]
     assert measured == {
@@ -282,7 +293,7 @@ def test_json_is_the_summary_with_references(rockshed, tmp_path):
     assert "interpolated to E_bar" in computed["note"]
     assert "references" not in by_name["impact energy"]
     assert (
-        json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["figures"]
+        json.loads((tmp_path / "results/lab-impact/summary.json").read_text()) == content["metrics"]
     )
     read = read_run(tmp_path / "results/lab-impact").metrics["peak_transmitted_force"]
     assert (read.references["paper"].value, read.references["paper"].note) == (
@@ -345,7 +356,7 @@ def test_the_example_of_a_system_file_runs_and_is_drawn_without_a_beam(rockshed,
     assert result.exit_code == 0, result.stderr
     assert {
         path.name for path in (tmp_path / "results/rigid-floor/figures").iterdir()
-    } == PICTURES - {"beam.png"}
+    } == PICTURES - {"beam.png", "moment.png"}
 
 
 def test_a_system_of_strangers_has_its_summary_and_no_pictures(rockshed, tmp_path, foreign):
@@ -541,6 +552,45 @@ def test_refused_with_reason_and_remedy_and_nothing_left_behind(
     assert all(part in text for part in said), text
     assert result.stdout == ""
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ["run", "lab-impact", "--runtime", "native", "--in-process"],
+            "--runtime: is for FMUs, and --in-process runs without them",
+        ),
+        (["run", "lab-impact", "--load-cell", "1e9"], "or --output-interval 2e-10 or less"),
+        (["run", "lab-impact", "--load-cell", "1e9"], "--load-cell: 1e+09 Hz"),
+        (["run", "lab-impact", "--size", "sand.discs=2.5"], "--size sand.discs: 2.5 is no whole"),
+        (["run", "system.toml", "--size", "sand.discs=9"], "--size: is for cases only"),
+        (["run", "spt", "--model", "literal"], "--model literal: spt has no sand"),
+        (["info", "spt", "--model", "literal"], "--model literal: spt has no sand"),
+        (["export", "spt", "x", "--coupling", "magic"], "--coupling: 'magic' is unknown"),
+        (["build", "--platform", "win65"], "--platform win65: there is no such platform"),
+        (["build", "--platform", "win64"], "→ add --runtime native"),
+        (["build", "--fmi", "3", "--runtime", "python"], "--runtime python: FMUs with Python"),
+        (["reproduce", "ushiro", "--only", "fig9"], "--only fig9: there is no such study"),
+        (["reproduce", "ushiro", "--output-dir", "file/x"], "name another folder: --output-dir"),
+        (["rockfall", "slope.toml", "--scheduler", "tls://h:1"], "--tls-ca, --tls-cert and --tls"),
+    ],
+)
+def test_a_command_names_its_options_where_the_library_names_arguments(
+    rockshed, tmp_path, arguments, said
+):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "slope.toml").write_bytes((EXAMPLES / "slope.toml").read_bytes())
+    result = rockshed(*arguments)
+    assert result.exit_code == 2
+    assert said in in_one_line(result.stderr)
+
+
+def test_a_text_of_the_user_that_looks_like_an_argument_stays_as_it_is():
+    problem = Problem("folder", "'runtime=\"x\"' is no word, nor is sand.runtime=3", "runtime=true")
+    with pytest.raises(InputRefused) as refusal, options_named(("runtime", "folder"), given=()):
+        raise InputRefused([problem])
+    assert refusal.value.problems == [problem]
 
 
 def test_a_refusal_as_json(rockshed):

@@ -123,10 +123,10 @@ def test_the_command_writes_tables_files_and_pictures(tmp_path, monkeypatch):
     as_json = CliRunner().invoke(
         app, ["pile", "short.toml", "--quiet", "--json", "--no-figures", "--blows", "2"]
     )
-    figures = {figure["name"]: figure["value"] for figure in json.loads(as_json.stdout)["figures"]}
-    assert figures["blows"] == 2
-    assert figures["bearing.10000.set"] > figures["bearing.40000.set"]
-    assert figures["blow.1.energy_ratio"] == pytest.approx(1.0, abs=0.03)
+    metrics = {metric["name"]: metric["value"] for metric in json.loads(as_json.stdout)["metrics"]}
+    assert metrics["blows"] == 2
+    assert metrics["bearing.10000.set"] > metrics["bearing.40000.set"]
+    assert metrics["blow.1.energy_ratio"] == pytest.approx(1.0, abs=0.03)
 
 
 def test_residual_forces_are_those_of_a_rod_at_rest(site):

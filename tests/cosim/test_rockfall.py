@@ -181,7 +181,7 @@ def test_json_is_one_document_and_quiet_says_nothing(rockshed):
         [],
     )
     trials = {"id": "trials", "name": "trials", "value": 50, "unit": "1"}
-    assert trials in content["figures"]
+    assert trials in content["metrics"]
     assert Path("results/slope/run.json").is_file()
 
 

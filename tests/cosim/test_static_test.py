@@ -25,13 +25,13 @@ def pushed(tmp_path_factory):
 
 def test_load_and_spring_constant_stand_beside_the_papers(pushed):
     content, _ = pushed
-    figures = {figure["name"]: figure for figure in content["figures"]}
-    load, stiffness = figures[names.STATIC_LOAD], figures[names.STATIC_STIFFNESS]
+    metrics = {metric["name"]: metric for metric in content["metrics"]}
+    load, stiffness = metrics[names.STATIC_LOAD], metrics[names.STATIC_STIFFNESS]
     assert load["value"] == pytest.approx(stiffness["value"] * 0.04)
     assert stiffness["references"]["paper"]["value"] == pytest.approx(1.29 * 30.4 * kgf / cm)
     assert stiffness["value"] == pytest.approx(1.29 * 30.4 * kgf / cm, rel=0.1)
-    assert figures[names.STATIC_DEPARTURE]["value"] < 0.15
-    assert names.IMPACT_ENERGY not in figures
+    assert metrics[names.STATIC_DEPARTURE]["value"] < 0.15
+    assert names.IMPACT_ENERGY not in metrics
     assert content["warnings"] == []
 
 
@@ -39,11 +39,11 @@ def test_the_machine_does_all_the_work(pushed):
     """On a sand that keeps most of it as elastic energy; the balance closes."""
     content, folder = pushed
     run = read_run(folder)
-    figures = {figure["name"]: figure["value"] for figure in content["figures"]}
-    assert figures[names.MACHINE_WORK] == pytest.approx(
+    metrics = {metric["name"]: metric["value"] for metric in content["metrics"]}
+    assert metrics[names.MACHINE_WORK] == pytest.approx(
         run.series["sand.energy.work.rock"][-1], rel=0.06
     )  # less the rock's weight
-    assert abs(figures[names.RESIDUAL_WORK_SHARE]) < 5e-3
+    assert abs(metrics[names.RESIDUAL_WORK_SHARE]) < 5e-3
     assert set(run.series["rock.velocity.y"]) == {-0.01}
 
 

@@ -78,13 +78,16 @@ def test_a_size_that_is_set_as_a_value_is_pointed_at_the_option_for_sizes(rocksh
     code, said = run(rockshed, "--set", "sand.discs=400")
     assert code == 2
     assert "sand.discs: is a size, which an FMU is built with" in said
-    assert "--size sand.discs=400" in said
+    assert "→ give sand.discs = 400 with --size" in said
 
 
 def test_a_value_that_is_given_as_a_size_is_pointed_at_the_option_for_values(rockshed):
     code, said = run(rockshed, "--size", "sand.modulus=3e6")
     assert code == 2
-    assert "--size sand.modulus: modulus is no size, but a variable → use --set" in said
+    assert (
+        "--size sand.modulus: modulus is no size, but a variable → give sand.modulus with --set"
+        in said
+    )
     code, said = rockshed("build", "SandCushion", "--size", "modulus=3e6")
     assert code == 2
     assert "it is a variable, whose value is set when a run begins: `rockshed run --set`" in said

@@ -6,6 +6,9 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from rockshed.commands.app import app
 
 ROOT = Path(__file__).parents[2]
 PAGES = (
@@ -60,6 +63,19 @@ def test_blocks_of_python_on_a_page_run_one_after_the_other(page, elsewhere):
     names = {"__name__": "__main__"}
     for block in blocks(page):
         exec(compile(block, str(ROOT / page), "exec"), names)
+
+
+def test_the_system_file_of_the_guide_runs_with_the_fmus_that_it_tells_to_build(elsewhere):
+    text = (ROOT / "orchestrator" / "README.md").read_text(encoding="utf-8")
+    system = re.search(r"^```toml\n(name = \"drop\".*?)^```", text, re.MULTILINE | re.DOTALL)[1]
+    Path("drop.toml").write_text(system.replace("stop_time = 0.02", "stop_time = 0.002"))
+    built = re.search(r"`rockshed (build [^`]*--output-dir \.)`", text)[1]
+    assert CliRunner().invoke(app, built.split()).exit_code == 0
+    (code,) = blocks("orchestrator/README.md")
+    names = {}
+    exec(compile(code, "orchestrator/README.md", "exec"), names)
+    assert names["run"].status == "complete"
+    assert names["run"].metrics["coupling_rock_energy"].unit == "J"
 
 
 @pytest.mark.parametrize("name", list(modules_with_examples()))

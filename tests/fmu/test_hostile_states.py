@@ -1,6 +1,7 @@
 """States, values and calls that mean harm: refused in words, never memory of others, never a result that is none."""
 
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -13,7 +14,7 @@ import pytest
 from rockshed.components.catalogue import NAMES, component
 from rockshed.components.common.component import ComponentError
 from rockshed.fmus.native.fmu import library_sources, own_platform
-from rockshed.fmus.parts import Runtime
+from rockshed.fmus.parts import Fmi, Runtime
 
 from .conftest import HERE
 from .host import DISCARD, OK, Host
@@ -21,9 +22,11 @@ from .host import DISCARD, OK, Host
 SEAL, CLOCK, HEADER = 12, 12, 48
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 CALLS = int(os.environ.get("ROCKSHED_FUZZ_CALLS", "50000"))
-"""Calls of the long test; a million take the sand many minutes."""
+"""Calls of the long test."""
 STEPS = {"SlopeRockfall": 1e-2}
-"""Steps (s) of the states in the long test, where 1e-5 s is no step."""
+"""Ordinary steps (s) where 1e-5 s is none."""
+SMALL = {"SandCushion": {"discs": 30}}
+"""Sizes with which a thing is quickly computed; of the sand, that settles at every start."""
 
 
 @pytest.fixture(params=list(Runtime))
@@ -194,19 +197,20 @@ def test_a_name_of_70000_letters_overflows_nothing(native_fmus, python):
 # --- under sanitizers
 
 
-def fuzzer(name, folder):
-    """Build the program of fuzz.c for a component."""
+def fuzzer(name, fmi, folder):
+    """Build the program of fuzz.h for a component and a version of FMI."""
     compiler = shutil.which("gcc")
     if sys.platform != "linux" or compiler is None:
         pytest.skip("needs gcc under Linux")
     platform = own_platform()
     made = component(name)
-    sources = library_sources(made, made.with_sizes(), [platform])[platform]
-    for file, content in sources.items():
+    sizes = made.with_sizes(SMALL.get(name))
+    for file, content in library_sources(made, sizes, [platform], fmi)[platform].items():
         (folder / file).write_bytes(content)
-    command = [compiler, "-std=gnu11", "-O1", "-g", *SANITIZERS, "-ffp-contract=off", f"-I{folder}"]
+    folders = [f"-I{folder}", f"-I{HERE}"]
+    command = [compiler, "-std=gnu11", "-O1", "-g", *SANITIZERS, "-ffp-contract=off", *folders]
     program = folder / "fuzz"
-    files = [HERE / "fuzz.c", folder / "kernels.o", "-lm", "-pthread"]
+    files = [HERE / f"fuzz_fmi{fmi}.c", folder / "kernels.o", "-lm", "-pthread"]
     done = subprocess.run([*command, "-o", program, *files], capture_output=True, text=True)
     if "cannot find" in done.stderr:
         pytest.skip("gcc has no sanitizers here")
@@ -214,23 +218,39 @@ def fuzzer(name, folder):
     return program
 
 
-def run(program, what, count, step):
+def told(program, what, count, step):
+    """Run the program; return the numbers that it tells at its end."""
     done = subprocess.run(
         [program, what, "1", str(count), str(step)], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout + done.stderr[-4000:]
+    return [int(number) for number in re.findall(r"\d+", done.stdout)]
 
 
-@pytest.mark.parametrize("name", ["FallingRock", "PileRod"])
-def test_hostile_states_and_calls_touch_no_memory_of_others(native_fmus, name, tmp_path):
-    program = fuzzer(name, tmp_path)
-    run(program, "states", 2_000, 1e-5)
-    run(program, "calls", 20_000, 1e-5)
+def attack(name, fmi, folder, states, calls):
+    """Hand hostile states to a component, then call it, legally and illegally."""
+    program, step = fuzzer(name, fmi, folder), STEPS.get(name, 1e-5)
+    tried, taken = told(program, "states", states, step)
+    assert tried == states
+    assert 0.2 * states < taken < 0.9 * states, "nearly all states are refused, or taken"
+    called, taken, starts, steps = told(program, "calls", calls, step)
+    assert called >= calls
+    assert 0.3 * calls < taken < 0.9 * calls, "nearly all calls are legal, or illegal"
+    assert steps > 0.1 * calls
+    assert starts > 0.005 * calls
+
+
+@pytest.mark.parametrize(
+    ("name", "fmi"), [("FallingRock", Fmi.TWO), ("PileRod", Fmi.TWO), ("Hammer", Fmi.THREE)]
+)
+def test_hostile_states_and_calls_touch_no_memory_of_others(native_fmus, name, fmi, tmp_path):
+    attack(name, fmi, tmp_path, states=2_000, calls=20_000)
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("fmi", list(Fmi))
 @pytest.mark.parametrize("name", NAMES)
-def test_20000_hostile_states_and_many_calls_touch_no_memory_of_others(native_fmus, name, tmp_path):
-    program = fuzzer(name, tmp_path)
-    run(program, "states", 20_000, STEPS.get(name, 1e-5))
-    run(program, "calls", CALLS, 1e-5)
+def test_20000_hostile_states_and_many_calls_touch_no_memory_of_others(
+    native_fmus, name, fmi, tmp_path
+):
+    attack(name, fmi, tmp_path, states=20_000, calls=CALLS)

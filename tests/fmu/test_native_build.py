@@ -443,7 +443,7 @@ def test_a_kernel_that_needs_python_is_refused_with_its_line(
     assert re.match(r"Probe: its kernels need more than the C library", message)
     assert symbol in message
     assert f"{folder / 'kernel.py'}, line {number}, in step (" in message
-    assert "--runtime python" in message
+    assert 'runtime="python"' in message
     assert not (tmp_path / "dist").exists()
 
 

@@ -122,10 +122,42 @@ def begins_with_what(node: ast.AST) -> str | None:
     return text[:60] if text and re.match(r"What\b", text.strip()) else None
 
 
+def names_an_option(node: ast.AST) -> str | None:
+    """Object to texts with an option of the command line."""
+    if not isinstance(node, ast.Constant):
+        return None
+    found = re.search(r"(?<![\w-])--[a-z][\w-]*", str(node.value))
+    return f"names {found[0]}" if found else None
+
+
 def says_little(node: ast.AST) -> str | None:
     """Object to docstrings of four words or fewer."""
     text = docstring(node)
     return text if text is not None and len(text.split()) <= 4 else None
+
+
+def standard_gravity(node: ast.AST) -> str | None:
+    """Object to 9.80665 in any power of ten, which ``units.standard_gravity`` has."""
+    is_number = isinstance(node, ast.Constant) and isinstance(node.value, float)
+    digits = f"{node.value:.6e}".partition("e")[0] if is_number else ""
+    return "stands in units.standard_gravity" if digits == "9.806650" else None
+
+
+def undocumented(node: ast.AST) -> str | None:
+    """Object to modules and classes with public members without a docstring."""
+    if not isinstance(node, ast.Module | ast.ClassDef):
+        return None
+    members = [child for child in node.body if isinstance(child, ast.ClassDef | Function)]
+    silent = [m.name for m in members if not m.name.startswith("_") and docstring(m) is None]
+    return f"has no docstring of {', '.join(silent)}" if silent else None
+
+
+def leaves_a_folder(node: ast.AST) -> str | None:
+    """Object to temporary folders that stay when their process is killed."""
+    if not isinstance(node, ast.Attribute | ast.Name):
+        return None
+    name = node.attr if isinstance(node, ast.Attribute) else node.id
+    return "is not TemporaryFolder" if name == "TemporaryDirectory" else None
 
 
 def two_meanings() -> list[Breach]:

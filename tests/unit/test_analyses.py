@@ -106,7 +106,7 @@ def test_pandas_has_the_main_table_too(campaign):
 
 def test_reprs_are_short_and_for_notebooks(campaign, blows):
     assert repr(campaign).startswith("<RockfallResult bank: 100 trials, ")
-    assert repr(blows).startswith("<PileResult rod: 1 blows, penetration ")
+    assert repr(blows).startswith("<PileResult rod: 1 blow, penetration ")
     assert "<table>" in campaign._repr_html_()
 
 

@@ -82,6 +82,18 @@ def test_any_variables_are_drawn_in_a_panel_for_each_unit(run):
         run.plot("rock.velocity.q")
 
 
+def test_a_plot_of_a_whole_array_has_a_colour_for_each_element_and_room_for_its_legend(
+    run, tmp_path
+):
+    figure = run.plot("beam.moment[*]")
+    figure.savefig(tmp_path / "moment.png")  # lays it out
+    (axes,) = figure.axes
+    colours = [tuple(line.get_color()) for line in axes.get_lines()]
+    assert len(set(colours)) == len(colours) == 24
+    inches = figure.get_size_inches()[0] * axes.get_position().width
+    assert inches > 4.0
+
+
 def test_a_series_is_calculated_with(run):
     height = run["rock.position.y"]
     assert (2.0 * height - height == height.values).all()

@@ -38,6 +38,35 @@ def test_values_that_follow_from_others_are_adapted():
     )
 
 
+@pytest.mark.parametrize(
+    "name", ["lab-impact", "lab-impact-13", "static-test", "rigid-base-pit", "girders-10"]
+)
+def test_a_rock_starts_as_far_above_sand_of_finer_discs_as_above_the_sand_of_the_case(name):
+    case = rockshed.case(name, in_process=True)
+    radius = value(case, "sand", "disc.radius") if "disc.radius" in of_sand(case) else 0.005
+    discs = case.job.facts["sizes"]["sand"]["discs"]
+    finer = case.with_sizes({"sand.discs": 4 * discs})
+    finer = finer.with_values({"sand.disc.radius": radius / 2})
+    start = value(case, "rock", "position0.y")
+    assert value(finer, "rock", "position0.y") == pytest.approx(start, rel=1e-12)
+    mine = finer.with_values({"rock.position0.y": 3.0})
+    assert value(mine, "rock", "position0.y") == 3.0
+    taller = case.with_sizes({"sand.discs": 2 * discs})
+    height = value(taller, "rock", "position0.y") - start
+    wider = taller.with_values({"sand.box.width": 2.0 * width_of(case)})
+    assert value(wider, "rock", "position0.y") == pytest.approx(start, abs=2 * radius)
+    assert height > 8 * 2 * radius
+
+
+def of_sand(system):
+    return system.spec.components["sand"].parameters
+
+
+def width_of(system):
+    shared = system.spec.shared.get("box_width")
+    return shared.value if shared else of_sand(system)["box.width"]
+
+
 def test_a_case_is_made_again_in_other_sizes():
     taller = lab().with_sizes({"sand.discs": 740})
     assert value(taller, "rock", "position0.y") > value(lab(), "rock", "position0.y")

@@ -3,15 +3,21 @@
 import os
 import subprocess
 import sys
+import tempfile
 
 import pytest
+from filelock import FileLock
+from typer.testing import CliRunner
 
+from rockshed.commands.app import app
 from rockshed.commands.screen import Screen
 from rockshed.components.catalogue import component
 from rockshed.components.common import cache
 from rockshed.components.common.kept import keep
+from rockshed.core.results.own_files import mark
 from rockshed.fmus.native import fmu as native_fmu
 from rockshed.runs import health
+from rockshed.temporary import ALIVE
 
 
 @pytest.fixture
@@ -43,13 +49,40 @@ def test_cleaning_removes_what_was_kept_and_nothing_else(folder):
     assert sorted(path.name for path in folder.iterdir()) == ["more", "notes.txt"]
 
 
-def test_leftovers_of_killed_runs_are_listed(tmp_path, monkeypatch):
+@pytest.fixture
+def left(tmp_path, monkeypatch):
+    """Results and temporary folders, of killed runs and of the user."""
     results, temporary = tmp_path / "results", tmp_path / "tmp"
-    (results / "thesis.running").mkdir(parents=True)
-    (temporary / "rockshed_abc").mkdir(parents=True)
-    monkeypatch.setattr(health.tempfile, "gettempdir", lambda: str(temporary))
-    listed = [(row["number"], row["the first"]) for row in health.leftover_table(results)]
-    assert listed == [("1", "thesis.running"), ("1", "rockshed_abc")]
+    for name in ("thesis.running-2", "thesis.running", ".thesis.old"):
+        (results / name).mkdir(parents=True)
+    mark(results / "thesis.running-2")
+    (results / ".0123abcd.rockshed-old").mkdir()
+    for name in ("rockshed_abc", "rockshed_mine", "rockshed-live"):
+        (temporary / name).mkdir(parents=True)
+    (temporary / "rockshed_abc" / ALIVE).touch()
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(temporary))
+    return results, temporary
+
+
+def test_leftovers_of_killed_runs_are_listed_and_no_folder_of_the_user(left):
+    results, temporary = left
+    with FileLock(temporary / "rockshed-live" / ALIVE):
+        listed = [(row["number"], row["the first"]) for row in health.leftover_table(results)]
+    assert listed == [
+        ("2", str(results / ".0123abcd.rockshed-old")),
+        ("1", str(temporary / "rockshed_abc")),
+    ]
+
+
+def test_cleaning_removes_temporary_folders_of_killed_runs_and_no_others(left, folder, monkeypatch):
+    results, temporary = left
+    monkeypatch.chdir(results.parent)
+    with FileLock(temporary / "rockshed-live" / ALIVE):
+        done = CliRunner().invoke(app, ["doctor", "--clean"])
+    assert "1 temporary folder removed" in done.output
+    assert sorted(path.name for path in temporary.iterdir()) == ["rockshed-live", "rockshed_mine"]
+    assert len(list(results.iterdir())) == 4
+    assert sorted(path.name for path in folder.iterdir()) == ["more", "notes.txt"]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="modes of POSIX")

@@ -80,7 +80,7 @@ def test_forces_are_those_of_all_pairs_while_discs_fly_about(
 
 
 @pytest.mark.parametrize("changes", CHANGES, ids=str)
-@pytest.mark.parametrize("base", ["floor", "beam_discs"])
+@pytest.mark.parametrize("base", ["floor", "beam_surface", "beam_discs"])
 def test_a_rebuild_in_every_step_changes_no_bit(base, changes):
     """Tangential springs and rolling moments survive it, and the order of contacts does not matter
     or stays."""

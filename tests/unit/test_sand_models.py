@@ -18,11 +18,20 @@ def prepared(target, model, **values):
 
 def test_the_literal_model_is_eq_1_to_the_letter():
     sand = prepared("lab-impact", "literal").system.components["sand"].parameters
-    assert (sand["rotation"], sand["stiffness_factor"], sand["base.shape"]) == (
-        "free",
-        1.0,
-        "round",
-    )
+    assert (sand["rotation"], sand["stiffness_factor"]) == ("free", 1.0)
+    assert (sand["base"], sand["base.shape"]) == ("beam_discs", "round")
+
+
+def test_a_model_says_which_base_a_beam_is_and_leaves_a_floor_a_floor():
+    for target, model, base in (
+        ("lab-impact", None, "beam_surface"),
+        ("lab-impact", "one-law", "beam_surface"),
+        ("girders-8", "literal", "beam_discs"),
+        ("rigid-base-pit", "literal", "floor"),
+        ("static-test", "literal", "floor"),
+    ):
+        sand = prepared(target, model).system.components["sand"].parameters
+        assert sand.get("base", "beam_surface") == base
 
 
 @pytest.mark.parametrize(
@@ -69,12 +78,12 @@ def test_what_a_model_sets_is_no_change_of_the_test():
 
 
 def test_an_unknown_model_is_answered_with_the_known_ones():
-    with pytest.raises(InputRefused, match=r"--model one_law.*no such model"):
+    with pytest.raises(InputRefused, match=r"model one_law: .*no such model"):
         prepared("lab-impact", "one_law")
 
 
 def test_a_system_file_takes_no_model(tmp_path):
     file = tmp_path / "some.toml"
     file.write_text("")
-    with pytest.raises(InputRefused, match=r"--model: is for cases only"):
+    with pytest.raises(InputRefused, match=r"model: is for cases only"):
         prepare(Request(str(file), model="literal"))

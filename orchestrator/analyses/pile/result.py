@@ -13,7 +13,7 @@ from ..frame import Result
 from .blows import Blow
 from .files import bearing_table, envelope_table, trace_table, write_facts, write_tables
 from .summary import metrics_of
-from .tables import blow_table, graph_table, notes, warnings
+from .tables import blow_table, graph_table, in_words, notes, warnings
 
 
 class PileResult(Result):
@@ -54,7 +54,7 @@ class PileResult(Result):
         """Number of blows and penetration in one line."""
         total = sum(blow.set for blow in self.blows)
         graph = f", bearing graph of {len(self.graph)} resistances" if self.graph else ""
-        return f"{len(self.blows)} blows, penetration {total / mm:.1f} mm{graph}"
+        return f"{in_words(self.blows)}, penetration {total / mm:.1f} mm{graph}"
 
     @property
     def notes(self) -> list[str]:

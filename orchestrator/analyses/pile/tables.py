@@ -85,6 +85,22 @@ def _cells(pile: PreparedPile, blow: Blow) -> Iterator[str]:
         yield "refusal" if value is None else f"{value / size:.{digits}f}"
 
 
+def in_words(blows: Sequence[Blow]) -> str:
+    """Return the number of blows in words.
+
+    Parameters
+    ----------
+    blows : sequence of Blow
+        One after the other.
+
+    Returns
+    -------
+    str
+        ``5 blows``.
+    """
+    return "1 blow" if len(blows) == 1 else f"{len(blows)} blows"
+
+
 def notes(
     pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Blow], wall_time: float
 ) -> list[str]:
@@ -107,7 +123,7 @@ def notes(
     total = sum(blow.set for blow in blows)
     worst = max(abs(blow.unbalanced / blow.impact_energy) for blow in (*blows, *graph))
     return [
-        f"{len(blows)} blows, {total / mm:.1f} mm; rated energy {pile.rated_energy / kJ:.4g} kJ, "
+        f"{in_words(blows)}, {total / mm:.1f} mm; rated energy {pile.rated_energy / kJ:.4g} kJ, "
         f"ram strikes with {blows[0].impact_energy / kJ:.4g} kJ; wave from head to toe in "
         f"{1e3 * pile.travel_time:.3g} ms; computed in {wall_time:.2f} s",
         f"energy balance closed to {100.0 * worst:.2g} % of the impact energy; "

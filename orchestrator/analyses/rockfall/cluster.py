@@ -8,18 +8,19 @@ another.
 import logging
 import signal
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.cache import source_stamp
 
+from ...core.ending import put_off
 from ...core.errors import InputRefused, Problem
+from ...temporary import TemporaryFolder
 from ..frame import Count
 from .campaign import (
     Campaign,
@@ -32,7 +33,7 @@ from .campaign import (
 )
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster, Security
 
 LOCAL = "local"
 """Name of the scheduler that is started with its workers, and ends with the campaign."""
@@ -130,7 +131,7 @@ def _certificate_problems(scheduler: str, certificates: Certificates | None) -> 
     is_secure = scheduler.startswith("tls://")
     if certificates is None:
         if is_secure:
-            remedy = "give the files with --tls-ca, --tls-cert and --tls-key"
+            remedy = "give the files with certificates=..."
             yield Problem(f"scheduler {scheduler}", "needs certificates", remedy)
         return
     if not is_secure:
@@ -150,25 +151,43 @@ def _local(workers: int | None) -> "Iterator[Client]":
     connects; their web servers have no pages.
     """
     import dask
-    from distributed import Client, LocalCluster, Security
+    from distributed import Client, Security
 
     security = Security.temporary()
-    with TemporaryDirectory(prefix="rockshed-dask-") as folder, dask.config.set(_NO_PAGES):
-        with _deaf_to_ctrl_c():
-            cluster = LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                memory_limit=0,
-                dashboard_address="127.0.0.1:0",
-                silence_logs=logging.CRITICAL,
-                local_directory=folder,
-                security=security,
-                protocol="tls://",
-            )
-        with cluster, Client(cluster, direct_to_workers=True, security=security) as client:
-            yield client
+    with ExitStack() as opened:
+        folder = str(opened.enter_context(TemporaryFolder("rockshed-dask-")))
+        opened.enter_context(dask.config.set({**_NO_PAGES, "temporary-directory": folder}))
+        with put_off(), _deaf_to_ctrl_c():
+            cluster = opened.enter_context(_started(workers, folder, security))
+        yield opened.enter_context(Client(cluster, direct_to_workers=True, security=security))
+
+
+def _started(workers: int | None, folder: str, security: "Security") -> "LocalCluster":
+    """Start scheduler and workers.
+
+    Raises
+    ------
+    CampaignFailed
+        They cannot be started, for instance because the disk is full.
+    """
+    from distributed import LocalCluster
+
+    try:
+        return LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            memory_limit=0,
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+            local_directory=folder,
+            security=security,
+            protocol="tls://",
+        )
+    except (OSError, RuntimeError) as error:
+        text = f"scheduler and workers cannot be started: {_first_line(error)}"
+        raise CampaignFailed(text) from error
 
 
 @contextmanager

@@ -114,6 +114,6 @@ def _executor(
     if scheduler is None:
         if certificates is not None:
             text = "are for a running scheduler"
-            raise InputRefused([Problem("certificates", text, "name it with --scheduler")])
+            raise InputRefused([Problem("certificates", text, "name it with scheduler=...")])
         return threads(workers or os.cpu_count() or 1)
     return dask_workers(scheduler, workers, certificates)

@@ -116,7 +116,8 @@ def _reported(element: Element) -> dict[str, Any]:
 
 
 def _picture(element: Element) -> dict[str, Any]:
-    panels = [_panel(panel) for panel in element.findall("Panel")]
+    readers = {"Panel": _panel, "Envelope": _envelope}
+    panels = [readers[child.tag](child) for child in element if child.tag in readers]
     return {"name": element.get("name", ""), "panels": panels}
 
 
@@ -130,6 +131,11 @@ def _panel(element: Element) -> dict[str, Any]:
         "references": element.get("references", ""),
         "curves": [_curve(curve) for curve in element.findall("Curve")],
     }
+
+
+def _envelope(element: Element) -> dict[str, Any]:
+    names = ("label", "unit", "variable", "along", "ends")
+    return {name: element.get(name, "") for name in names}
 
 
 def _curve(element: Element) -> dict[str, Any]:

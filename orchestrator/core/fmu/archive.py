@@ -1,13 +1,19 @@
 """The zip archive of an FMU, also one that was packed on Windows or by hand."""
 
+import errno
+import os
 import posixpath
-import shutil
 import stat
 import zipfile
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import IO
+
+from ...files import naming
+from ..input_text import shown
 
 MOST_UNPACKED = 2 << 30
 """Largest size (bytes) of an unpacked FMU."""
@@ -15,7 +21,16 @@ MOST_DESCRIPTION = 256 << 20
 """Largest size (bytes) of a description in it."""
 MOST_MEMBERS = 100_000
 """Largest number of files in it."""
+_END_MARK = b"PK\x05\x06"
+"""Begins the record at the end of an archive."""
+_LONGEST_END = 22 + (1 << 16)
+"""Largest size (bytes) of that record, with a comment."""
+_UNTOLD = 0xFFFF
+"""Number of members in it where there are more than it can tell."""
+_AT_ONCE = 1 << 20
+"""Bytes that are unpacked at a time."""
 _UNREADABLE = (
+    OSError,
     zipfile.BadZipFile,
     zlib.error,
     EOFError,
@@ -61,8 +76,14 @@ class Archive:
         try:
             self._zip = zipfile.ZipFile(file)
         except _UNREADABLE as error:
+            if isinstance(error, OSError) and error.filename is not None:  # it cannot be opened
+                raise
             raise ArchiveError("is not an FMU: not a zip archive") from error
-        self._members = {_clean(info.filename): info for info in self._zip.infolist()}
+        listed = self._zip.infolist()
+        told = _number_told(file)
+        if told not in (_UNTOLD, len(listed)):
+            raise ArchiveError(f"is damaged: it names {len(listed)} of its {told} files")
+        self._members = {_clean(info.filename): info for info in listed}
 
     def __enter__(self) -> "Archive":
         return self
@@ -119,8 +140,14 @@ class Archive:
                 f"has a {name} of {info.file_size / 1e6:.3g} MB; at most {most / 1e6:.3g} are read"
             )
             raise ArchiveError(what)
+        return b"".join(self._parts(name, info))
+
+    def _parts(self, name: str, info: zipfile.ZipInfo) -> Iterator[bytes]:
+        """Yield the content of a member in parts; errors of whoever takes them are not its own."""
         try:
-            return self._zip.read(info)
+            with self._zip.open(info) as source:
+                while part := source.read(_AT_ONCE):
+                    yield part
         except _UNREADABLE as error:
             raise ArchiveError(f"cannot be unpacked: {name}: {error}") from error
 
@@ -140,19 +167,45 @@ class Archive:
         self.check_size()
         for name, info in self._members.items():
             target = folder / name
-            if _is_folder(info):
-                target.mkdir(parents=True, exist_ok=True)
-                continue
-            target.parent.mkdir(parents=True, exist_ok=True)
-            try:
-                with self._zip.open(info) as source, target.open("wb") as copy:
-                    shutil.copyfileobj(source, copy, 1 << 20)
-            except _UNREADABLE as error:
-                raise ArchiveError(f"cannot be unpacked: {name}: {error}") from error
+            with _possible(name):
+                (target if _is_folder(info) else target.parent).mkdir(parents=True, exist_ok=True)
+            if not _is_folder(info):
+                with _possible(name), naming(target), target.open("wb") as copy:
+                    for part in self._parts(name, info):
+                        copy.write(part)
+
+
+@contextmanager
+def _possible(name: str) -> Iterator[None]:
+    """Refuse a name that no file can have here: too long, or that of a file and of a folder."""
+    try:
+        yield
+    except (FileExistsError, IsADirectoryError, NotADirectoryError) as error:
+        raise ArchiveError(f"has a file and a folder of the same name: {name}") from error
+    except OSError as error:
+        if error.errno != errno.ENAMETOOLONG:
+            raise
+        raise ArchiveError(f"has a member whose name is too long: {shown(name)}") from error
+
+
+def _number_told(file: Path | IO[bytes]) -> int:
+    """Return the number of members that the end of an archive tells.
+
+    The reader does not look at it: where a damaged entry hides those behind it, they are missing.
+    """
+    if isinstance(file, Path):
+        with file.open("rb") as opened:
+            return _number_told(opened)
+    length = file.seek(0, os.SEEK_END)
+    file.seek(max(0, length - _LONGEST_END))
+    end = file.read()
+    at = end.rfind(_END_MARK)
+    return int.from_bytes(end[at + 10 : at + 12], "little") if at >= 0 else _UNTOLD
 
 
 def _is_folder(info: zipfile.ZipInfo) -> bool:
-    return info.filename.endswith(("/", "\\")) or stat.S_ISDIR(info.external_attr >> 16)
+    is_called_so = info.filename.endswith(("/", "\\")) or stat.S_ISDIR(info.external_attr >> 16)
+    return is_called_so and info.file_size == 0
 
 
 def _clean(name: str) -> str:

@@ -8,6 +8,7 @@ import ctypes
 import hashlib
 import io
 import itertools
+import math
 import os
 import sys
 import weakref
@@ -66,8 +67,12 @@ DRIVEN = ("2.0",)
 """Versions of FMI that this program drives."""
 READABLE = ("2.0", "3.0")
 """Versions of FMI whose descriptions it can show."""
+UNREADABLE_XML = (ElementTree.ParseError, LookupError, ValueError)
+"""Errors of the reader of XML: no XML, an encoding that nobody knows, bytes that it has not."""
 _LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
 """Kinds of status that FMI asks for (fmi2StatusKind)."""
+_MOST_ELEMENTS = 1_000_000
+"""Most elements of an array."""
 _BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -224,6 +229,18 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         what = f"its {_DESCRIPTION_FILE} cannot be read: {error}"
         raise UnusableError(what, "export it again") from error
     _check_references(model)
+    try:
+        return _described(model, root, warnings)
+    except UnusableError:
+        raise
+    except (ValueError, TypeError, AttributeError, OverflowError) as error:
+        what = f"its {_DESCRIPTION_FILE} is not valid: {error}"
+        raise UnusableError(what, "export it again") from error
+
+
+def _described(
+    model: ModelDescription, root: ElementTree.Element, warnings: tuple[str, ...]
+) -> Description:
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation
     told = read_annotations(root)
@@ -259,7 +276,7 @@ def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
     """Return the root of a description, after a look at its version and kind."""
     try:
         root = ElementTree.fromstring(xml)
-    except (ElementTree.ParseError, LookupError, ValueError) as error:
+    except UNREADABLE_XML as error:
         what = f"its {_DESCRIPTION_FILE} cannot be read: {error}"
         raise UnusableError(what, "export it again") from error
     if root.tag != "fmiModelDescription":
@@ -293,7 +310,7 @@ def _version(xml: bytes) -> str:
     """Return the version of FMI; empty where the description cannot be read."""
     try:
         return ElementTree.fromstring(xml).get("fmiVersion") or ""
-    except ElementTree.ParseError:
+    except UNREADABLE_XML:
         return ""
 
 
@@ -347,6 +364,9 @@ def _ports(
     if not lengths:
         yield port
         return
+    if math.prod(lengths) > _MOST_ELEMENTS:
+        what = f"its {variable.name} has more than {_MOST_ELEMENTS:,} elements"
+        raise UnusableError(what, "export it with smaller arrays")
     places = list(itertools.product(*(range(1, length + 1) for length in lengths)))
     starts: list[str | None] = [*(port.start or "").split()]
     if len(starts) == 1:

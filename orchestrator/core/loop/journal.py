@@ -7,6 +7,7 @@ makes it, in memory that is a file; the :mod:`~rockshed.core.supervisor` reads i
 import json
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,8 @@ LEGEND = "journal.json"
 EXCHANGE, OPERATION = range(2)
 """Places in a journal."""
 _NOTHING = -1
+_DAMAGED = (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError)
+"""Errors that a journal leads to in which a crash has left nonsense."""
 _IS_FILE = os.name == "posix"
 """Whether memory that is a file can be removed while it is in use."""
 
@@ -112,11 +115,14 @@ def last_entry(folder: Path, reason: str) -> str:
         Component, time, call and reason; no component if the code of none was running.
     """
     how = _how(reason)
-    try:
-        entries = np.fromfile(folder / FILE, np.int64)
-        legend = json.loads((folder / LEGEND).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return f"the run {how}"
+    with suppress(*_DAMAGED):  # code that crashes may have written anywhere before
+        return _doing(folder, how)
+    return f"the run {how}"
+
+
+def _doing(folder: Path, how: str) -> str:
+    entries = np.fromfile(folder / FILE, np.int64)
+    legend = json.loads((folder / LEGEND).read_text(encoding="utf-8"))
     operation = int(entries[OPERATION])
     if operation < _NOTHING:
         number = _NOTHING - 1 - operation

@@ -39,7 +39,7 @@ def identifier(name: str) -> str:
 
 @dataclass(frozen=True)
 class Metric:
-    """A named figure that follows from the results of a run.
+    """A named number that follows from the results of a run.
 
     Attributes
     ----------
@@ -74,19 +74,31 @@ class Metric:
 
         Raises
         ------
-        KeyError, TypeError
+        KeyError, TypeError, AttributeError
             It is no entry of a summary.
         """
         references = {
-            who: Beside(found["value"], found["deviation"], found.get("note", ""))
+            who: Beside(
+                _of_kind(found["value"], int, float),
+                _of_kind(found["deviation"], int, float),
+                _of_kind(found.get("note", ""), str),
+            )
             for who, found in entry.get("references", {}).items()
         }
-        return cls(entry["name"], entry["value"], entry.get("unit", "1"), references)
+        name, unit = _of_kind(entry["name"], str), _of_kind(entry.get("unit", "1"), str)
+        return cls(name, _of_kind(entry["value"], int, float, str), unit, references)
 
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         value = f"{self.value:.6g}" if isinstance(self.value, float) else str(self.value)
         return value + unit
+
+
+def _of_kind(value: Any, *kinds: type) -> Any:
+    """Return a value of a file, which has to be of one of some kinds."""
+    if not isinstance(value, kinds):
+        raise TypeError(f"{value!r:.40} is no {' or '.join(kind.__name__ for kind in kinds)}")
+    return value
 
 
 class Metrics(Mapping[str, Metric]):

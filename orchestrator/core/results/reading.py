@@ -34,6 +34,7 @@ from .run_folder import (
     streamed_frames,
 )
 from .series import Series
+from .shape import check
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -196,6 +197,8 @@ def read_run(folder: Path) -> StoredRun:
             f"holds the results of {provenance['kind']}, which have no time series",
             "give the folder of a run; `rockshed plot` draws the results of an analysis too",
         )
+    with undamaged(place / RUN):
+        check(provenance)
     with undamaged(place / COLUMNS):
         columns = read_columns(place / COLUMNS)
     with undamaged(place / SUMMARY):
@@ -225,6 +228,13 @@ def _read_metrics(path: Path) -> Metrics:
     return Metrics(map(Metric.from_entry, json.loads(path.read_text(encoding="utf-8"))))
 
 
+_DAMAGED = (
+    *(ValueError, TypeError, LookupError, AttributeError, OSError),
+    *(RuntimeError, OverflowError, MemoryError),
+)
+"""Errors that readers of JSON, CSV, Parquet and HDF5 end in: the last one raises RuntimeError."""
+
+
 @contextmanager
 def undamaged(path: Path) -> Iterator[None]:
     """Read a file of results; what is wrong with its content becomes a refusal that names it.
@@ -241,7 +251,7 @@ def undamaged(path: Path) -> Iterator[None]:
     """
     try:
         yield
-    except (ValueError, TypeError, LookupError, AttributeError, OSError, RecursionError) as error:
+    except _DAMAGED as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise _refusal(
             path, f"cannot be read: {reason}", "the results are damaged; run it again"
@@ -258,13 +268,17 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
         with undamaged(path), pyarrow.parquet.ParquetFile(path) as file:
             table = file.read(columns=[column.name for column in columns])
     else:
-        table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
-    with undamaged(folder / COLUMNS):
+        path = folder / ROWS_STREAM
+        with undamaged(path):
+            table = pa.Table.from_batches(batches(path), schema(columns))
+    with undamaged(path):
         return {column.name: _numbers(table[column.name]) for column in columns}
 
 
 def _numbers(column: Any) -> NDArray[np.float64]:
     """Return a column as one array. Its ``to_numpy`` would import pandas, wherever that is."""
+    if column.null_count:
+        raise ValueError(f"{column.null_count} values are missing")
     return np.concatenate([np.empty(0), *map(np.from_dlpack, column.chunks)])
 
 

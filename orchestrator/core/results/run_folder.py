@@ -26,7 +26,7 @@ import re
 import secrets
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -38,6 +38,7 @@ from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from ...files import naming, write_file, write_json
+from ...temporary import sweep_once
 from ..errors import InputRefused, Problem, refusing_unwritable
 from .metric import Metric
 from .own_files import FILES, MARK, content_of, foreign, is_marked, mark, read_data
@@ -134,13 +135,15 @@ class RunFolder:
         return self
 
     def _open(self) -> None:
+        sweep_once()
         with refusing_unwritable(self.folder, "choose another folder"):
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             self._take_lock()
             recover(self.folder)
             self.running = free_running_folder(self.folder)
             self.running.mkdir()
-            mark(self.running)
+            with _removed_if_it_fails(self.running):
+                mark(self.running)
 
     def _take_lock(self) -> None:
         file = Path(self._lock.lock_file)
@@ -326,6 +329,15 @@ class RunFolder:
                 _remove_leftover(folder)
 
 
+@contextmanager
+def _removed_if_it_fails(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
 def settle(folder: Path) -> None:
     """End a swap: move what is the user's from the old folder to the new one, remove the rest.
 
@@ -390,6 +402,28 @@ def leftovers(folder: Path, live: Path | None = None) -> list[Path]:
         Only folders that this program has made.
     """
     return [path for path in _numbered(folder).values() if path != live and is_marked(path)]
+
+
+def unfinished(place: Path) -> list[Path]:
+    """Return what runs have left that were killed or go on, in the folder of their results.
+
+    Parameters
+    ----------
+    place : Path
+        In which results lie, ``results`` for instance.
+
+    Returns
+    -------
+    list of Path
+        Folders in which runs write, and old results that a swap has put aside. What the user has
+        there is not among them, whatever it is called.
+    """
+    try:
+        entries = sorted(entry for entry in place.iterdir() if entry.is_dir())
+    except OSError:
+        return []
+    aside = re.compile(rf"\.[0-9a-f]{{8}}{_ASIDE}")
+    return [entry for entry in entries if is_marked(entry) or aside.fullmatch(entry.name)]
 
 
 def _beside(path: Path, name: str) -> Path:

@@ -2,6 +2,8 @@
 
 import math
 
+from rockshed.components.common.units import range_in_words
+
 from ..fmu.description import Port
 from ..fmu.slave import BOOLEAN, INTEGER, REAL, STRING
 from .system import Value
@@ -32,20 +34,14 @@ def value_for(port: Port, value: Value) -> float | str:
     if port.kind == STRING:
         return str(value)
     number = _item(port, value) if port.items else _number(port, value)
-    unit = "" if port.unit is None or port.unit_name == "1" else f" {port.unit_name}"
     low = -math.inf if port.minimum is None else port.minimum
     high = math.inf if port.maximum is None else port.maximum
     if not math.isfinite(number):
         raise ValueError("must be a finite number")
     if not low <= number <= high:
-        raise ValueError(f"allowed is {_range(low, high, unit)}")
+        allowed = range_in_words(port.minimum, port.maximum, port.unit_name)
+        raise ValueError(f"allowed is {allowed}")
     return number
-
-
-def _range(low: float, high: float, unit: str) -> str:
-    if math.isinf(high):
-        return f"{low:g}{unit} or more"
-    return f"{high:g}{unit} or less" if math.isinf(low) else f"{low:g} to {high:g}{unit}"
 
 
 def _item(port: Port, value: Value) -> float:

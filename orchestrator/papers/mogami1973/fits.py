@@ -20,7 +20,15 @@ from rockshed.components.impulsive_ground.settlement import (
 )
 
 from ..study import Outcomes, Row, Study, detail, verdict
-from .plate_tests import AREAS, MIDDLE, PlateTest, mass, plate_tests
+from .plate_tests import (
+    AREAS,
+    MIDDLE,
+    WEIGHTS,
+    PlateTest,
+    mass,
+    plate_tests,
+    sand_mass,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,16 +42,32 @@ def slope(area: float) -> float:
     return fitted_impulse(2.0, area * cm2) - fitted_impulse(1.0, area * cm2)
 
 
-def slope_of_model(area: float) -> float:
-    """Return dI/dR_m (s) that (5) to (7) give with K of (11) for a plate of this area (cm2).
+def slope_of_model(area: float, weight: float = MIDDLE[0]) -> float:
+    """Return dI/dR_m (s) that (5) to (7) give with K of (11).
 
     R_m = I2/(2 M settlement) = K I/(2 M), so it is 2 M/K.
+
+    Parameters
+    ----------
+    area : float
+        Area of the plate (cm2).
+    weight : float
+        Mass of the body that fell on it (kg).
     """
-    return 2.0 * mass(area) / fitted_coefficient(area * cm2)
+    return 2.0 * mass(area, weight) / fitted_coefficient(area * cm2)
 
 
 def implied_mass(area: float) -> float:
-    """Return the mass (kg) with which (11) and the slope of (12) would fit (5) to (7)."""
+    """Return the mass (kg) with which (11) and the slope of (12) would fit (5) to (7).
+
+    The line passes the origin so near that R_m is in the ratio of I, as (7) with (11) has it; so
+    this mass is that of every weight.
+
+    Parameters
+    ----------
+    area : float
+        Area of the plate (cm2).
+    """
     return 0.5 * slope(area) * fitted_coefficient(area * cm2)
 
 
@@ -53,6 +77,8 @@ def rows(outcomes: Outcomes) -> list[Row]:
         *(_coefficient(area) for area in AREAS),
         *(row for area in AREAS for row in _ends(area)),
         _slopes(),
+        _rise(),
+        _masses(),
         *(detail(row) for area in AREAS for row in _slope_and_mass(area)),
         _chained(),
     ]
@@ -85,7 +111,7 @@ def _ends(area: float) -> Iterator[Row]:
 def _slopes() -> Row:
     """Return whether the slope of (12) rises with the area, as (5) to (7) with (11) demand."""
     fitted = [slope(area) for area in AREAS]
-    rise = slope_of_model(AREAS[-1]) / slope_of_model(AREAS[0])
+    rise = _rise().computed
     return Row(
         "slope of (12), largest / smallest plate",
         "1",
@@ -93,6 +119,32 @@ def _slopes() -> Row:
         verdict=verdict(fitted == sorted(fitted)),
         note=f"should rise with A as 2 M/K of (5)-(7), (11) does, by {rise:.2f}; it falls: (11) "
         "and (12) contradict each other",
+    )
+
+
+def _rise() -> Row:
+    return Row(
+        "2 M/K of (5) to (7) with (11), largest / smallest plate",
+        "1",
+        computed=slope_of_model(AREAS[-1]) / slope_of_model(AREAS[0]),
+        note="the slope that (12) should have",
+    )
+
+
+def _masses() -> Row:
+    """Return whether the mass that the fits imply can be that of (1): at least sand and plate."""
+    implied = [implied_mass(area) for area in AREAS]
+    least, most = sand_mass(AREAS[0]), sand_mass(AREAS[-1])
+    return Row(
+        "mass that (11) and (12) imply, smallest plate",
+        "kg",
+        paper=implied[0],
+        computed=mass(AREAS[0], WEIGHTS[0]),
+        verdict=verdict(implied[0] >= mass(AREAS[0], WEIGHTS[0])),
+        note=f"implied are {min(implied):.1f} to {max(implied):.1f} kg, falling with A, the same "
+        f"for every body that fell; by (1) sand alone has {least:.0f} to {most:.0f} kg, and the "
+        f"four bodies make {WEIGHTS[-1] - WEIGHTS[0]:.1f} kg of difference: the sand that moved "
+        "was less, or the fits do not see it",
     )
 
 
@@ -108,15 +160,16 @@ def _slope_and_mass(area: float) -> Iterator[Row]:
         f"mass that (11) and (12) imply, plate of {area:g} cm²",
         "kg",
         paper=implied_mass(area),
-        computed=mass(area),
-        note="computed: derived",
+        computed=mass(area, MIDDLE[0]),
+        note=f"computed: (1); {mass(area, WEIGHTS[0]):.0f} to {mass(area, WEIGHTS[-1]):.0f} kg "
+        "with the lightest and heaviest body",
     )
 
 
 def _chained() -> Row:
     """Return the settlement with the ends of (12) in (7), over that of (11)."""
     ratios = [
-        printed_settlement(t.impulse, mass(t.area), *fitted_ends(t.impulse, t.area * cm2))
+        printed_settlement(t.impulse, mass(t.area, t.weight), *fitted_ends(t.impulse, t.area * cm2))
         / (t.impulse / fitted_coefficient(t.area * cm2))
         for t in plate_tests()
     ]
@@ -137,9 +190,10 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
 
     lines = folder / "figure3.png"
     words = (
-        "Lines of fig. 3 by (12), and (dashed) what (5) to (7) make of K of (11) with the derived "
-        "mass: they should be the same lines. Inset: the foot of the lines, where R0 is read. "
-        "1600 kg/m³ and plates of 2 cm of steel assumed."
+        "Lines of fig. 3 by (12), and (dashed) what (5) to (7) make of K of (11) with the mass "
+        f"of (1) for a body of {MIDDLE[0]:g} kg: they should be the same lines. "
+        "Inset: the foot of the lines, where R0 is read. 1600 kg/m³ and plates of 2 cm of steel "
+        "assumed."
     )
     with captioned([words], lines, WIDTH, 4.4) as made:
         _draw_lines(made.subplots())

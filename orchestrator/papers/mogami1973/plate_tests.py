@@ -64,8 +64,23 @@ def radius(area: float) -> float:
     return math.sqrt(area * cm2 / math.pi)
 
 
-def mass(area: float, form: int = DERIVED) -> float:
-    """Return M (kg), the bracket of (1): plate and virtual mass of the sand.
+def mass(area: float, weight: float, form: int = DERIVED) -> float:
+    """Return M (kg), the bracket of (1): falling body, plate and virtual mass of the sand.
+
+    Parameters
+    ----------
+    area : float
+        Area of the plate (cm2).
+    weight : float
+        Mass of the body that fell on it and stays there (kg).
+    form : int
+        Number before r2: derived or printed.
+    """
+    return weight + PLATE * area * cm2 + sand_mass(area, form)
+
+
+def sand_mass(area: float, form: int = DERIVED) -> float:
+    """Return the virtual mass (kg) of the sand under a plate.
 
     Parameters
     ----------
@@ -74,4 +89,4 @@ def mass(area: float, form: int = DERIVED) -> float:
     form : int
         Number before r2: derived or printed.
     """
-    return PLATE * area * cm2 + float(soil_mass(radius(area), DEPTH, SPREAD, DENSITY, form))
+    return float(soil_mass(radius(area), DEPTH, SPREAD, DENSITY, form))

@@ -61,6 +61,7 @@ def ground(test: PlateTest, r0: float, r1: float) -> Instance:
         "resistance.end": r1,
         "resistance.time": stopping_time(test.impulse, r0, r1),
         "impulse0": test.impulse,
+        "impulse0.mass": test.weight,
     }
     for name, value in values.items():
         made[name] = value
@@ -78,7 +79,8 @@ def deviation(test: PlateTest) -> float:
     time = 1.1 * stopping_time(test.impulse, r0, r1)
     for number in range(_STEPS):
         made.step(number * time / _STEPS, time / _STEPS)
-    return abs(made["settlement"] / exact_settlement(test.impulse, mass(test.area), r0, r1) - 1.0)
+    exact = exact_settlement(test.impulse, mass(test.area, test.weight), r0, r1)
+    return abs(made["settlement"] / exact - 1.0)
 
 
 def rows(outcomes: Outcomes) -> list[Row]:
@@ -157,9 +159,10 @@ def _draw_blow(made: "Figure", test: PlateTest) -> None:
         for axes, column in zip(panels, values.T, strict=True):
             axes.plot(time / ms, column, dashes, color=colour, linewidth=1.2)
     _, velocity, settlement = panels
-    v0 = initial_velocity(test.impulse, mass(test.area))
+    moving = mass(test.area, test.weight)
+    v0 = initial_velocity(test.impulse, moving)
     velocity.plot([0.0, end / ms], [v0, 0.0], ":", color=ROCK)
-    printed = printed_settlement(test.impulse, mass(test.area), r0, r1) / mm
+    printed = printed_settlement(test.impulse, moving, r0, r1) / mm
     settlement.axhline(printed, color=ROCK, linestyle=":", linewidth=1.2)
     where: dict[str, Any] = {"xytext": (4, 3), "textcoords": "offset points"}
     settlement.annotate("(7)", (0.0, printed), **where, color=ROCK, fontsize=8.5)

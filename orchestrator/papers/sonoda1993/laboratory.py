@@ -6,24 +6,32 @@ from collections.abc import Mapping
 from rockshed.components.common.units import cm
 
 from ...cases.sand_models import LATTICE_SHIFT, model_values
-from ...cases.sonoda1993 import case_name
+from ...cases.sonoda1993 import DEFAULT_TEST, case_name
 from ...core.system.system import Value
 from ...runs.batch import Task
 from ...runs.job import Request
+from ..study import shortened
 
 MODELS: Mapping[str, Mapping[str, Value]] = {
     name: model_values(name) for name in ("calibrated", "literal")
 }
-"""Values, by ``sand.parameter``, of the models of the paper's sand by name."""
+"""Values, by ``sand.parameter``, of the models of the paper's sand on a floor by name."""
 STEEL_DISCS = "calibrated, steel discs"
 READINGS: Mapping[str, Mapping[str, Value]] = {
-    **MODELS,
+    **{name: {} for name in MODELS},
     STEEL_DISCS: {"sand.beam.disc_mass": math.pi * (2.5 * cm) ** 2 * 10 * cm * 7850.0},
 }
-"""The same, and the calibrated sand with another reading of eq. (1) on the beam.
+"""The models, and the calibrated sand with another reading of eq. (1) on the beam: what it sets.
 
 In the dashpots there, m is the mass of a beam disc of steel, as thick as the cushion.
 """
+BOX_MASS = 15.0
+"""Mass (kg) of the sand box, assumed: a box of steel plates; the paper gives none."""
+BOXED = f"calibrated, box of {BOX_MASS:g} kg"
+UNDER_BOX: Mapping[str, Mapping[str, Value]] = {
+    BOXED: {"beam.box.mass": BOX_MASS},
+}
+"""The calibrated sand in a box that has a mass between sand and load cells."""
 ONE_LAW = "one-law"
 """The model with one contact law for all tests."""
 ALL_MODELS = (*MODELS, ONE_LAW)
@@ -33,8 +41,8 @@ STOP = 0.03
 
 SEED_NOTE = (
     f"Mean and standard deviation over {len(SEEDS)} seeds of a lattice shifted by "
-    f"{LATTICE_SHIFT:g} diameters; with --quick one seed, with the coupling impulse, which needs a "
-    "tenth of the exchanges."
+    f"{LATTICE_SHIFT:g} diameters; in a quick reproduction one seed, with the coupling impulse, "
+    "which needs a tenth of the exchanges."
 )
 
 
@@ -60,7 +68,7 @@ def impact(
     coupling : str, optional
         Scheme of exchange, by default that of the paper.
     """
-    values = {**READINGS.get(model, {}), **(changes or {})}
+    values = {**{**READINGS, **UNDER_BOX}.get(model, {}), **(changes or {})}
     if seed is not None and model != ONE_LAW:
         values["sand.lattice_shift"] = LATTICE_SHIFT
     if seed is not None:
@@ -70,9 +78,28 @@ def impact(
         values,
         coupling=coupling,
         options={"stop_time": STOP},
-        model=model if model == ONE_LAW else None,
+        model=model if model in ALL_MODELS else None,
     )
     return Task(request, model, seed)
+
+
+def _beginning(model: str, coupling: str = "impulse", stop_time: float = 4e-3) -> Request:
+    return shortened(impact(DEFAULT_TEST, model, None, SEEDS[0], coupling), stop_time)
+
+
+SHORT_IMPACTS: Mapping[str, Request] = {
+    **{f"impact, {model}": _beginning(model) for model in MODELS},
+    f"impact, {ONE_LAW}": _beginning(ONE_LAW, stop_time=6e-3),
+    "impact, exchange every 0.01 ms": _beginning("calibrated", "paper", 1e-3),
+}
+"""Beginnings of the impact of test 4, which studies of the laboratory stand on.
+
+With the one law the ball starts higher, and meets the sand later.
+"""
+SHORT_STEEL: Mapping[str, Request] = {f"impact, {STEEL_DISCS}": _beginning(STEEL_DISCS)}
+SHORT_JACOBI: Mapping[str, Request] = {
+    "impact, all at once": _beginning("calibrated", "jacobi", 2e-3)
+}
 
 
 def impacts(

@@ -6,11 +6,10 @@ Transmitted force and force on the rock, beside those of formulas.
 from collections.abc import Sequence
 from pathlib import Path
 
-from rockshed.components.common.units import cm, tf
+from rockshed.components.common.units import cm, standard_gravity, tf
 
 from ...cases.full_scale import (
     DROP,
-    GRAVITY,
     ROCK_MASS,
     ROCK_RADIUS,
     Impact,
@@ -28,7 +27,7 @@ from ...metrics.names import (
 from ...runs.batch import COMPLETE, Task
 from ..study import Measure, Outcomes, Row, Study, detail, row_of_runs
 from . import full_scale
-from .full_scale import SEED_NOTE, STEP_NOTE, Model, models, plot_forces, sands
+from .full_scale import SEED_NOTE, SHORT_RIGID, STEP_NOTE, Model, models, plot_forces, sands
 
 SANDS = {
     name.removeprefix("rigid-base-"): impact
@@ -96,7 +95,7 @@ def _filter(runs: Sequence[Task], outcomes: Outcomes) -> str:
 
 def formulas() -> list[Row]:
     """Return the force on the rock by the handbook, and by Hertz, on whom the handbook builds."""
-    speed = (2.0 * GRAVITY * DROP) ** 0.5
+    speed = (2.0 * standard_gravity * DROP) ** 0.5
     return [
         Row(
             "force on the rock by the Japanese rockfall handbook",
@@ -162,4 +161,5 @@ STUDY = Study(
         "E_bar 20 (pit), 75 (river; the paper has 70 to 80) and 100 kgf/cm2 (crushed); depth 92 "
         "cm, which the paper does not give.",
     ),
+    stands_on=SHORT_RIGID,
 )

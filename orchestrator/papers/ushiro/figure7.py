@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockshed.components.common.units import kgf, kN
+from rockshed.components.common.units import kN, standard_gravity
 from rockshed.components.slope_rockfall.declarations import CONSISTENT, NONE, PRINTED
 from rockshed.components.slope_rockfall.restitution import restitution
 
@@ -21,8 +21,6 @@ from ..study import Outcomes, Row, Study, verdict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-GRAVITY = kgf
-"""Standard gravity (m/s2): the weight of a kilogram."""
 DENSITY = 2600.0
 """Density of the rock (kg/m3)."""
 AREA_FACTOR = 0.25
@@ -72,7 +70,7 @@ class SlopeImpact:
                 speed,
                 mass,
                 self.radius,
-                GRAVITY * math.cos(self.angle),
+                standard_gravity * math.cos(self.angle),
                 self.strength,
                 self.stiffness,
                 self.hardening,

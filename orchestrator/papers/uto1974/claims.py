@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rockshed.components.common.units import cm, kN, mm
+from rockshed.components.common.units import cm, kN, mm, standard_gravity
 
 from ..study import Outcomes, Row, Study, verdict
 from .figs10_11 import limit
@@ -17,7 +17,6 @@ from .struck_rod import (
     AREA,
     DENSITY,
     DROP,
-    GRAVITY,
     MASS,
     QUAKE,
     SOURCE,
@@ -88,7 +87,7 @@ def _energy() -> Row:
         ENERGY,
         computed=MASS * DROP / cm,
         verdict=verdict(MASS * DROP / cm == ENERGY),
-        note=f"63.5 kg x 75 cm = {MASS * DROP * GRAVITY:.0f} J",
+        note=f"63.5 kg x 75 cm = {MASS * DROP * standard_gravity:.0f} J",
     )
 
 

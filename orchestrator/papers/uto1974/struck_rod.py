@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
-from rockshed.components.common.units import cm, cm2, kgf
+from rockshed.components.common.units import cm, cm2, standard_gravity
 from rockshed.components.pile_rod.st_venant import StVenant
 
 MASS = 63.5
@@ -22,8 +22,6 @@ DENSITY = 7850.0
 """Density of the rod (kg/m3)."""
 SPEED = 5120.0
 """Speed of waves in the rod (m/s)."""
-GRAVITY = kgf
-"""Standard gravity (m/s2): the weight of a kilogram."""
 QUAKE = 2.5e-3
 """Displacement (m) at which Smith's ground yields, his 0.1 in; the paper's is not stated."""
 SOURCE = "Table 1: hammer 63.5 kg (the scan's 63.5 kN), 75 cm, rod 5.8 cm², 7.85 g/cm³, 5120 m/s."
@@ -123,7 +121,7 @@ def strike(
     rod["scheme"] = scheme
     rod["section.length"] = length
     rod["ram.mass"] = MASS
-    rod["ram.velocity"] = float(np.sqrt(2.0 * GRAVITY * DROP))
+    rod["ram.velocity"] = float(np.sqrt(2.0 * standard_gravity * DROP))
     for name, value in parameters.items():
         rod[name.replace("__", ".")] = value
     rod["internal_step"] = length / SPEED / segments / parts * (1.0 + 1e-12)

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator
 
+from rockshed.components.common.units import standard_gravity
+
 from ...core.errors import Problem
 from ...input_files.places import Key, Places
-from .site import GRAVITY, PileSite
+from .site import PileSite
 
 MOST_ROWS = 20_000_000
 """Largest number of rows of the traces of all blows, a GiB and a half."""
@@ -59,7 +61,7 @@ def _depth_problems(site: PileSite, where: Places) -> Iterator[Problem]:
 def _weight_problems(site: PileSite, where: Places) -> Iterator[Problem]:
     """Yield the resistances that do not carry rod and ram at rest."""
     mass = sum(section.length * section.area * section.density for section in site.rod)
-    weight = site.gravity * mass + GRAVITY * site.hammer.mass
+    weight = site.gravity * mass + standard_gravity * site.hammer.mass
     for resistance, key in _resistances(site):
         if resistance <= weight:
             text = (

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
+from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
 from ...input_files.form import first, formed
@@ -21,7 +22,7 @@ from ...input_files.places import Key, Places
 from ...input_files.setting import setter
 from ..source import SiteLike, SiteSource, site_source
 from .checks import site_problems
-from .site import GRAVITY, QUAKE, SHAFT_DAMPING, PileSite, Section
+from .site import QUAKE, SHAFT_DAMPING, PileSite, Section
 
 SHORTEST, TRAVELS = 0.1, 20.0
 """Time of a blow where the site has none: the longer of this (s) and so many travel times."""
@@ -55,7 +56,7 @@ class PreparedPile:
     @property
     def rated_energy(self) -> float:
         """Energy (J) of the fall."""
-        return self.site.hammer.mass * GRAVITY * self.site.hammer.drop
+        return self.site.hammer.mass * standard_gravity * self.site.hammer.drop
 
     @cached_property
     def travel_time(self) -> float:

@@ -7,10 +7,10 @@ from typing import Annotated
 
 from pydantic import Field
 
+from rockshed.components.common.units import standard_gravity
+
 from ...input_files.form import Data, NotNegative, Positive
 
-GRAVITY = 9.80665
-"""Standard acceleration of gravity (m/s2)."""
 MOST_SEGMENTS = 5000
 """Largest number of segments of the rod."""
 MOST_BLOWS = 1000
@@ -93,7 +93,7 @@ class PileSite(Data):
     blows: Annotated[int, Field(ge=1, le=MOST_BLOWS)] = 1
     segments: Annotated[int, Field(ge=1, le=MOST_SEGMENTS)] = 100
     time: Positive | None = None
-    gravity: NotNegative = GRAVITY
+    gravity: NotNegative = standard_gravity
     gauge: NotNegative = 0.0
     hammer: DropHammer
     cushion: HammerCushion | None = None

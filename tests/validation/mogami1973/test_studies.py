@@ -17,6 +17,14 @@ def test_the_number_before_the_radius_squared_is_twelve():
     assert row.verdict == "does not"
 
 
+def test_body_and_plate_count_beside_the_sand():
+    """60.91 kg of sand, 1.57 kg of steel, and 4.65 to 20.40 kg that fell."""
+    found = rows(mass)
+    assert found["mass of (1), plate of 100 cm²"].computed == pytest.approx(77.18, abs=0.01)
+    excess = [row.computed for name, row in found.items() if name.startswith("v0 and")]
+    assert [round(value, 1) for value in excess] == [4.2, 7.2, 9.7, 11.9]
+
+
 def test_the_exact_settlement_is_between_two_and_four_thirds_of_the_printed_one():
     found = rows(settlement)
     assert found["settlement by (1) and (2) / by (7), R0 = 0"].computed == pytest.approx(4.0 / 3.0)
@@ -30,6 +38,9 @@ def test_the_fits_contradict_the_model():
     assert found["slope of (12), largest / smallest plate"].computed < 0.8
     assert found["slope of (12), largest / smallest plate"].verdict == "does not"
     assert fits.slope_of_model(400.0) > 1.5 * fits.slope_of_model(100.0)
+    implied = found["mass that (11) and (12) imply, smallest plate"]
+    assert implied.paper == pytest.approx(22.14, abs=0.01)  # K slope/2, by a pocket calculator
+    assert implied.verdict == "does not"
     assert found["settlement of (12) in (7) / that of (11), 96 tests"].verdict == "does not"
     assert found["fig. 3: R0, plate of 100 cm²"].computed == pytest.approx(
         0.5366, rel=1e-3

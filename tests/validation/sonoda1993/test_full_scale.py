@@ -28,13 +28,20 @@ from rockshed.runs.job import Request, prepare
 
 RIGID = ("rigid-base-pit", "rigid-base-river", "rigid-base-crushed")
 GIRDERS = ("girders-8", "girders-10", "girders-12")
-LITERAL = (("sand.rotation", "free"), ("sand.stiffness_factor", 1))
 
 
 @cache
-def run(name, coupling="paper", values=(), in_process=True):
+def run(name, coupling="paper", values=(), in_process=True, model=None, options=()):
     """A case, run; its files are gone."""
-    job = prepare(Request(name, dict(values), coupling=coupling, in_process=in_process))
+    request = Request(
+        name,
+        dict(values),
+        coupling=coupling,
+        options=dict(options),
+        in_process=in_process,
+        model=model,
+    )
+    job = prepare(request)
     with TemporaryDirectory() as folder:
         return simulate(job.system, Path(folder) / "run", sources=job.sources)
 
@@ -46,13 +53,13 @@ def figure(done, name):
 
 @pytest.mark.parametrize("name", RIGID)
 def test_transmitted_force_is_about_twice_that_on_the_rock(name):
-    """The paper's main result, with settled maxima. Measured 1.98, 2.04, 1.95."""
+    """The paper's main result, with settled maxima. Measured 2.14, 2.02, 2.03."""
     assert figure(run(name), names.SETTLED_RATIO) == pytest.approx(2.0, abs=0.2)
 
 
 @pytest.mark.parametrize("name", RIGID + GIRDERS)
 def test_energy_balances_without_a_warning_and_the_rock_comes_back(name):
-    """Largest error within the run 0.05 to 0.21 percent of the impact energy."""
+    """Largest error within the run 0.04 to 0.08 percent of the impact energy."""
     done = run(name)
     assert figure(done, names.RESIDUAL_SHARE) < 0.01
     assert done.provenance["warnings"] == []
@@ -68,8 +75,9 @@ def test_stiffer_sand_gives_more_force_and_less_penetration():
     assert forces == sorted(forces)
 
 
-def test_exchanging_four_times_less_often_changes_nothing():
-    """Impulse-conserving exchange of 0.2 ms against the paper's scheme at 0.05 ms."""
+def test_exchanging_less_often_changes_nothing():
+    """Impulse-conserving exchange against the paper's scheme, four times as often on a rigid base
+    and eight times on girders."""
     for name in ("rigid-base-crushed", "girders-8"):
         for what in (names.SETTLED_TRANSMITTED, names.SETTLED_ROCK, names.PENETRATION):
             assert figure(run(name, "impulse"), what) == pytest.approx(
@@ -80,8 +88,8 @@ def test_exchanging_four_times_less_often_changes_nothing():
 
 
 def test_elastic_sand_puts_far_too_much_energy_into_the_girders():
-    """Table 6 measures 5.6, 6.9, 7.6 percent by (7). Calibrated sand: 33, 40, 38 percent by (7), and 45, 59, 62 by (5), (6)."""
-    for name, share, from_strain in zip(GIRDERS, (0.448, 0.591, 0.624), (0.327, 0.396, 0.382)):
+    """Table 6 measures 5.6, 6.9, 7.6 percent by (7). Calibrated sand: 32, 39, 37 percent by (7), and 44, 58, 62 by (5), (6)."""
+    for name, share, from_strain in zip(GIRDERS, (0.438, 0.582, 0.618), (0.322, 0.387, 0.373)):
         assert figure(run(name), names.BEAM_SHARE) == pytest.approx(share, abs=0.02)
         assert figure(run(name), names.BEAM_SHARE_FROM_STRAIN) == pytest.approx(
             from_strain, abs=0.04
@@ -96,6 +104,24 @@ def test_elastic_sand_puts_far_too_much_energy_into_the_girders():
 
 def system(name, **values):
     return prepare(Request(name, values, in_process=True)).system
+
+
+@pytest.mark.parametrize("coupling", [pytest.param("paper", marks=pytest.mark.slow), "impulse"])
+def test_energy_of_girders_drifts_by_less_than_a_fifth_of_a_percent_in_a_second(coupling):
+    """Calibrated sand, at each coupling that is offered. Measured 0.07 to 0.10 percent with the
+    paper's exchange for 8 to 12 m, and 0.10 to 0.15 with the longer one.
+
+    The books of all three, and what their interfaces made.
+    """
+    done = run("girders-12", coupling, options=(("stop_time", 1.0),))
+    books = [name for name in done.series if name.endswith("energy.residual")]
+    made = [
+        name for name in done.series if name.startswith("coupling.") and name.endswith(".energy")
+    ]
+    assert len(books) == 3
+    assert len(made) == 2
+    drift = sum(done.series[name] for name in books + made)
+    assert abs(drift).max() < 0.002 * figure(done, names.IMPACT_ENERGY)
 
 
 @pytest.mark.parametrize("name", GIRDERS)
@@ -137,10 +163,10 @@ def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_compariso
 
 
 def test_literal_model_puts_as_much_into_the_girders():
-    """Measured 51 percent by (5), (6) at 8 m, ratio 1.06."""
-    done = run("girders-8", values=LITERAL)
-    assert figure(done, names.BEAM_SHARE) == pytest.approx(0.51, abs=0.03)
-    assert figure(done, names.SETTLED_RATIO) == pytest.approx(1.06, abs=0.1)
+    """Measured 50 percent by (5), (6) at 8 m, ratio 1.02."""
+    done = run("girders-8", model="literal")
+    assert figure(done, names.BEAM_SHARE) == pytest.approx(0.504, abs=0.03)
+    assert figure(done, names.SETTLED_RATIO) == pytest.approx(1.02, abs=0.1)
 
 
 def test_fmus_give_what_the_components_give_in_process():
@@ -181,10 +207,10 @@ def test_hertz_force_is_the_largest_of_a_sphere_that_is_stopped_by_its_half_spac
     )
 
 
-def packed(name):
-    """The random pack with rolling resistance of the studies, its first seed."""
+def packed(name, number=0):
+    """One of the random packs with rolling resistance of the studies."""
     model = next(model for model in full_scale.MODELS if model.name == "random pack, rolling")
-    values = full_scale.impacts(name, model, True, 0.15)[0].request.values
+    values = full_scale.impacts(name, model, False, 0.15)[number].request.values
     return run(name, "impulse", tuple(values.items()))
 
 
@@ -203,9 +229,10 @@ def test_a_random_pack_is_at_rest_and_the_rock_meets_it_with_its_speed(name):
     assert done.provenance["warnings"] == []
 
 
-def test_discs_that_turn_with_resistance_bring_table_6_near():
-    """Measured 5.6 and 7.6 percent by (7); one seed gives 6.2 and 7.7, others up to a third more. Calibrated sand: 34 and 37."""
-    for name, measured in (("girders-8", 0.056), ("girders-12", 0.076)):
-        assert figure(packed(name), names.BEAM_ENERGY_FROM_STRAIN) / 98e3 == pytest.approx(
-            measured, rel=0.3
-        )
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "measured"), [("girders-8", 0.056), ("girders-12", 0.076)])
+def test_discs_that_turn_with_resistance_bring_table_6_near(name, measured):
+    """Measured 5.6 and 7.6 percent by (7); the mean of six packs is 6.9 and 8.3, single ones are
+    4.7 to 9.0 and 6.2 to 11.8. Calibrated sand: 32 and 37."""
+    shares = [figure(packed(name, i), names.BEAM_ENERGY_FROM_STRAIN) / 98e3 for i in range(6)]
+    assert sum(shares) / 6 == pytest.approx(measured, rel=0.35)

@@ -9,7 +9,12 @@ from rockshed.cases.sonoda1993 import DEFAULT_TEST, lab_system, table_5
 from rockshed.cases.sonoda1993 import tests as table_2
 from rockshed.components.common.units import cm, kgf
 
-LITERAL = {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"}
+LITERAL = {
+    "rotation": "free",
+    "stiffness_factor": 1.0,
+    "base.shape": "round",
+    "base": "beam_discs",
+}
 ROWS = {round(row.modulus / kgf * cm**2): row for row in table_5() if row.damping == 0.2}
 """Rows of h = 0.2 by E_bar (kgf/cm2)."""
 
@@ -34,9 +39,10 @@ def errors(row, **options):
     "row", table_5(), ids=lambda row: f"{row.modulus / kgf * cm**2:.0f}-{row.damping}"
 )
 def test_calibrated_model(row):
-    """Locked rotation and stiffness factor 0.37, fitted to table 5 and the static test.
+    """Locked rotation and stiffness factor 0.342, fitted to table 5 and the static test.
 
-    Mean over five seeds of a disturbed lattice: penetration -6.5 to +8.8 percent, peak force -2.7 to +7.6 percent.
+    Mean over ten seeds of a disturbed lattice: penetration -8.9 to +2.7 percent, peak force -4.9 to
+    +4.6 percent.
     """
     penetration, force = errors(row, lattice_shift=1e-3, seed=1)
     assert abs(penetration) < 0.1

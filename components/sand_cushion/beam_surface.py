@@ -1,0 +1,235 @@
+"""The beam's top as a surface: straight lines between the tops of the beam's discs.
+
+The top of a disc lies a radius above its centre and moves with its small angle: by ``-radius *
+angle`` along the beam, as the torque ``-radius * force`` of a force there has it. Beyond the
+outermost tops the last lines go on. A force on the surface is shared by the two discs beside its
+foot after the lever rule, which is the gradient of the distance by their tops: what the contacts
+store is what the beam gives them.
+"""
+
+import math
+from collections import namedtuple
+
+from ..common.kernels import inlined
+
+Lever = namedtuple("Lever", "left right share")
+"""A place on the beam: the beam discs left and right of it, and the share of the right one, below 0
+and above 1 beyond the outermost tops."""
+
+Foot = namedtuple("Foot", "lever nx ny height")
+"""The place on the surface that is nearest to a point: its :class:`Lever`, the normal from the
+point to the surface, and the distance (m), negative below it."""
+
+
+@inlined
+def top_of(b, bodies):
+    """Return the top (m) of beam disc b, to the right and upwards.
+
+    Parameters
+    ----------
+    b : int
+        Number of the beam disc.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    tuple of float
+        Place (m).
+    """
+    radius = bodies.radius[b]
+    return bodies.x[b] - radius * bodies.angle[b], bodies.y[b] + radius
+
+
+@inlined
+def is_before(b, x, y, bodies):
+    """Return whether a point belongs to the surface left of the inner beam disc b.
+
+    The border goes through its top, at a right angle to the chord of the tops beside it: discs that
+    are evenly spaced have it halve the surface's angle, and no distance jumps there.
+
+    Parameters
+    ----------
+    b : int
+        Number of the beam disc.
+    x, y : float
+        Point (m).
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    bool
+    """
+    top_x, top_y = top_of(b, bodies)
+    left_x, left_y = top_of(b - 1, bodies)
+    right_x, right_y = top_of(b + 1, bodies)
+    return (x - top_x) * (right_x - left_x) + (y - top_y) * (right_y - left_y) < 0.0
+
+
+@inlined
+def line_under(x, y, bodies):
+    """Return the beam disc at the left end of the line that is next to a point.
+
+    Parameters
+    ----------
+    x, y : float
+        Point (m).
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    int
+        Number of the beam disc.
+    """
+    first, last = bodies.rock + 1, bodies.end - 1
+    if first == last:
+        return first
+    begin, lines = bodies.x[first], last - first
+    guess = math.floor((x - begin) / (bodies.x[last] - begin) * lines)
+    left = first + min(lines - 1, max(0, guess))
+    while left > first and is_before(left, x, y, bodies):
+        left -= 1
+    while left < last - 1 and not is_before(left + 1, x, y, bodies):
+        left += 1
+    return left
+
+
+@inlined
+def foot_of(x, y, bodies):
+    """Return the :class:`Foot` of a point on the surface; a single disc is a level plane.
+
+    Parameters
+    ----------
+    x, y : float
+        Point (m).
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Foot
+    """
+    left = line_under(x, y, bodies)
+    top_x, top_y = top_of(left, bodies)
+    if left + 1 == bodies.end:
+        return Foot(Lever(left, left, 0.0), 0.0, -1.0, y - top_y)
+    right_x, right_y = top_of(left + 1, bodies)
+    along_x, along_y = right_x - top_x, right_y - top_y
+    per_length = 1.0 / math.sqrt(along_x * along_x + along_y * along_y)
+    along_x, along_y = along_x * per_length, along_y * per_length
+    dx, dy = x - top_x, y - top_y
+    share = (dx * along_x + dy * along_y) * per_length
+    height = dy * along_x - dx * along_y
+    return Foot(Lever(left, left + 1, share), along_y, -along_x, height)
+
+
+@inlined
+def lever_at(x, bodies):
+    """Return the :class:`Lever` of the place on the surface above or below ``x`` (m).
+
+    Parameters
+    ----------
+    x : float
+        Place (m).
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    Lever
+    """
+    _, level = top_of(bodies.rock + 1, bodies)
+    left = line_under(x, level, bodies)
+    if left + 1 == bodies.end:
+        return Lever(left, left, 0.0)
+    left_x, _ = top_of(left, bodies)
+    right_x, _ = top_of(left + 1, bodies)
+    return Lever(left, left + 1, (x - left_x) / (right_x - left_x))
+
+
+@inlined
+def surface_height(lever, bodies):
+    """Return the height (m) of the surface at a place.
+
+    Parameters
+    ----------
+    lever : Lever
+        Place on the beam.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
+    _, left = top_of(lever.left, bodies)
+    _, right = top_of(lever.right, bodies)
+    return (1.0 - lever.share) * left + lever.share * right
+
+
+@inlined
+def surface_velocity(lever, bodies):
+    """Return the velocity (m/s) of the surface at a place, to the right and upwards.
+
+    Parameters
+    ----------
+    lever : Lever
+        Place on the beam.
+    bodies : Bodies
+        Columns of all bodies.
+
+    Returns
+    -------
+    tuple of float
+        Velocity (m/s).
+    """
+    left, right, share = lever.left, lever.right, lever.share
+    vx = (1.0 - share) * (bodies.vx[left] - bodies.spin[left]) + share * (
+        bodies.vx[right] - bodies.spin[right]
+    )
+    return vx, (1.0 - share) * bodies.vy[left] + share * bodies.vy[right]
+
+
+@inlined
+def load_top(b, share, fx, fy, bodies):
+    """Give beam disc b its share of a force (N) at the surface.
+
+    Parameters
+    ----------
+    b : int
+        Number of the beam disc.
+    share : float
+        Of the force.
+    fx : float
+        Force to the right (N).
+    fy : float
+        Force upwards (N).
+    bodies : Bodies
+        Columns of all bodies.
+    """
+    bodies.force_x[b] += share * fx
+    bodies.force_y[b] += share * fy
+    bodies.turn[b] -= share * fx
+
+
+@inlined
+def load_surface(lever, fx, fy, bodies):
+    """Hand a force (N) at a place of the surface to the two discs beside it.
+
+    Parameters
+    ----------
+    lever : Lever
+        Place on the beam.
+    fx : float
+        Force to the right (N).
+    fy : float
+        Force upwards (N).
+    bodies : Bodies
+        Columns of all bodies.
+    """
+    load_top(lever.left, 1.0 - lever.share, fx, fy, bodies)
+    if lever.right != lever.left:
+        load_top(lever.right, lever.share, fx, fy, bodies)

@@ -1,0 +1,110 @@
+"""Shape of ``run.json``, which is looked at before anything is computed or drawn from it.
+
+Only what readers rely on is described; other entries are passed over.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+_Name = Annotated[str, Field(max_length=10_000)]
+_Positive = Annotated[float, Field(gt=0.0, lt=1e30)]
+
+
+class _Shape(BaseModel):
+    model_config = ConfigDict(strict=True, extra="ignore")
+
+
+class _Parameter(_Shape):
+    value: int | float | str | bool
+
+
+class _Reported(_Shape):
+    name: _Name
+    statistic: _Name
+    unit: _Name
+    decimals: Annotated[int, Field(ge=0, le=20)]
+
+
+class _Variable(_Shape):
+    role: _Name | None = None
+    label: _Name | None = None
+    reported: list[_Reported] = []
+
+
+class _Panel(_Shape):
+    common: bool = False  # an envelope has none
+
+
+class _Picture(_Shape):
+    name: _Name
+    panels: list[_Panel]
+
+
+class _Component(_Shape):
+    contents: _Name | None = None
+    parameters: dict[str, _Parameter] = {}
+    variables: dict[str, _Variable] = {}
+    pictures: list[_Picture] = []
+
+
+class _Steps(_Shape):
+    step: _Positive | None = None
+
+
+class _System(_Shape):
+    description: _Name = ""
+    master: _Name
+    exchange_step: _Positive
+    components: dict[str, _Steps] = {}
+
+
+class _Reference(_Shape):
+    value: float
+    note: _Name = ""
+
+
+class _Known(_Shape):
+    model_config = ConfigDict(extra="forbid")
+    paper: _Reference | None = None
+    experiment: _Reference | None = None
+    handbook: _Reference | None = None
+
+
+class _References(_Shape):
+    known: dict[str, _Known] = {}
+    remarks: list[_Name] = []
+
+
+class _Run(_Shape):
+    status: _Name
+    name: _Name = ""
+    error: _Name | None = None
+    warnings: list[_Name] = []
+    components: dict[str, _Component] = {}
+    system: _System | None = None
+    differences: dict[str, Any] = {}
+    references: _References = _References()
+    load_cell: _Positive | None = None
+
+
+def check(provenance: Mapping[str, Any]) -> None:
+    """Refuse facts of a run that have not the shape that readers rely on.
+
+    Parameters
+    ----------
+    provenance : mapping
+        Content of ``run.json``.
+
+    Raises
+    ------
+    ValueError
+        The first entry that is wrong, and why.
+    """
+    try:
+        _Run.model_validate(provenance)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise ValueError(f"{place}: {first['msg'].lower()}") from error

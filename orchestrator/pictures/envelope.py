@@ -1,0 +1,62 @@
+"""A declared array of a component along its places: the envelope, and the instant of its peak."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from rockshed.components.common.units import SCREEN_UNITS, ms
+
+from ..core.results.reading import StoredRun
+from ..metrics.roles import elements
+from .style import GREY, ROCK, TRANSMITTED, legend
+
+
+def draw_envelope(
+    run: StoredRun, component: str, told: Mapping[str, Any], axes: Axes, owner: str
+) -> None:
+    """Draw the largest and the least values along a component, and those at the time of the peak.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component : str
+        Name of the component in the system.
+    told : mapping
+        The envelope as it is declared.
+    axes : Axes
+        Where to draw.
+    owner : str
+        Put before the label of the axis.
+    """
+    places, values = _along(run, component, told)
+    values = values / SCREEN_UNITS[told["unit"]]
+    row = int(np.unravel_index(np.abs(values).argmax(), values.shape)[1])
+    high, low = values.max(axis=1), values.min(axis=1)
+    axes.fill_between(places, low, high, color=TRANSMITTED, alpha=0.15, linewidth=0.0)
+    axes.plot(places, high, color=TRANSMITTED, linewidth=1.1, label="largest and least")
+    axes.plot(places, low, color=TRANSMITTED, linewidth=1.1)
+    instant = f"at {run.series['time'][row] / ms:.2f} ms"
+    axes.plot(places, values[:, row], ".-", color=ROCK, linewidth=1.1, markersize=3, label=instant)
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
+    axes.set(xlabel="x (m)", ylabel=f"{owner}{told['label']} ({told['unit']})")
+    axes.set_xlim(places[0], places[-1])
+    legend(axes, loc="best")
+
+
+def _along(
+    run: StoredRun, component: str, told: Mapping[str, Any]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the places (m), shape (n,), and the values, shape (n, rows), ends included."""
+    places = np.array([at[0] for at in elements(run, f"{component}.{told['along']}")])
+    values = np.array(elements(run, f"{component}.{told['variable']}"))
+    ends = elements(run, f"{component}.{told['ends']}") if told["ends"] else []
+    if not ends:
+        return places, values
+    half = 0.5 * (places[1] - places[0])
+    first, last = ends[:2]
+    wider = np.concatenate([places[:1] - half, places, places[-1:] + half])
+    return wider, np.vstack([first, values, last])
