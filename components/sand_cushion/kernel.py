@@ -6,8 +6,9 @@ from ..common.component import OK
 from ..common.kernels import kernel, view
 from ..common.stepping import TOO_MANY_STEPS
 from ..common.substeps import are_too_many, substep_count, substep_length
+from .beam_surface import foot_of
 from .bodies import bodies_of
-from .boundaries import ABSENT, beam_top, boundary_of, lever_at, touch, touch_disc
+from .boundaries import ABSENT, boundary_of, touch, touch_disc
 from .contact_search import rebuild
 from .declarations import FLOOR, LAYOUT, LINEAR, MEAN, PLANES, SUM, UNBOUNDED
 from .faults import (
@@ -112,8 +113,8 @@ def is_under_base(w, x, k):
     inside = 0.0 <= bodies.x[rock] - w[V.box_left] <= w[V.box_width]
     if not inside and w[V.box_wall_height] != UNBOUNDED:
         return False
-    lever = lever_at(bodies.x[rock], bodies)
-    return bodies.y[rock] < beam_top(lever, bodies) - bodies.radius[lever.left]
+    over = foot_of(bodies.x[rock], bodies.y[rock], bodies).height
+    return over < -bodies.radius[rock + 1]  # its centre lies under the beam's axis
 
 
 @kernel

@@ -470,7 +470,7 @@ def _other(size: str, known: Collection[str], names: Sequence[str]) -> str:
     """Say what may have been meant by a size that no component has."""
     variables = {v.name for name in names for v in component(name).layout.variables}
     if size in variables:
-        return "it is a variable, whose value is set when a run begins: `rockshed run --set`"
+        return "it is a variable, and gets its value when a run begins (`rockshed run`)"
     return nearest(size, known)
 
 

@@ -14,7 +14,8 @@ from fmpy import read_model_description
 import rockshed
 from rockshed.components.catalogue import NAMES
 
-WINE = shutil.which("wine64") or shutil.which("wine")
+_PLACES = os.pathsep.join((os.environ.get("PATH", ""), "/usr/lib/wine"))  # the latter is Debian's
+WINE = shutil.which("wine64", path=_PLACES) or shutil.which("wine", path=_PLACES)
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(sys.platform != "linux", reason="compares with FMUs for Linux"),

@@ -234,7 +234,12 @@ def _tell_scale(axes: Axes) -> None:
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     ratio = (box.height / (top - bottom)) / (box.width / (right - left))
     words = "to scale" if abs(ratio - 1.0) < _TO_SCALE else f"heights × {ratio:.2g}"
-    place = {"xycoords": "axes fraction", "xytext": (2, 2), "color": INK, "zorder": 6}
+    place: dict[str, Any] = {
+        "xycoords": "axes fraction",
+        "xytext": (2, 2),
+        "color": INK,
+        "zorder": 6,
+    }
     axes.annotate(words, (0.0, 0.0), ha="left", va="bottom", **place, **_MARK)
 
 

@@ -413,8 +413,8 @@ class _Planner:
         for end in self._ends(target, *_split(target)):
             if end.port.is_constant:
                 what = "is a constant, fixed when the FMU was built, and cannot be set"
-                remedy = "build the FMU anew with another one, rockshed's with `rockshed build"
-                self._refuse(end.name, what, f"{remedy} --size {end.port.name}=...`")
+                remedy = "build the FMU anew with another one (`rockshed build`, sizes=...)"
+                self._refuse(end.name, what, remedy)
             elif not end.port.can_be_set:
                 self._refuse(
                     end.name,
