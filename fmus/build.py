@@ -16,6 +16,7 @@ from filelock import FileLock
 
 from rockshed.components.catalogue import component as catalogued
 from rockshed.components.common.component import Component
+from rockshed.components.common.kept import folder_problem, make_private
 from rockshed.files import write_file
 
 from .description.documentation import documentation
@@ -253,10 +254,15 @@ def store(
     Raises
     ------
     BuildError
-        The folder cannot be written.
+        The folder cannot be written, or by default, others can write there too.
     """
     file = fmu_file(component, sizes, runtime, destination, fmi)
+    if destination is None and (problem := folder_problem(file.parent)):
+        remedy = f"set {FOLDER_VARIABLE} to a folder that you alone can write"
+        raise BuildError(f"{component.name}: built FMUs are run, and {problem}: {remedy}")
     try:
+        if destination is None:
+            make_private(file.parent)
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
             if not (keep and file.is_file() and file.read_bytes() == content):

@@ -7,7 +7,7 @@ reads declarations only, or runs native FMUs, needs no numba.
 import hashlib
 import pickle
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -105,6 +105,7 @@ class _KeptFiles(IndexDataCacheFile):
 
         Numba numbers the files, and names one before it is there. Two processes that compile for
         two processors could then take each other's code, and so could one after a kill in between.
+        What cannot be written, on a full disk for instance, is compiled again next time.
 
         Parameters
         ----------
@@ -114,8 +115,9 @@ class _KeptFiles(IndexDataCacheFile):
             The code.
         """
         name = f"{self._index_name.removesuffix('.nbi')}.{_digest(key)}.nbc"
-        self._save_data(name, data)
-        self._save_index({**self._load_index(), key: name})
+        with suppress(OSError):
+            self._save_data(name, data)
+            self._save_index({**self._load_index(), key: name})
 
     def _load_index(self) -> Any:
         content = kept(Path(self._index_path))
