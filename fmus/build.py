@@ -257,12 +257,9 @@ def store(
         The folder cannot be written, or by default, others can write there too.
     """
     file = fmu_file(component, sizes, runtime, destination, fmi)
-    if destination is None and (problem := folder_problem(file.parent)):
-        remedy = f"set {FOLDER_VARIABLE} to a folder that you alone can write"
-        raise BuildError(f"{component.name}: built FMUs are run, and {problem}: {remedy}")
     try:
         if destination is None:
-            make_private(file.parent)
+            _make_own(component, file.parent)
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
             if not (keep and file.is_file() and file.read_bytes() == content):
@@ -277,6 +274,14 @@ def store(
             f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}"
         ) from error
     return file
+
+
+def _make_own(component: Component, folder: Path) -> None:
+    """Make a folder for FMUs that are run later; refuse one in which others can write."""
+    make_private(folder)
+    if problem := folder_problem(folder):
+        remedy = f"set {FOLDER_VARIABLE} to a folder that you alone can write"
+        raise BuildError(f"{component.name}: built FMUs are run, and {problem}: {remedy}")
 
 
 def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
