@@ -16,7 +16,7 @@ import pytest
 
 from tests.conftest import BUILT
 
-MOMENTS = int(os.environ.get("ROCKSHED_ENDING_MOMENTS", "2"))
+MOMENTS = int(os.environ.get("ROCKSHED_ENDING_MOMENTS", "1"))
 """Moments at which each command is ended; the full test has 10."""
 EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
 MARK = "ROCKSHED_TEST_MARK"

@@ -95,6 +95,7 @@ def place(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_nobody_else_can_change_what_is_kept_built_or_unpacked(place):
     """The exchange loop, FMUs, kernels: while a command runs, and behind it."""
     done = []
