@@ -16,6 +16,7 @@ from filelock import FileLock
 
 from rockshed.components.catalogue import component as catalogued
 from rockshed.components.common.component import Component
+from rockshed.components.common.kept import folder_problem, make_private
 from rockshed.files import write_file
 
 from .description.documentation import documentation
@@ -253,10 +254,12 @@ def store(
     Raises
     ------
     BuildError
-        The folder cannot be written.
+        The folder cannot be written, or by default, others can write there too.
     """
     file = fmu_file(component, sizes, runtime, destination, fmi)
     try:
+        if destination is None:
+            _make_own(component, file.parent)
         file.parent.mkdir(parents=True, exist_ok=True)
         with FileLock(file.parent / ".lock"):
             if not (keep and file.is_file() and file.read_bytes() == content):
@@ -271,6 +274,14 @@ def store(
             f"{component.name}: cannot write {file}: {error.strerror or error}; {remedy}"
         ) from error
     return file
+
+
+def _make_own(component: Component, folder: Path) -> None:
+    """Make a folder for FMUs that are run later; refuse one in which others can write."""
+    make_private(folder)
+    if problem := folder_problem(folder):
+        remedy = f"set {FOLDER_VARIABLE} to a folder that you alone can write"
+        raise BuildError(f"{component.name}: built FMUs are run, and {problem}: {remedy}")
 
 
 def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:

@@ -13,6 +13,7 @@ from pathlib import Path
 from platformdirs import user_data_path
 
 from rockshed.components.common.component import Component
+from rockshed.components.common.kept import folder_problem
 
 from .native.fmu import own_binary, stamp
 from .parts import DESCRIPTION, BuildError, Fmi, Runtime
@@ -154,8 +155,11 @@ def native_is_fresh(
     Returns
     -------
     bool
-        False too if it has no binary for this machine, or is damaged.
+        False too if it has no binary for this machine, is damaged, or lies by default where others
+        can write.
     """
+    if destination is None and folder_problem(fmu_folder(Runtime.NATIVE, fmi)):
+        return False
     try:
         with zipfile.ZipFile(fmu_file(component, sizes, Runtime.NATIVE, destination, fmi)) as found:
             is_here = own_binary(component, fmi) in found.namelist()

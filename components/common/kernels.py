@@ -4,9 +4,10 @@ A component names its module of kernels, and it is imported when the first of th
 reads declarations only, or runs native FMUs, needs no numba.
 """
 
+import hashlib
 import pickle
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -99,6 +100,25 @@ class _KeptFiles(IndexDataCacheFile):
     Numba unpickles both, which can execute anything.
     """
 
+    def save(self, key: Any, data: Any) -> None:
+        """Keep the code of a function for one signature and processor: first it, then its name.
+
+        Numba numbers the files, and names one before it is there. Two processes that compile for
+        two processors could then take each other's code, and so could one after a kill in between.
+        What cannot be written, on a full disk for instance, is compiled again next time.
+
+        Parameters
+        ----------
+        key : tuple
+            Signature, processor and hash of the function.
+        data : tuple
+            The code.
+        """
+        name = f"{self._index_name.removesuffix('.nbi')}.{_digest(key)}.nbc"
+        with suppress(OSError):
+            self._save_data(name, data)
+            self._save_index({**self._load_index(), key: name})
+
     def _load_index(self) -> Any:
         content = kept(Path(self._index_path))
         if content is None:
@@ -118,6 +138,10 @@ class _KeptFiles(IndexDataCacheFile):
 
     def _save_data(self, name: str, data: Any) -> None:
         keep(Path(self._data_path(name)), dumps(data))
+
+
+def _digest(key: Any) -> str:
+    return hashlib.sha256(dumps(key)).hexdigest()[:16]
 
 
 @contextmanager

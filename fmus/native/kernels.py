@@ -52,8 +52,16 @@ def main() -> None:
         llvm.initialize_all_targets()
         llvm.initialize_all_asmprinters()
         for platform in order["platforms"]:
-            Path(f"{platform}.o").write_bytes(emitted(module, TRIPLES[platform], order["cpu"]))
+            _write(Path(f"{platform}.o"), emitted(module, TRIPLES[platform], order["cpu"]))
     json.dump(problems, sys.stdout)
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Write a file, or end with the reason in words: a full disk, for instance."""
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        sys.exit(f"{file.absolute()} cannot be written: {error.strerror or error}")
 
 
 def signatures(instance: Instance) -> dict[str, tuple[Any, ...]]:

@@ -44,6 +44,7 @@ COLUMNS = (
     "beam.midspan.deflection",
     "beam.energy.elastic",
     "beam.energy.strain_estimate",
+    "beam.box.inertia_force",
     "rock.energy.kinetic",
 )
 """Variables that are recorded of a run, besides the energy of its interfaces."""

@@ -16,7 +16,7 @@ import pytest
 
 from tests.conftest import BUILT
 
-MOMENTS = int(os.environ.get("ROCKSHED_ENDING_MOMENTS", "2"))
+MOMENTS = int(os.environ.get("ROCKSHED_ENDING_MOMENTS", "1"))
 """Moments at which each command is ended; the full test has 10."""
 EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
 MARK = "ROCKSHED_TEST_MARK"
@@ -115,11 +115,11 @@ def living(mark: str) -> list[str]:
     return found
 
 
-def ended(process: subprocess.Popen) -> int:
+def ended(process: subprocess.Popen, patience: float = PATIENCE) -> int:
     """Wait for the end of a command and all its processes."""
-    deadline = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + patience
     try:
-        code = process.wait(PATIENCE)
+        code = process.wait(patience)
         while (left := living(process.mark)) and time.monotonic() < deadline:
             time.sleep(0.1)
         assert not left, f"still running: {left}"
@@ -152,7 +152,7 @@ def command(request, tmp_path_factory):
     for file in ("slope.toml", "spt.toml"):
         shutil.copy(EXAMPLES / file, place)
     if not chosen.is_cold:  # its kernels and FMUs are made here
-        assert ended(started(place, chosen.again, chosen.is_cold)) == 0, said(place)
+        assert ended(started(place, chosen.again, chosen.is_cold), 1000.0) == 0, said(place)
     began = time.monotonic()
     assert ended(started(place, chosen.words, chosen.is_cold)) == 0, said(place)
     return chosen, place / RESULTS, time.monotonic() - began

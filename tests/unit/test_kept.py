@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rockshed.components.common import cache
+from rockshed.components.common import cache, kernels
 from rockshed.components.common.kept import folder_problem, keep, kept, make_private
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="modes of POSIX")
@@ -122,6 +122,58 @@ def test_damaged_indices_and_codes_of_numba_are_compiled_anew(tmp_path):
             file.write_bytes(flipped(whole, number) if damage is None else damage)
             assert result(tmp_path, folder) == "9.0\n"
             assert kept(file) is not None, "the damaged file was not replaced"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Kept code of a function for two processors."""
+    made = kernels._KeptFiles(str(tmp_path), "function", "stamp")
+    made.save("wide", ("code for wide vectors", 1))
+    made.save("narrow", ("code for narrow ones", 2))
+    return made
+
+
+def test_of_200_damages_of_each_file_of_numba_none_gives_another_code(files, tmp_path):
+    number = random.Random(6)
+    kinds = sorted(tmp_path.iterdir())
+    assert [file.suffix for file in kinds] == [".nbc", ".nbc", ".nbi"]
+    for file in kinds:
+        whole = file.read_bytes()
+        for _ in range(200):
+            file.write_bytes(flipped(whole, number))
+            assert files.load("wide") in (None, ("code for wide vectors", 1))
+            assert files.load("narrow") in (None, ("code for narrow ones", 2))
+        file.write_bytes(whole)
+    assert files.load("wide") == ("code for wide vectors", 1)
+
+
+def test_processes_that_compile_for_two_processors_never_take_each_others_code(
+    tmp_path, monkeypatch
+):
+    """The other one has looked at the index before, and ends before this one writes its code."""
+    files, other = (kernels._KeptFiles(str(tmp_path), "function", "stamp") for _ in range(2))
+    monkeypatch.setattr(other, "_load_index", dict)
+    write = files._save_data
+
+    def write_later(name, data):
+        other.save("narrow", "code for narrow ones")
+        write(name, data)
+
+    monkeypatch.setattr(files, "_save_data", write_later)
+    files.save("wide", "code for wide vectors")
+    assert files.load("wide") in (None, "code for wide vectors")
+    assert files.load("narrow") in (None, "code for narrow ones")
+
+
+def test_code_is_not_named_before_it_is_there(tmp_path, monkeypatch):
+    """A kill in between must not leave the name of other code that lies there."""
+    files = kernels._KeptFiles(str(tmp_path), "function", "stamp")
+    files.save("wide", "code for wide vectors")
+    next(tmp_path.glob("*.nbi")).write_bytes(b"cut sh")
+    monkeypatch.setattr(files, "_save_data", lambda name, data: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        files.save("narrow", "code for narrow ones")
+    assert files.load("narrow") is None
 
 
 PLANT = """

@@ -198,6 +198,33 @@ def test_runs_that_differ_in_a_size_alone_are_two_runs():
     assert len({task.key for task in every}) == len({(t.key, *t.request.sizes) for t in every})
 
 
+class AnyMetric(dict):
+    """Every metric, of the same value."""
+
+    def __missing__(self, name):
+        return 2.0
+
+    def get(self, name, default=None):
+        return self[name]
+
+
+def test_every_study_makes_its_rows_from_what_a_batch_records():
+    time = np.linspace(0.0, 0.03, 301)
+    recorded = (*batch.COLUMNS, *(f"coupling.sand_{it}.energy" for it in ("rock", "beam")))
+    series = {name: np.sin(100.0 * time) for name in recorded} | {"time": time}
+    for study in studies("sonoda1993"):
+        found = {
+            task.key: Outcome(
+                task.key, COMPLETE, metrics=AnyMetric(), series=series, options={"modulus": 1.0}
+            )
+            for task in study.tasks(True)
+        }
+        assert all(
+            row.computed is not None or row.verdict or row.note
+            for row in study.rows(Outcomes(found, quick=True))
+        )
+
+
 def test_a_batch_looks_at_the_fmus_of_equal_components_and_sizes_once(monkeypatch):
     looked = []
     monkeypatch.setattr(
