@@ -75,7 +75,8 @@ def _different_gravity(run: StoredRun) -> Iterator[str]:
     """Doubt a body and a cushion that do not fall alike."""
     weighed = [*owners(run, Role.STRIKING), *cushions(run)]
     found = [member for member in members(run, Role.GRAVITY) if member.component in weighed]
-    values = {m.column: float(parameter(run, m.component, Role.GRAVITY)) for m in found}
+    given = {member.column: parameter(run, member.component, Role.GRAVITY) for member in found}
+    values = {name: float(value) for name, value in given.items() if value is not None}
     if len(set(values.values())) > 1:
         listed = ", ".join(f"{name} = {value:g}" for name, value in values.items())
         yield f"rock and cushion do not fall alike: {listed} m/s2; give all the same"
