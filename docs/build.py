@@ -30,7 +30,16 @@ SHOWN = {"orchestrator/__init__.py": "api/index.md"}
 """Pages that are made of a module, by the module: links to it go to its page."""
 
 CONTENTS = {
-    "Use": ("getting-started", "python", "command-line", "systems", "results", "fmus", "security"),
+    "Use": (
+        "getting-started",
+        "python",
+        "command-line",
+        "systems",
+        "results",
+        "fmus",
+        "security",
+        "limits",
+    ),
     "Physics": ("components/index", "papers", "sonoda1993"),
     "Reference": ("api/index", "api/components", "api/core", "api/analyses", "api/papers"),
     "Project": ("glossary", "contributing", "changelog"),

@@ -18,7 +18,7 @@ from ..core.system.names import nearest
 from ..files import whole_file, write_file, write_json
 from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
 from ..runs.building import Note, silent
-from ..runs.kept import KeptRuns
+from ..runs.kept import FINISHED, KeptRuns
 from ..tables import Table
 from ..temporary import TemporaryFolder
 from ..versions import versions
@@ -35,8 +35,6 @@ PAPERS = {
 }
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
-FINISHED = ".finished-runs"
-"""Folder of the runs that have ended, until all have: a reproduction that was killed goes on."""
 _PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
 

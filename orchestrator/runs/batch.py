@@ -183,9 +183,7 @@ def run_all(
     try:
         for outcome in _carry_out(list(waiting.values()), processes):
             outcomes[outcome.key] = outcome
-            if kept and outcome.status == COMPLETE:
-                done = waiting[outcome.key]
-                kept.keep(done.system, done.allow_unstable, outcome)
+            _keep(kept, waiting[outcome.key], outcome)
             counted(len(outcomes), len(orders))
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
@@ -205,7 +203,7 @@ def _ended(orders: Sequence[_Order], kept: KeptRuns | None) -> dict[str, Outcome
     return {key: outcome for key, outcome in found.items() if outcome is not None}
 
 
-def run_here(task: Task, note: Note = silent) -> Outcome:
+def run_here(task: Task, note: Note = silent, kept: KeptRuns | None = None) -> Outcome:
     """Carry out one task in this process.
 
     Parameters
@@ -214,6 +212,8 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
         The run.
     note : callable
         Called with a line for each FMU that is built.
+    kept : KeptRuns, optional
+        Where the run is looked for, and kept when it is complete.
 
     Returns
     -------
@@ -225,7 +225,18 @@ def run_here(task: Task, note: Note = silent) -> Outcome:
     InputRefused
         The task cannot be prepared.
     """
-    return run_one(_order(task, note))
+    order = _order(task, note)
+    outcome = _ended([order], kept).get(order.key)
+    if outcome is None:
+        outcome = run_one(order)
+        _keep(kept, order, outcome)
+    return outcome
+
+
+def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome) -> None:
+    """Keep the outcome of a run that is complete."""
+    if kept and outcome.status == COMPLETE:
+        kept.keep(order.system, order.allow_unstable, outcome)
 
 
 def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:

@@ -20,9 +20,20 @@ from ..files import whole_file
 from ..versions import versions
 from .outcome import Outcome
 
+FINISHED = ".finished-runs"
+"""Folder, among the results of a batch, of its runs that have ended, until all have."""
 _PROGRAM = ("core", "metrics", "runs")
 """Rooms of the package from which the outcome of a run follows, besides the FMUs."""
-_DAMAGED = (OSError, ValueError, LookupError, TypeError, EOFError, zipfile.BadZipFile, zlib.error)
+_DAMAGED = (
+    OSError,
+    ValueError,
+    LookupError,
+    TypeError,
+    EOFError,
+    RuntimeError,  # a flag says that a member is encrypted, or packed in a way that is not known
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,9 @@ from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.metrics.load_curve import LoadCurve
+from rockshed.runs import batch
 from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome
+from rockshed.runs.kept import FINISHED
 
 E_BAR = kgf / cm**2
 PLACES = np.linspace(0.0, 0.05, 501)
@@ -124,7 +126,7 @@ def sand(monkeypatch):
                 options={"packing": "square"},
             )
 
-        monkeypatch.setattr(calibration, "run_here", lambda task, note=print: run(task))
+        monkeypatch.setattr(calibration, "run_here", lambda task, *rest: run(task))
         monkeypatch.setattr(
             calibration,
             "run_all",
@@ -291,3 +293,34 @@ def test_everything_wrong_with_the_arguments_is_told_at_once(tmp_path):
     assert where == ["rotation", "seeds", str(tmp_path / "none.csv")]
     with pytest.raises(InputRefused, match="not above zero"):
         calibrate(-1.0)
+
+
+def test_a_calibration_that_was_interrupted_goes_on_where_it_was(monkeypatch, tmp_path):
+    """The FMUs are there; the runs are made up, and the fourth one is not carried out."""
+    carried_out = []
+
+    def run_one(order):
+        carried_out.append(order.key)
+        if len(carried_out) == 4:
+            raise KeyboardInterrupt
+        modulus = order.system.components["sand"].parameters["modulus"]
+        curve = push(float(modulus) / E_BAR, 1, 0.2, 1.0).curve
+        series = {
+            "sand.penetration": curve.depth,
+            "sand.rock.force.y": curve.load,
+            "sand.surface_height": np.array([0.1]),
+            "sand.stable_step": np.array([1e-4]),
+        }
+        return Outcome(order.key, COMPLETE, series=series, options={"packing": "square"})
+
+    monkeypatch.setattr(batch, "run_one", run_one)
+    monkeypatch.setattr(batch, "_carry_out", lambda orders, _workers: map(run_one, orders))
+    with pytest.raises(KeyboardInterrupt):
+        calibrate(38e3, seeds=2, folder=tmp_path / "out")
+    first = carried_out.copy()
+    assert len(list((tmp_path / "out" / FINISHED).iterdir())) == 3
+    result = calibrate(38e3, seeds=2, folder=tmp_path / "out")
+    assert result.best.modulus > 0.0
+    assert len(carried_out) == len(set(carried_out)) + 1  # the fourth one twice
+    assert carried_out[4] == first[3]
+    assert not (tmp_path / "out" / FINISHED).exists()

@@ -8,11 +8,12 @@ from pathlib import Path
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...runs.building import Note, silent
+from ...runs.kept import FINISHED, KeptRuns
 from ..frame import StageProgress, counter, no_progress
 from .curve_file import read_curve
 from .measurement import Measurement, of_stiffness
 from .result import CalibrationResult
-from .search import ROTATIONS, SOUGHT, by_misfit, calibration_of
+from .search import ROTATIONS, SOUGHT, Means, by_misfit, calibration_of
 
 BEST = "fit"
 """Name of the choice of the rotation model that has the curve."""
@@ -50,7 +51,8 @@ def calibrate(
     workers : int, optional
         Number of processes, by default one for each core.
     folder : path, optional
-        Where the results are saved; other files stay there.
+        Where the results are saved; other files stay there. Tests that have ended are kept there
+        until all have: a calibration that was killed or interrupted goes on.
     pictures : bool
         Whether the figure is drawn and saved too.
     progress : callable, optional
@@ -81,20 +83,21 @@ def calibrate(
     changes = dict(values or {})
     measurements = _checked(measurement, rotation, changes, seeds)
     models = list(ROTATIONS) if rotation == BEST else [rotation]
-    count = counter(show, "static tests")
+    kept = KeptRuns(Path(folder) / FINISHED) if folder else None
+    means = Means(workers, note, counter(show, "static tests"), kept)
     with ExitStack() as opened:
         place = opened.enter_context(CalibrationResult.opened(folder)) if folder else None
         calibrations, refused = by_misfit(
             {
-                model: partial(
-                    calibration_of, measurements, model, changes, seeds, workers, note, count
-                )
+                model: partial(calibration_of, measurements, model, changes, seeds, means)
                 for model in models
             }
         )
         result = CalibrationResult(calibrations, refused, rotation == BEST)
         if place is not None:
             result.write(place, pictures, show)
+    if kept is not None:
+        kept.clear()
     result.folder = Path(folder) if folder else None
     return result
 

@@ -16,6 +16,7 @@ from ...core.system.system import Value
 from ...metrics.load_curve import LoadCurve, load_curve
 from ...runs.batch import COMPLETE, INTERRUPTED, Outcome, Task, run_all, run_here, uncounted
 from ...runs.building import Note, silent
+from ...runs.kept import KeptRuns
 from ...runs.request import Request
 from ..frame import Count
 from .fit import Fit, Push, Unreachable, fit, strength, unreachable
@@ -51,6 +52,37 @@ _MARGIN = 1.0 * cm
 
 
 @dataclass(frozen=True)
+class Means:
+    """Means by which static tests are carried out.
+
+    Attributes
+    ----------
+    workers : int, optional
+        Number of processes, by default one for each core.
+    note : callable
+        Called with a line for each FMU that is built.
+    count : Count
+        Called with the numbers of tests done and of all.
+    kept : KeptRuns, optional
+        Tests that have ended before, which are not carried out again, and to which others are
+        added.
+    """
+
+    workers: int | None = None
+    note: Note = silent
+    count: Count = uncounted
+    kept: KeptRuns | None = None
+
+    def here(self, task: Task) -> Outcome:
+        """Carry out one test in this process."""
+        return run_here(task, self.note, self.kept)
+
+    def all(self, tasks: Sequence[Task]) -> Mapping[str, Outcome]:
+        """Carry out tests, and return their outcomes by the keys of the tasks."""
+        return run_all(tasks, self.workers, self.note, self.count, self.kept)
+
+
+@dataclass(frozen=True)
 class Calibration:
     """Fits to all measurements with one model of the sand, from the same tests.
 
@@ -77,9 +109,7 @@ def calibration_of(
     rotation: str = "locked",
     values: Mapping[str, Value] | None = None,
     seeds: int = 5,
-    workers: int | None = None,
-    note: Note = silent,
-    count: Count = uncounted,
+    means: Means = Means(),
 ) -> Calibration:
     """Find E_bar for each measurement with one model of the sand.
 
@@ -93,12 +123,8 @@ def calibration_of(
         Further changes of the case, by ``component.parameter``.
     seeds : int
         Number of samples, two at least.
-    workers : int, optional
-        Number of processes, by default one for each core.
-    note : callable
-        Called with a line for each FMU that is built.
-    count : Count
-        Called with the numbers of tests done and of all.
+    means : Means
+        With what the tests are carried out.
 
     Returns
     -------
@@ -115,13 +141,13 @@ def calibration_of(
         Ctrl-C, also from a test that took it for itself.
     """
     chosen = {"sand.lattice_shift": LATTICE_SHIFT, **ROTATIONS[rotation], **(values or {})}
-    rig = _rig(chosen, max(float(measured.depth[-1]) for measured in measurements), note)
+    rig = _rig(chosen, max(float(measured.depth[-1]) for measured in measurements), means)
     ordered = sorted(measurements, key=lambda measured: measured.stiffness)
-    low = _near(ordered[0], rig)
-    high = low if len(ordered) == 1 else _near(ordered[-1], rig)
+    low = _near(ordered[0], rig, means)
+    high = low if len(ordered) == 1 else _near(ordered[-1], rig, means)
     for _ in range(_ROUNDS):
         moduli = _around(low, high)
-        pushes = _pushes(rig, moduli, seeds, lambda tasks: run_all(tasks, workers, note, count))
+        pushes = _pushes(rig, moduli, seeds, means)
         fits = [fit(measured, pushes) for measured in measurements]
         low = min(result.modulus for result in fits)
         high = max(result.modulus for result in fits)
@@ -201,7 +227,7 @@ class _TestRig:
         return Task(Request(NAME, values, options=options), seed=seed)
 
 
-def _rig(values: Mapping[str, Value], deepest: float, note: Note) -> _TestRig:
+def _rig(values: Mapping[str, Value], deepest: float, means: Means) -> _TestRig:
     """Look how high the sand stands and which step is stable.
 
     In a run of one exchange, the rock far above.
@@ -213,7 +239,7 @@ def _rig(values: Mapping[str, Value], deepest: float, note: Note) -> _TestRig:
         "rock.position0.y": _HIGH,
     }
     probe = Task(Request(NAME, changes, options={"stop_time": 1e-3}), allow_unstable=True)
-    outcome = _ended(run_here(probe, note))
+    outcome = _ended(means.here(probe))
     margin = _MARGIN if outcome.options["packing"] == "random" else 0.0
     return _TestRig(
         values,
@@ -223,16 +249,11 @@ def _rig(values: Mapping[str, Value], deepest: float, note: Note) -> _TestRig:
     )
 
 
-def _pushes(
-    rig: _TestRig,
-    moduli: Sequence[float],
-    seeds: int,
-    run: Callable[[Sequence[Task]], Mapping[str, Outcome]],
-) -> list[Push]:
+def _pushes(rig: _TestRig, moduli: Sequence[float], seeds: int, means: Means) -> list[Push]:
     """Carry out the tests of all samples with each modulus."""
     tests = [(modulus, seed) for modulus in moduli for seed in range(1, seeds + 1)]
     tasks = [rig.task(*test) for test in tests]
-    outcomes = run(tasks)
+    outcomes = means.all(tasks)
     return [
         Push(modulus, seed, _curve(outcomes[task.key]))
         for (modulus, seed), task in zip(tests, tasks, strict=True)
@@ -245,7 +266,7 @@ def _around(low: float, high: float) -> list[float]:
     return [float(modulus) for modulus in np.geomspace(low / _SIDE, high * _SIDE, count)]
 
 
-def _near(measured: Measurement, rig: _TestRig) -> float:
+def _near(measured: Measurement, rig: _TestRig, means: Means) -> float:
     """Return an E_bar (Pa) with which one sample has about the measured load.
 
     Raises
@@ -256,7 +277,7 @@ def _near(measured: Measurement, rig: _TestRig) -> float:
     modulus = _within(measured.stiffness / STATIC_RATIO / cm, LOWEST, HIGHEST)
     tried: list[Push] = []
     for _ in range(_MOST_TRIED):
-        tried.append(Push(modulus, 1, _curve(run_here(rig.task(modulus, 1)))))
+        tried.append(Push(modulus, 1, _curve(means.here(rig.task(modulus, 1)))))
         relation = strength(measured, tried[-1].curve)
         if 1.0 / _NEAR < relation < _NEAR:
             return modulus
