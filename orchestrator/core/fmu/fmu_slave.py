@@ -283,15 +283,15 @@ def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
         what = f"its {_DESCRIPTION_FILE} describes no FMU: it begins with <{root.tag}>"
         raise UnusableError(what, "export it again")
     version = root.get("fmiVersion") or "without a version"
+    if version.startswith(READABLE) and root.find("CoSimulation") is None:
+        kinds = [text for tag, text in _OTHER_KINDS.items() if root.find(tag) is not None]
+        what = f"is for {' and '.join(kinds) or 'nothing'} only; co-simulation is needed"
+        raise UnusableError(what, "export it for co-simulation")
     if not version.startswith(versions):
         what = "shows FMI 2.0 and 3.0" if versions == READABLE else "drives FMI 2.0"
         raise UnusableError(
             f"is FMI {version}; this program {what}", "use an FMU of it for FMI 2.0"
         )
-    if root.find("CoSimulation") is None:
-        kinds = [text for tag, text in _OTHER_KINDS.items() if root.find(tag) is not None]
-        what = f"is for {' and '.join(kinds) or 'nothing'} only; co-simulation is needed"
-        raise UnusableError(what, "export it for co-simulation")
     return root
 
 
