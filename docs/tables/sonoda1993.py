@@ -89,6 +89,21 @@ def lost() -> str:
     return "Means over the other runs alone:\n\n" + "\n".join(lines)
 
 
+def lost_in_short() -> str:
+    """Return whether the means of the README are over all runs."""
+    each = [row("girders", GIRDERS_7.format(span), model) for span in SPANS for model in MODELS]
+    less = [found for found in each if " runs did not end " in found["note"]]
+    where = "[Which runs have no result](docs/sonoda1993.md#runs-without-a-result)"
+    if not less:
+        return f"{where}: none of those in this table."
+    said = "; ".join(
+        f"{found['model']}, {found['quantity'].rpartition(', ')[2]}: "
+        f"{found['note'].partition(' runs did not end ')[0].rpartition('; ')[2]}"
+        for found in less
+    )
+    return f"{where}: in this table, of table 6, {said}. Their means are over the other runs."
+
+
 def effort() -> str:
     """Return the sentence on number and time of the runs."""
     content = kept(PAPER).content
@@ -764,6 +779,7 @@ def mesh_words() -> str:
 TABLES: Mapping[str, Callable[[], str]] = {
     "provenance": provenance,
     "lost": lost,
+    "lost-in-short": lost_in_short,
     "effort": effort,
     "summary": summary,
     "conclusion": conclusion,
