@@ -1,0 +1,37 @@
+"""Blocks of pages that are written from kept results."""
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from .kept import NotKeptError
+from .other_papers import TABLES as OTHERS
+from .sonoda1993 import TABLES as SONODA
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ("README.md", "docs/sonoda1993.md")
+"""Pages with blocks."""
+BLOCK = re.compile(r"^<!-- table: ([\w.-]+)/([\w-]+) -->\n(.*?)^<!-- end -->$", re.M | re.S)
+"""Paper, name, text."""
+
+TABLES: Mapping[str, Mapping[str, Callable[[], str]]] = {"sonoda1993": SONODA, "others": OTHERS}
+"""Functions that write a block, by paper and name."""
+
+
+def filled(text: str) -> str:
+    """Return a page with every block written from what is kept.
+
+    Raises
+    ------
+    NotKeptError
+        A block has a name that nobody writes, or a row that it needs is missing.
+    """
+    return BLOCK.sub(lambda found: block(found[1], found[2]), text)
+
+
+def block(paper: str, name: str) -> str:
+    """Return a block with its marks."""
+    if name not in TABLES.get(paper, {}):
+        raise NotKeptError(f"{paper}/{name}: there is no such table")
+    text = TABLES[paper][name]().strip("\n")
+    return f"<!-- table: {paper}/{name} -->\n{text}\n<!-- end -->"
