@@ -19,6 +19,7 @@ from ..core.system.system import SystemSpec
 from ..core.system.values import written
 from ..tables import Table
 from .job import Job
+from .undriven import undriven
 
 _ELEMENT = re.compile(r"\[[\d,]+\]")
 _CAUSALITIES = ("parameter", "input", "output")
@@ -200,7 +201,7 @@ def describe_system(job: Job) -> Overview:
     if system.bonds:
         bonds = (f"{name} ({bond.giver} -> {bond.taker})" for name, bond in system.bonds.items())
         parts.append(f"power bonds: {', '.join(bonds)}")
-    return Overview(parts)
+    return Overview([*parts, *(f"warning: {text}" for text in undriven(plan))])
 
 
 def _values(plan: Plan) -> Table:

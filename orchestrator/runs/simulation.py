@@ -9,11 +9,14 @@ from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
 from ..core.results.reading import add_metrics, set_warnings
 from ..core.run import simulate as simulate_spec
+from ..core.system.plan import Plan
 from ..metrics import comparison
 from ..temporary import TemporaryFolder
 from .building import Note, silent
+from .job import Job
 from .run import Run, read_run
 from .system import System, case
+from .undriven import undriven
 
 
 def simulate(
@@ -94,6 +97,11 @@ def _system(system: System | str) -> System:
     return system
 
 
+def _warnings(job: Job, plan: Plan) -> list[str]:
+    """Return warnings of the preparation, and of bodies that nothing drives."""
+    return [*job.facts.get("warnings", ()), *undriven(plan)]
+
+
 def _carry_out(
     system: System, folder: Path, progress: Progress | None, allow_unstable: bool, note: Note
 ) -> None:
@@ -104,7 +112,7 @@ def _carry_out(
         sources=job.sources,
         allow_unstable=allow_unstable,
         progress=progress,
-        facts=job.facts,
+        facts=lambda plan: {**job.facts, "warnings": _warnings(job, plan)},
         note=note,
     )
 
