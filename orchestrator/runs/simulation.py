@@ -4,6 +4,9 @@ import weakref
 from contextlib import suppress
 from pathlib import Path
 
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import Component
+
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
@@ -13,6 +16,7 @@ from ..core.system.plan import Plan
 from ..metrics import comparison
 from ..temporary import TemporaryFolder
 from .building import Note, silent
+from .first_compilation import tell_first_compilation
 from .job import Job
 from .run import Run, read_run
 from .system import System, case
@@ -106,6 +110,9 @@ def _carry_out(
     system: System, folder: Path, progress: Progress | None, allow_unstable: bool, note: Note
 ) -> None:
     job = system.job
+    sources = [getattr(source, "component", None) for source in job.sources.values()]
+    here = [made for made in sources if isinstance(made, Component)]
+    tell_first_compilation([*here, *map(component, sorted(job.components))])
     simulate_spec(
         job.system,
         folder,
