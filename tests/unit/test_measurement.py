@@ -124,6 +124,6 @@ def test_a_spring_constant_without_a_unit_is_refused_and_not_taken_for_a_file():
 
 def test_a_file_whose_name_begins_with_a_number_is_a_file(tmp_path):
     file = tmp_path / "39.1 kgf.csv"
-    file.write_text("penetration (cm),load (kgf)\n1,20\n4,80\n")
+    file.write_text("penetration (cm),load (kgf)\n1,20\n2,40\n4,80\n")
     (measured,) = measurements_of(str(file))
     assert measured.stiffness == pytest.approx(20 * 9.80665 / 0.01)
