@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunFailed, UnknownName
     from .runs.building import build_fmu
+    from .runs.catalogue import list_cases, list_components
     from .runs.run import Run, read_run
     from .runs.simulation import simulate
     from .runs.subsystem import Subsystem, component
@@ -41,6 +42,8 @@ _HOMES = {
     "calibrate": "analyses.calibration.run",
     "case": "runs.system",
     "component": "runs.subsystem",
+    "list_cases": "runs.catalogue",
+    "list_components": "runs.catalogue",
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
     "rockfall": "analyses.rockfall.run",
@@ -63,6 +66,8 @@ __all__ = [
     "calibrate",
     "case",
     "component",
+    "list_cases",
+    "list_components",
     "pile",
     "read_run",
     "rockfall",
@@ -83,4 +88,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

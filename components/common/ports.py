@@ -334,11 +334,18 @@ class Bond:
         Body and force in words.
     prefix : str
         Beginning of the names of its members.
+    idle : str
+        What is so while nothing drives its inputs, where that is hardly meant; a run warns of it.
+        Empty where a component does something sensible without a partner.
+    unless : tuple of str
+        A parameter and the word of it with which the bond plays no part; empty for none.
     """
 
     name: str
     description: str
     prefix: str = ""
+    idle: str = ""
+    unless: tuple[str, ...] = ()
 
     def members(self, variables: Sequence[Variable]) -> dict[str, Variable]:
         """Return the variables of the bond by member, in the order of :data:`BOND_MEMBERS`.

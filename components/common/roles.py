@@ -48,6 +48,9 @@ class Role(StrEnum):
     """Depth (m) of the striking body's lowest point under the cushion's surface at the start."""
     SURFACE = "height.surface"
     """Height (m) of the cushion's surface under the striking body at the start."""
+    CLEARANCE = "clearance"
+    """Distance (m) of the striking body's surface from what the cushion rests on; negative where it
+    presses into it."""
     STRUCTURE = "height.structure"
     """Heights (m) of the axis of a structure, an array along it."""
     DEFLECTION = "deflection"

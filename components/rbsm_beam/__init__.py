@@ -21,7 +21,7 @@ COMPONENT = Component(
     faults=FAULTS,
     default_step=1e-5,
     bonds=(
-        Bond("beam", "motion of the discs, force on them"),
+        Bond("beam", "motion of the discs, force on them", idle="no force acts on the beam"),
         Bond("support", "motion of the supports, force on them", "support."),
     ),
     pictures=(

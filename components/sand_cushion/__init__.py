@@ -18,8 +18,19 @@ COMPONENT = Component(
     deferred=DEFERRED,
     default_step=1e-5,
     bonds=(
-        Bond("rock", "motion of the rock, force on it", "rock."),
-        Bond("beam", "motion of the beam's discs, force on them", "beam."),
+        Bond(
+            "rock",
+            "motion of the rock, force on it",
+            "rock.",
+            idle="the sand takes the rock as one that never moves",
+        ),
+        Bond(
+            "beam",
+            "motion of the beam's discs, force on them",
+            "beam.",
+            idle="the sand lies on a beam that never moves",
+            unless=("base", "floor"),
+        ),
     ),
     contents="granular.discs",
 )

@@ -522,6 +522,13 @@ LAYOUT = Layout(
             role=Role.PENETRATION,
         ),
         out(
+            "clearance",
+            "distance of the rock's surface from the base, or from its continuation where the rock "
+            "is beside it, in the last internal step; negative where it presses into it",
+            "m",
+            role=Role.CLEARANCE,
+        ),
+        out(
             "surface_height",
             "height of the sand's surface at the start, under the rock",
             "m",

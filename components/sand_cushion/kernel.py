@@ -10,7 +10,7 @@ from .beam_surface import foot_of
 from .bodies import bodies_of
 from .boundaries import ABSENT, boundary_of, touch, touch_disc
 from .contact_search import rebuild
-from .declarations import FLOOR, LAYOUT, LINEAR, MEAN, PLANES, SUM, UNBOUNDED
+from .declarations import BEAM_DISCS, FLOOR, LAYOUT, LINEAR, MEAN, PLANES, SUM, UNBOUNDED
 from .faults import (
     DIVERGED,
     LIST_FULL,
@@ -174,6 +174,7 @@ def begin(w, x, k):
     set_boundaries(0.0, w, x, k)
     w[V.surface_height] = surface_under_rock(w, x, k)
     w[V.penetration] = penetration(0.0, w)
+    w[V.clearance] = clearance(w, x, k)
     status = rock_fault(w, x, k)
     if status != OK:
         return status
@@ -337,6 +338,34 @@ def penetration(ahead, w):
 
 
 @kernel
+def clearance(w, x, k):
+    """Return the distance (m) of the rock's surface from the base, as its contact is computed.
+
+    Parameters
+    ----------
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+
+    Returns
+    -------
+    float
+        Distance (m), negative where they overlap. The base goes on beside the walls.
+    """
+    bodies = bodies_of(x, k)
+    rock = bodies.rock
+    if w[V.base] == FLOOR:
+        return bodies.y[rock] - bodies.radius[rock] - w[V.base_y]
+    if w[V.base] != BEAM_DISCS:
+        return foot_of(bodies.x[rock], bodies.y[rock], bodies).height - bodies.radius[rock]
+    least = math.inf
+    for disc in range(rock + 1, bodies.end):
+        least = min(least, touch_disc(rock, disc, bodies).gap)
+    return least
+
+
+@kernel
 def step(t, h, w, x, k):
     """Advance by a communication step.
 
@@ -378,4 +407,5 @@ def step(t, h, w, x, k):
         collect_forces(1.0, True, w, x, k)
     publish_energies(kinetic, potential, w, view(x, k, A.sums))
     w[V.penetration] = penetration(h if linear else 0.0, w)
+    w[V.clearance] = clearance(w, x, k)
     return OK if math.isfinite(w[V.energy_residual]) else DIVERGED

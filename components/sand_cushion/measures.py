@@ -39,26 +39,6 @@ def contact_frequency(parameters: Parameters) -> float:
     return math.sqrt(factor * modulus / (density * math.pi)) / radius / (2.0 * math.pi)
 
 
-def base_height(parameters: Parameters, axis: Sequence[float]) -> float:
-    """Return the height of the base under the sand: the top of the beam's discs, or the floor.
-
-    Parameters
-    ----------
-    parameters : mapping of str to value
-        Parameters of the cushion.
-    axis : sequence of float
-        Heights (m) of the axis of the beam, empty without one.
-
-    Returns
-    -------
-    float
-        In m.
-    """
-    if parameters["base"] == "floor" or len(axis) == 0:
-        return float(parameters["base.y"])
-    return max(axis) + float(parameters["beam.radius"])
-
-
 def doubts(parameters: Parameters, structures: Sequence[str]) -> list[str]:
     """Return the reasons why the results may not mean what the user has in mind.
 

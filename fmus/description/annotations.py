@@ -1,7 +1,7 @@
 """Annotations of a model description for what FMI has no words for.
 
-They tell roles, older names, figures and pictures. Each variable that has any, and the component,
-carry an element with the name of this program; other tools pass it over.
+They tell roles, older names, figures, pictures and power bonds. Each variable that has any, and the
+component, carry an element with the name of this program; other tools pass it over.
 """
 
 from dataclasses import fields
@@ -15,7 +15,7 @@ from rockshed.components.common.ports import Variable
 TOOL = "org.rockshed"
 """Name of the tool that the annotations are for."""
 _OF_VARIABLES = ("role", "label", "formerly", "reported")
-_OF_COMPONENTS = ("contents", "pictures")
+_OF_COMPONENTS = ("contents", "pictures", "bonds")
 
 
 def of_variable(variable: Variable) -> etree._Element | None:

@@ -201,7 +201,8 @@ def full_scale_system(
         "sand": _sand(fmus["sand"], impact, kinematics, forces),
         "rock": _rock(fmus["rock"], impact, discs or impact.discs),
     }
-    watch = ["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"]
+    watched = ("transmitted_force", "rock.force.y", "penetration", "clearance")
+    watch = [f"sand.{name}" for name in watched]
     spacing = 0.0
     if impact.span:
         spacing = impact.span / (elements or impact.elements)

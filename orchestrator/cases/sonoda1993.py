@@ -310,6 +310,7 @@ _WATCHED = (
     "sand.transmitted_force",
     "sand.rock.force.y",
     "sand.penetration",
+    "sand.clearance",
     "beam.midspan.deflection",
     "beam.energy.elastic",
     "beam.energy.strain_estimate",

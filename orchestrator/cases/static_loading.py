@@ -134,7 +134,12 @@ def static_system(
         exchange_step=exchange,
         output_interval=5e-3,
         state_interval=0.1,
-        watch=["sand.transmitted_force", "sand.rock.force.y", "sand.penetration"],
+        watch=[
+            "sand.transmitted_force",
+            "sand.rock.force.y",
+            "sand.penetration",
+            "sand.clearance",
+        ],
     )
 
 

@@ -21,7 +21,7 @@ Every 700 objects, as Python does by itself, takes a twentieth of the start.
 COMMANDS = {
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
-    "info": "Show an FMU or a system: ports, values, connections.",
+    "info": "Show an FMU, a component or a system: ports, values, connections.",
     "export": "Write a system as TOML, with its FMUs, to change and run it.",
     "run": "Run a case or a system file, compare, draw.",
     "plot": "Draw a run again, also one that failed or was killed.",

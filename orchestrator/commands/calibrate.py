@@ -1,7 +1,6 @@
 """The command ``rockshed calibrate``: E_bar of a sand from a measurement."""
 
 import json
-import re
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,11 +8,10 @@ from typing import Annotated, Any
 import typer
 
 from ..analyses.calibration.files import DATA
-from ..analyses.calibration.measurement import FORCES, LENGTHS, Measurement, of_stiffness, table_4
+from ..analyses.calibration.measurement import Measurement, of_text, table_4
 from ..analyses.calibration.result import CalibrationResult
 from ..analyses.calibration.run import MeasurementLike, calibrate, measurements_of
 from ..core.errors import InputRefused, Problem, RunFailed
-from ..core.system.values import finite_number
 from .analysis import options_named, stages
 from .assignments import values_of
 from .options import Assignments, Json, Quiet, Workers
@@ -22,12 +20,6 @@ from .screen import RUN_FAILED, Screen, opened
 
 PAPER = "sonoda1993"
 """Name of the six tests of table 4, in the place of a file."""
-STIFFNESSES = {
-    f"{force}/{length}": factor / size
-    for force, factor in FORCES.items()
-    for length, size in LENGTHS.items()
-}
-"""Units of spring constants and their sizes (N/m)."""
 
 _OPTIONS = ("rotation", "values", "seeds", "workers", "folder")
 """Arguments of the analysis that are options of the command."""
@@ -160,39 +152,5 @@ def measurement_from(
         remedy = f"{example}, or {PAPER} for table 4"
         raise InputRefused([Problem("calibrate", text, remedy)])
     if stiffness is not None:
-        return of_stiffness(stiffness_from(stiffness), f"k = {stiffness}")
+        return of_text(stiffness, "--stiffness")
     return table_4() if target == PAPER else Path(str(target))
-
-
-def stiffness_from(text: str) -> float:
-    """Read a spring constant.
-
-    Parameters
-    ----------
-    text : str
-        Number and unit: ``39.1 kgf/cm``.
-
-    Returns
-    -------
-    float
-        Spring constant (N/m).
-
-    Raises
-    ------
-    InputRefused
-        No number, no or another unit, not above zero.
-    """
-    parts = re.fullmatch(r"\s*(\S*?\d\.?)\s*([A-Za-z]+/[A-Za-z]+)?\s*", text)
-    value = finite_number(parts.group(1)) if parts else None
-    remedy = f"write a number and one of {', '.join(STIFFNESSES)}: --stiffness '39.1 kgf/cm'"
-    if parts is None or value is None:
-        fault = f"{text!r} is no spring constant"
-    elif parts.group(2) not in STIFFNESSES:
-        unit = f"the unit {parts.group(2)}" if parts.group(2) else "no unit"
-        fault = f"{text!r} has {unit}"
-    elif value <= 0.0:
-        fault = f"{text!r} is not above zero"
-        remedy = "give the measured spring constant"
-    else:
-        return value * STIFFNESSES[parts.group(2)]
-    raise InputRefused([Problem("--stiffness", fault, remedy)])

@@ -5,8 +5,13 @@ from typing import Annotated
 
 import typer
 
+from rockshed.components.catalogue import NAMES
+
+from ..cases.registry import cases
+from ..core.errors import InputRefused, Problem
+from ..core.system.names import nearest
 from ..runs.export import system_text
-from ..runs.inspection import describe_fmu
+from ..runs.inspection import describe_component, describe_fmu
 from ..runs.request import Request
 from ..runs.system import System
 from ..runs.target import is_fmu
@@ -17,8 +22,8 @@ from .screen import opened
 _Subject = Annotated[
     str,
     typer.Argument(
-        metavar="FMU|CASE|SYSTEM.toml",
-        help="An FMU, also a stranger's, a case, or a system file.",
+        metavar="FMU|COMPONENT|CASE|SYSTEM.toml",
+        help="An FMU, also a stranger's, a component such as RBSMBeam, a case, or a system file.",
     ),
 ]
 _Toml = Annotated[
@@ -27,14 +32,29 @@ _Toml = Annotated[
 
 
 def command(target: _Subject, toml: _Toml = False, model: ModelName = None) -> None:
-    """Show an FMU or a system: ports, values, connections."""
+    """Show an FMU, a component or a system: ports, values, connections."""
     with opened() as screen:
         if is_fmu(target):
             screen.overview(describe_fmu(Path(target)))
             return
+        if target in NAMES:
+            screen.overview(describe_component(target))
+            return
         with options_named(("model",), target):
-            system = System.prepared(Request(target, model=model))
+            request = Request(target, model=model)
+            if not request.is_file:
+                _refuse_unknown(target)
+            system = System.prepared(request)
         if toml:
             screen.out.file.write(system_text(system.spec))
         else:
             screen.overview(system.describe())
+
+
+def _refuse_unknown(target: str) -> None:
+    """Refuse a name that neither a case nor a component has."""
+    of_cases = (name for case in cases().values() for name in (case.name, *case.other_names))
+    known = [*of_cases, *NAMES]
+    if target not in known:
+        what = "is no FMU, no component, no case and no system file"
+        raise InputRefused([Problem(target, what, nearest(target, known))])

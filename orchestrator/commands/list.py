@@ -1,8 +1,6 @@
 """The command ``rockshed list``: cases and components."""
 
-from rockshed.components.catalogue import NAMES, component
-
-from ..cases.registry import cases
+from ..runs.catalogue import list_cases, list_components
 from ..tables import Table
 from .screen import opened
 
@@ -11,11 +9,7 @@ def command() -> None:
     """List all cases and components."""
     with opened() as screen:
         names = Table(("case", ""))
-        for case in cases().values():
-            names.add(" = ".join((case.name, *case.other_names)), case.summary)
-        parts = Table(("component", "", "sizes"))
-        for name in NAMES:
-            declared = component(name)
-            sizes = (f"{size} = {entry.default}" for size, entry in declared.sizes.items())
-            parts.add(name, declared.title, ", ".join(sizes))
-        screen.show(names, "", parts)
+        for row in list_cases():
+            others = f" = {row['other names']}" if row["other names"] else ""
+            names.add(f"{row['case']}{others}", row["summary"])
+        screen.show(names, "", list_components())

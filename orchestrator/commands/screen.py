@@ -188,7 +188,7 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
 @contextmanager
 def without_warnings_of_libraries() -> Iterator[None]:
     """Keep from the screen what libraries say to programmers, unless Python was asked for it."""
-    loud = [logging.getLogger(name) for name in ("matplotlib", "ezdxf")]
+    loud = [logging.getLogger(name) for name in ("matplotlib", "ezdxf", "rockshed")]
     before = [logger.level for logger in loud]
     with warnings.catch_warnings():
         if not sys.warnoptions:

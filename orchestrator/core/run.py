@@ -4,7 +4,7 @@ import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NoReturn
@@ -28,6 +28,9 @@ from .system.plan import Plan
 from .system.planning import make_plan
 from .system.system import SystemSpec
 
+Facts = Mapping[str, Any]
+"""Facts of a run by their key in its provenance."""
+
 
 def sources_of(system: SystemSpec) -> dict[str, Source]:
     """Return the FMU files of a system by component."""
@@ -41,7 +44,7 @@ def simulate(
     sources: Mapping[str, Source] | None = None,
     allow_unstable: bool = False,
     progress: Progress | None = None,
-    facts: Mapping[str, Any] | None = None,
+    facts: Facts | Callable[[Plan], Facts] | None = None,
     note: Callable[[str], None] = lambda text: None,
 ) -> StoredRun:
     """Run a system and write its results into a folder.
@@ -62,8 +65,9 @@ def simulate(
         Warn of steps that are too long, and do not refuse them.
     progress : callable, optional
         Called now and then with the time reached and the stop time (s).
-    facts : mapping, optional
-        Added to the provenance of the run.
+    facts : mapping or callable, optional
+        Added to the provenance of the run, or a function that gives it from the plan. Warnings
+        under ``warnings`` become those of the run.
     note : callable, optional
         Called with a line before the run if its results will be large.
 
@@ -81,11 +85,13 @@ def simulate(
     """
     made_from = {**sources_of(system), **(sources or {})}
     plan = _plan(system, made_from, allow_unstable)
+    known = dict(facts(plan) if callable(facts) else facts or {})
+    plan = replace(plan, warnings=(*plan.warnings, *known.pop("warnings", ())))
     with Interruption() as interruption, RunFolder(folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
         session = _Session(plan, made_from, results, interruption)
         try:
-            session.prepare(allow_unstable, dict(facts or {}))
+            session.prepare(allow_unstable, known)
             if large := session.large_results():
                 note(large)
             session.run(progress)

@@ -26,8 +26,8 @@ class Reader:
     Attributes
     ----------
     measures : str
-        Module with ``contact_frequency(parameters)``, ``base_height(parameters, axis)``,
-        ``doubts(parameters, structures)`` and ``description(parameters)``.
+        Module with ``contact_frequency(parameters)``, ``doubts(parameters, structures)`` and
+        ``description(parameters)``.
     states : str
         Module with ``decoded(state)``, which gives the geometry in a serialized state.
     """

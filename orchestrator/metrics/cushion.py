@@ -10,8 +10,8 @@ from . import contents, names
 from .energy import driven
 from .filtering import load_cell, low_pass
 from .load_curve import DEPTH, LoadCurve, driven_curve
-from .roles import column, elements, members, owners, parameters, recorded
-from .values import Samples, extreme, integral, of_each
+from .roles import column, owners, parameters, recorded
+from .values import Samples, extreme, integral, least, of_each
 
 SETTLING = 0.5
 """Cut-off of the settled forces, as a part of the natural frequency of a sand disc on one
@@ -223,13 +223,13 @@ def _way(run: StoredRun, cushion: str) -> Iterator[Metric]:
         return
     depth, _ = extreme(run, penetration)
     yield Metric(names.PENETRATION, depth, "m")
-    surface, base = column(run, cushion, Role.SURFACE), base_height(run, cushion)
-    if surface is not None and base is not None:
-        yield Metric(names.CLEARANCE, float(run.series[surface][0]) - base - depth, "m")
+    clearance = column(run, cushion, Role.CLEARANCE)
+    if clearance is not None:
+        yield Metric(names.CLEARANCE, least(run, clearance), "m")
 
 
-def base_height(run: StoredRun, cushion: str) -> float | None:
-    """Return the height of what a cushion rests on, at the start.
+def thickness_at_start(run: StoredRun, cushion: str) -> float | None:
+    """Return the height of a cushion's surface over its base at the start, where the body is.
 
     Parameters
     ----------
@@ -241,17 +241,13 @@ def base_height(run: StoredRun, cushion: str) -> float | None:
     Returns
     -------
     float or None
-        In m: the top of the structure's discs, or the floor. None where it is not known.
+        In m: the depth to which the body may sink until it touches the base. None where it was not
+        recorded.
     """
-    known = contents.measures(run, cushion)
-    if known is None:
+    depth, clearance = (column(run, cushion, role) for role in (Role.PENETRATION, Role.CLEARANCE))
+    if depth is None or clearance is None:
         return None
-    axis = [
-        float(values[0])
-        for member in members(run, Role.STRUCTURE)
-        for values in elements(run, member.column)
-    ]
-    return float(known.base_height(parameters(run, cushion), axis))
+    return float(run.series[depth][0] + run.series[clearance][0])
 
 
 def still_in_contact(run: StoredRun) -> bool:

@@ -9,7 +9,7 @@ from rockshed.components.common.units import kN, mm, ms
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import contents, names
-from .cushion import base_height, cushions
+from .cushion import cushions, thickness_at_start
 from .energy import driven, structures
 from .headlines import headlines
 from .roles import column, members, owners, parameter, parameters
@@ -95,10 +95,8 @@ def _of_cushion(run: StoredRun, cushion: str) -> Iterator[str]:
 
 def _thickness(run: StoredRun, cushion: str) -> float:
     """Return the height (m) of a cushion's surface over its base at the start, inf if unknown."""
-    surface, base = column(run, cushion, Role.SURFACE), base_height(run, cushion)
-    if surface is None or base is None:
-        return math.inf
-    return float(run.series[surface][0]) - base
+    thickness = thickness_at_start(run, cushion)
+    return math.inf if thickness is None else thickness
 
 
 def _no_cushion(run: StoredRun, cushion: str) -> Iterator[str]:

@@ -38,6 +38,25 @@ def extreme(run: StoredRun, column: str) -> tuple[float, float]:
     return float(run.series[column][at]), float(run.series["time"][at])
 
 
+def least(run: StoredRun, column: str) -> float:
+    """Return the smallest value of an output.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    column : str
+        ``component.output``.
+
+    Returns
+    -------
+    float
+        Over all exchanges if the run watched the output and has ended, else over the rows.
+    """
+    known = _watched(run, f"{column} minimum")
+    return float(run.series[column].min()) if known is None else known
+
+
 def integral(run: StoredRun, column: str) -> float:
     """Return the integral of an output over the time.
 

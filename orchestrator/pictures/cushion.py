@@ -9,7 +9,7 @@ from rockshed.components.common.units import cm, kgf, kN, ms
 
 from ..core.results.reading import StoredRun
 from ..metrics import names
-from ..metrics.cushion import base_height, both_forces, curve_of, cut_off, settled
+from ..metrics.cushion import both_forces, curve_of, cut_off, settled, thickness_at_start
 from ..metrics.load_curve import DEPTH
 from ..metrics.roles import column
 from ..metrics.values import extreme
@@ -133,9 +133,8 @@ def penetration(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -
             fontsize=8.5,
             color=ROCK,
         )
-        surface, base = column(run, cushion, Role.SURFACE), base_height(run, cushion)
-        if surface is not None and base is not None:
-            thickness = float(run.series[surface][0]) - base
+        thickness = thickness_at_start(run, cushion)
+        if thickness is not None:
             reference_line(axes, thickness / cm, "base", "-")
         draw_references(axes, known.get(names.PENETRATION), "cm", "largest")
         axes.axhline(0.0, color=GREY, linewidth=0.7)

@@ -1,5 +1,6 @@
 """Any recorded variables over time, a panel for each unit."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from rockshed.components.common.units import ms
+from rockshed.components.common.units import UNITS, ms
 
 from ..core.results.series import Series
 from .style import WIDTH, over_time, styled
@@ -63,7 +64,7 @@ def _panel(axes: Axes, unit: str, members: Sequence[Series]) -> None:
         axes.plot(time / scale, variable.values, label=f"{variable.name}")
     if time.size:
         over_time(axes, time / scale)
-    axes.set_ylabel("" if unit == "1" else unit)
+    axes.set_ylabel(_label(unit))
     axes.set_xlabel("time (ms)" if short else "time (s)")
     axes.label_outer(remove_inner_ticks=True)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=_columns(members))
@@ -72,3 +73,18 @@ def _panel(axes: Axes, unit: str, members: Sequence[Series]) -> None:
 def _columns(members: Sequence[Series]) -> int:
     """Return the number of columns of a legend."""
     return -(-len(members) // _LEGEND_LINES)
+
+
+def _label(unit: str) -> str:
+    """Return quantity and unit as the axis shows them; of a number without unit, nothing.
+
+    A torque is called a moment: both are N m, and the name of the variable tells which.
+    """
+    if unit == "1":
+        return ""
+    shown = unit.replace(".", " ")
+    if unit not in UNITS:
+        return f"({shown})"
+    quantity = UNITS[unit].quantity.replace("Torque", "Moment")
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", quantity).lower()
+    return f"{words} ({shown})"

@@ -396,7 +396,9 @@ def build_fmu(
     sizes : mapping of str to int, optional
         Sizes that differ from the defaults; the name of the file then has them.
     folder : str or Path, optional
-        Folder of the file, by default that of built FMUs.
+        The FMU goes into its folder ``python``, ``native`` or ``native-fmi3``, as those of
+        ``rockshed build`` do, so that none takes the place of another kind; by default into the
+        folder of built FMUs.
     runtime : str, optional
         ``python``: with Python inside, which every processor runs; ``native``: needs no Python.
         By default Python, with FMI 3 native.
@@ -422,8 +424,8 @@ def build_fmu(
     --------
     >>> import rockshed, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     rockshed.build_fmu("FallingRock", folder=folder).name
-    'FallingRock.fmu'
+    ...     rockshed.build_fmu("FallingRock", folder=folder).relative_to(folder).as_posix()
+    'python/FallingRock.fmu'
     """
     export = Export(runtime, platforms, fmi)
     built = component_of(name)
@@ -437,7 +439,8 @@ def build_fmu(
         problems += [Problem(f"{built.name}: sizes", text) for text in error.problems]
     if problems:
         raise InputRefused(problems)
-    place = Path(folder) if folder is not None else None
+    runtime_folder = folder_name(Runtime(export.chosen_runtime), Fmi(export.fmi))
+    place = Path(folder) / runtime_folder if folder is not None else None
     (file,) = _build([built], chosen, {Runtime(export.chosen_runtime): place}, export)
     return file
 

@@ -78,7 +78,7 @@ class Run(reading.StoredRun):
         >>> system = rockshed.case("lab-impact", in_process=True, stop_time=0.001)
         >>> figure = rockshed.simulate(system).plot("rock.velocity.y", "sand.rock.force.*")
         >>> [axes.get_ylabel() for axes in figure.axes]
-        ['m/s', 'N']
+        ['velocity (m/s)', 'force (N)']
         """
         if not names:
             remedy = f"name some, {', '.join([*self][1:4])} for instance; * stands for any text"

@@ -4,16 +4,23 @@ import weakref
 from contextlib import suppress
 from pathlib import Path
 
+from rockshed.components.catalogue import component
+from rockshed.components.common.component import Component
+
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
 from ..core.results.reading import add_metrics, set_warnings
 from ..core.run import simulate as simulate_spec
+from ..core.system.plan import Plan
 from ..metrics import comparison
 from ..temporary import TemporaryFolder
 from .building import Note, silent
+from .first_compilation import tell_first_compilation
+from .job import Job
 from .run import Run, read_run
 from .system import System, case
+from .undriven import undriven
 
 
 def simulate(
@@ -94,17 +101,25 @@ def _system(system: System | str) -> System:
     return system
 
 
+def _warnings(job: Job, plan: Plan) -> list[str]:
+    """Return warnings of the preparation, and of bodies that nothing drives."""
+    return [*job.facts.get("warnings", ()), *undriven(plan)]
+
+
 def _carry_out(
     system: System, folder: Path, progress: Progress | None, allow_unstable: bool, note: Note
 ) -> None:
     job = system.job
+    sources = [getattr(source, "component", None) for source in job.sources.values()]
+    here = [made for made in sources if isinstance(made, Component)]
+    tell_first_compilation([*here, *map(component, sorted(job.components))])
     simulate_spec(
         job.system,
         folder,
         sources=job.sources,
         allow_unstable=allow_unstable,
         progress=progress,
-        facts=job.facts,
+        facts=lambda plan: {**job.facts, "warnings": _warnings(job, plan)},
         note=note,
     )
 

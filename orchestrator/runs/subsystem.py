@@ -20,6 +20,7 @@ from rockshed.components.common.ports import Causality, Variable
 from ..core.errors import UnknownName
 from ..core.system.names import nearest
 from ..tables import Table
+from .first_compilation import tell_first_compilation
 
 NOT_INITIALISED = "call initialise() first"
 """Why a component cannot step that is not initialised."""
@@ -85,6 +86,7 @@ class Subsystem:
         """
         self.time = 0.0
         self._why_no_step = NOT_INITIALISED
+        tell_first_compilation([self.component])
         self.instance.initialise()
         self._why_no_step = ""
 

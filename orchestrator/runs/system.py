@@ -479,8 +479,13 @@ class System:
     def _repr_html_(self) -> str:
         table = Table(("component", "FMU", "values"))
         for name, spec in self.spec.components.items():
-            table.add(name, Path(spec.fmu).name, str(len(spec.parameters)))
-        return f"<p>{escape(repr(self)[1:-1])}</p>{table._repr_html_()}"
+            values = (f"{key} = {value}" for key, value in spec.parameters.items())
+            table.add(name, Path(spec.fmu).name, ", ".join(values))
+        shared = Table(("shared value", "", "set in"))
+        for name, entry in self.spec.shared.items():
+            shared.add(name, str(entry.value), ", ".join(entry.targets))
+        more = shared._repr_html_() if len(shared) else ""
+        return f"<p>{escape(repr(self)[1:-1])}</p>{table._repr_html_()}{more}"
 
 
 def _in_process(name: str, made: Component, sizes: Mapping[str, int] | None) -> Source:

@@ -884,3 +884,16 @@ def test_a_killed_run_can_be_drawn_and_a_second_run_waits_for_nobody(rockshed, l
     assert rockshed("run", "lab-impact", "--output-dir", tmp_path / "run", *SHORT).exit_code == 0
     assert read_run(tmp_path / "run").status == "complete"
     assert not (tmp_path / "run.running").exists()
+
+
+def test_info_shows_a_component_by_its_name_and_an_unknown_name_is_answered_with_the_nearest(
+    rockshed,
+):
+    shown = in_one_line(rockshed("info", "RBSMBeam").stdout)
+    assert "elements = 24, support_count = 2" in shown
+    assert "section.area m2 0.001185" in shown
+    assert "moment[1..24] N.m" in shown
+    wrong = rockshed("info", "RBSMBeem")
+    assert wrong.exit_code == 2
+    assert "RBSMBeem: is no FMU, no component, no case" in in_one_line(wrong.stderr)
+    assert "did you mean RBSMBeam?" in in_one_line(wrong.stderr)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import rockshed
 from rockshed.bench.monolithic import Monolith, from_system
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
@@ -162,3 +163,17 @@ def test_headline_impulses_do_not_depend_on_the_rows(fmus, paper, tmp_path):
         )
     fine = integral(paper, "sand.transmitted_force")
     assert integral(coarse, "sand.transmitted_force") == pytest.approx(fine, rel=0.02)
+
+
+def test_the_least_distance_of_rock_and_base_needs_no_recorded_beam(tmp_path):
+    """The beam is in its place whatever of it is recorded: layer less depth, but for its own way."""
+    options = {"in_process": True, "coupling": "impulse", "stop_time": 0.012}
+    plain = rockshed.simulate(rockshed.case("lab-impact", **options))
+    bare = rockshed.simulate(rockshed.case("lab-impact", **options, record=["sand.*", "rock.*"]))
+    name = "least_distance_of_rock_and_base"
+    assert not any(column.startswith("beam.position") for column in bare)
+    assert bare.metrics[name].value == plain.metrics[name].value
+    depth = plain.metrics["penetration"].value
+    sag = np.abs(plain["beam.midspan.deflection"].values).max()
+    assert plain.metrics[name].value == pytest.approx(0.1 - depth, abs=sag + 1e-4)
+    assert 0.0 < sag < 2e-3

@@ -97,3 +97,23 @@ def test_values_that_a_component_does_not_take_are_refused():
     with pytest.raises(rockshed.ComponentError, match="must be a finite number"):
         rock["force.y"] = float("nan")
     rock["force.y"] = 3.0
+
+
+def test_fmus_of_two_runtimes_in_one_folder_stay_apart(tmp_path, monkeypatch):
+    """What is written is looked at without building: the place alone is the question."""
+    from rockshed.runs import building
+
+    places = []
+
+    def noted(components, sizes, folders, export):
+        places.extend(folders.values())
+        return [next(iter(folders.values())) / "FallingRock.fmu"]
+
+    monkeypatch.setattr(building, "_build", noted)
+    for choice in ({}, {"runtime": "native"}, {"fmi": 3}):
+        rockshed.build_fmu("FallingRock", folder=tmp_path, **choice)
+    assert [place.relative_to(tmp_path).as_posix() for place in places] == [
+        "python",
+        "native",
+        "native-fmi3",
+    ]

@@ -72,7 +72,7 @@ def test_any_variables_are_drawn_in_a_panel_for_each_unit(run):
         "rock.force.y" if "rock.force.y" in run else "sand.rock.force.y", "beam.energy.*"
     )
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["N", "J"]
+    assert labels == ["force (N)", "energy (J)"]
     assert figure.axes[-1].get_xlabel() == "time (ms)"
     named = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
     assert "beam.energy.elastic" in named
@@ -160,3 +160,58 @@ def test_progress_is_told(tmp_path):
         fall.add("rock", "FallingRock"), progress=lambda reached, stop: told.append((reached, stop))
     )
     assert told[-1] == (pytest.approx(0.01), pytest.approx(0.01))
+
+
+def test_a_name_with_a_star_gives_all_variables_that_fit_as_a_table(run):
+    moments = run["beam.moment[*]"]
+    assert list(moments)[:2] == ["beam.moment[1]", "beam.moment[2]"]
+    assert len(moments) == 24
+    rows = moments.values_by_row
+    assert rows.shape == (run.time.size, 24)
+    assert (rows[:, 11] == run["beam.moment[12]"].values).all()
+    frame = moments.to_pandas()
+    assert frame["beam.moment[12]"].tolist() == run["beam.moment[12]"].values.tolist()
+    assert frame.index.name == "time"
+    with pytest.raises(KeyError, match="did you mean"):
+        run["beam.momnt[*]"]
+
+
+def test_a_notebook_shows_variables_metrics_systems_and_runs_with_their_values(run):
+    force = run["sand.rock.force.y"]._repr_html_()
+    assert "<td>sand.rock.force.y</td><td>N</td>" in force
+    assert f"<td>{run['sand.rock.force.y'].max():.6g}</td>" in force
+    peak = run.metrics["peak_transmitted_force"]
+    assert f"<td>{peak}</td>" in peak._repr_html_()
+    assert "beam.moment[24]" in run["beam.moment[*]"]._repr_html_()
+    assert "peak bending moment" in run._repr_html_()
+    system = rockshed.case("lab-impact", in_process=True, values={"beam.damping.mass": 7.5})
+    assert "damping.mass = 7.5" in system._repr_html_()
+    assert "rock_radius" in system._repr_html_() or "rock_mass" in system._repr_html_()
+
+
+def test_dir_shows_what_is_public(run):
+    assert dir(rockshed) == sorted(rockshed.__all__)
+    assert {"plot", "metrics", "to_pandas"} <= set(dir(run))
+    assert not any(name.startswith("_") for name in dir(run))
+
+
+def test_cases_and_components_are_listed_as_tables():
+    cases = {row["case"]: row for row in rockshed.list_cases()}
+    assert cases["lab-impact"]["other names"] == "lab-impact-4"
+    assert len(cases) == 26
+    parts = {row["component"]: row for row in rockshed.list_components()}
+    assert parts["RBSMBeam"]["sizes"] == "elements = 24, support_count = 2"
+
+
+def test_the_first_compilation_is_told_once_and_by_name(monkeypatch, caplog):
+    from rockshed.components.catalogue import component
+    from rockshed.runs import first_compilation
+
+    monkeypatch.setattr(first_compilation, "has_kernels", lambda folder: folder.name == "hammer")
+    monkeypatch.setattr(first_compilation, "_told", set())
+    asked = [component("RBSMBeam"), component("Hammer")]
+    for _ in range(2):
+        first_compilation.tell_first_compilation(asked)
+    assert [record.getMessage() for record in caplog.records] == [
+        "compiling kernels of RBSMBeam, once on this machine (a minute or two)"
+    ]

@@ -141,11 +141,18 @@ def test_without_a_balance_of_every_component_there_is_none():
 
 
 def test_a_rock_near_the_base_is_warned_of():
-    depth = made_up().series["time"] * 0.0
+    """A layer of 10 cm; the beam has given way, so that the depth alone does not tell."""
+
+    def sunk(depth, sag):
+        way = np.sin(np.pi * made_up().series["time"] / 0.02)
+        return made_up(
+            **{"sand.penetration": depth * way, "sand.clearance": 0.1 - (depth - sag) * way}
+        )
+
     assert not any("bottoms out" in text for text in comparison.warnings(made_up()))
-    near = comparison.warnings(made_up(**{"sand.penetration": depth + 0.096}))
+    near = comparison.warnings(sunk(0.098, 0.002))
     assert "within 4.0 mm of the base" in near[-1]
-    through = comparison.warnings(made_up(**{"sand.penetration": depth + 0.103}))
+    through = comparison.warnings(sunk(0.105, 0.002))
     assert "presses 3.0 mm into the base" in through[-1]
 
 

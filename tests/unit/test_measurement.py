@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rockshed.analyses.calibration.curve_file import read_curve
-from rockshed.analyses.calibration.measurement import of_stiffness
-from rockshed.commands.calibrate import stiffness_from
+from rockshed.analyses.calibration.measurement import of_stiffness, stiffness_from
+from rockshed.analyses.calibration.run import measurements_of
 from rockshed.components.common.units import kgf
 from rockshed.core.errors import InputRefused
 
@@ -109,3 +109,21 @@ def test_all_problems_are_told_at_once(curve):
 def test_a_file_that_is_not_there_is_refused(tmp_path):
     with pytest.raises(InputRefused, match="cannot be read"):
         read_curve(tmp_path / "none.csv")
+
+
+def test_a_spring_constant_with_its_unit_is_taken_by_the_library():
+    (measured,) = measurements_of("39.1 kgf/cm")
+    assert measured.stiffness == pytest.approx(39.1 * 9.80665 / 0.01)
+    assert measured.name == "k = 39.1 kgf/cm"
+
+
+def test_a_spring_constant_without_a_unit_is_refused_and_not_taken_for_a_file():
+    with pytest.raises(InputRefused, match=r"measurement.*'39.1' has no unit.*kgf/cm"):
+        measurements_of("39.1")
+
+
+def test_a_file_whose_name_begins_with_a_number_is_a_file(tmp_path):
+    file = tmp_path / "39.1 kgf.csv"
+    file.write_text("penetration (cm),load (kgf)\n1,20\n2,40\n4,80\n")
+    (measured,) = measurements_of(str(file))
+    assert measured.stiffness == pytest.approx(20 * 9.80665 / 0.01)

@@ -11,7 +11,7 @@ from ...runs.building import Note, silent
 from ...runs.kept import FINISHED, KeptRuns
 from ..frame import StageProgress, counter, no_progress
 from .curve_file import read_curve
-from .measurement import Measurement, of_stiffness
+from .measurement import Measurement, is_spring_constant, of_stiffness, of_text
 from .result import CalibrationResult
 from .search import ROTATIONS, SOUGHT, Means, by_misfit, calibration_of
 
@@ -19,7 +19,8 @@ BEST = "fit"
 """Name of the choice of the rotation model that has the curve."""
 
 MeasurementLike = Measurement | Sequence[Measurement] | str | Path | float
-"""Measurements, the CSV file of a load-penetration curve, or a spring constant (N/m)."""
+"""Measurements, the CSV file of a load-penetration curve, or a spring constant: a number (N/m) or
+text with its unit."""
 
 
 def calibrate(
@@ -40,8 +41,9 @@ def calibrate(
 
     Parameters
     ----------
-    measurement : float, path, Measurement or sequence of Measurement
-        Secant spring constant at 4 cm (N/m); CSV file of a load-penetration curve; measurements.
+    measurement : float, str, path, Measurement or sequence of Measurement
+        Secant spring constant at 4 cm, a number (N/m) or with its unit (``"39.1 kgf/cm"``); CSV
+        file of a load-penetration curve; measurements.
     rotation : str
         Rotation model of the sand: ``locked``, ``free``, or ``fit`` for the one that has the curve.
     values : mapping of str to Value, optional
@@ -108,7 +110,7 @@ def measurements_of(measurement: MeasurementLike) -> list[Measurement]:
     Parameters
     ----------
     measurement : float, path, Measurement or sequence of Measurement
-        Spring constant (N/m), CSV file of a curve, or measurements.
+        Spring constant (N/m, or text with its unit), CSV file of a curve, or measurements.
 
     Returns
     -------
@@ -122,6 +124,8 @@ def measurements_of(measurement: MeasurementLike) -> list[Measurement]:
     """
     if isinstance(measurement, Measurement):
         return [measurement]
+    if isinstance(measurement, str) and is_spring_constant(measurement):
+        return [of_text(measurement)]
     if isinstance(measurement, str | Path):
         return [read_curve(Path(measurement))]
     if isinstance(measurement, int | float):

@@ -4,6 +4,9 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
+from rockshed.components.catalogue import component
+
+from ...runs.first_compilation import tell_first_compilation
 from ...sites.pile.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
@@ -65,6 +68,7 @@ def pile(
     prepared = prepare(site, blows)
     with ExitStack() as opened:
         place = opened.enter_context(PileResult.opened(folder)) if folder else None
+        tell_first_compilation([component("Hammer"), component("PileRod")])
         began = time.perf_counter()
         struck = drive(prepared, counter(show, "blows"))
         graph = bearing_graph(prepared, counter(show, "bearing graph, blows"))

@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 
+from rockshed.components.catalogue import component
+
 from ...core.errors import InputRefused, Problem
+from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
@@ -95,6 +98,7 @@ def rockfall(
     with ExitStack() as opened:
         place = opened.enter_context(RockfallResult.opened(folder)) if folder else None
         show("trials", 0, campaign.trials)
+        tell_first_compilation([component("SlopeRockfall")])
         with _executor(scheduler, workers, certificates) as executor:
             began = time.perf_counter()
             records = executor.run(campaign, counter(show, "trials"))

@@ -1,7 +1,7 @@
 """Annotations that a model description carries for this program.
 
-They tell roles, older names, figures and pictures. An FMU of another tool has none, and nothing is
-missing then.
+They tell roles, older names, figures, pictures and power bonds. An FMU of another tool has none,
+and nothing is missing then.
 """
 
 from collections.abc import Mapping
@@ -55,11 +55,14 @@ class Annotations:
         What a serialized state holds, for readers that know how to draw or measure it.
     pictures : tuple of mappings
         Pictures of the outputs as data: name, panels with their curves.
+    bonds : tuple of mappings
+        Power bonds: name, beginning of their members' names, what is so while nothing drives them.
     """
 
     variables: Mapping[str, Annotation] = field(default_factory=dict)
     contents: str = ""
     pictures: tuple[Mapping[str, Any], ...] = ()
+    bonds: tuple[Mapping[str, Any], ...] = ()
 
 
 def read_annotations(root: Element) -> Annotations:
@@ -81,6 +84,7 @@ def read_annotations(root: Element) -> Annotations:
         },
         "" if component is None else component.get("contents", ""),
         () if component is None else tuple(map(_picture, component.findall("Picture"))),
+        () if component is None else tuple(map(_bond, component.findall("Bond"))),
     )
 
 
@@ -119,6 +123,12 @@ def _picture(element: Element) -> dict[str, Any]:
     readers = {"Panel": _panel, "Envelope": _envelope}
     panels = [readers[child.tag](child) for child in element if child.tag in readers]
     return {"name": element.get("name", ""), "panels": panels}
+
+
+def _bond(element: Element) -> dict[str, Any]:
+    names = ("name", "description", "prefix", "idle")
+    data: dict[str, Any] = {name: element.get(name, "") for name in names}
+    return {**data, "unless": tuple(element.get("unless", "").split())}
 
 
 def _panel(element: Element) -> dict[str, Any]:

@@ -127,6 +127,8 @@ class Description:
         Kind of data in a serialized state; empty where the description does not tell.
     pictures : tuple of mapping
         Pictures of the outputs, as data.
+    bonds : tuple of mapping
+        Power bonds, as data.
     tolerance : float, optional
         Relative tolerance that the description proposes (FMI: DefaultExperiment).
     """
@@ -141,6 +143,7 @@ class Description:
     warnings: tuple[str, ...] = ()
     contents: str = ""
     pictures: tuple[Mapping[str, Any], ...] = ()
+    bonds: tuple[Mapping[str, Any], ...] = ()
     tolerance: float | None = None
 
     @cached_property

@@ -259,6 +259,7 @@ def _described(
         warnings,
         told.contents,
         told.pictures,
+        told.bonds,
         _tolerance(model.defaultExperiment),
     )
 

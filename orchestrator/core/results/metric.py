@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from html import escape
 from typing import Any
 
@@ -92,6 +92,17 @@ class Metric:
         unit = "" if self.unit == "1" else f" {self.unit}"
         value = f"{self.value:.6g}" if isinstance(self.value, float) else str(self.value)
         return value + unit
+
+    def _repr_html_(self) -> str:
+        rows = {"computed": str(self)}
+        for who, found in self.references.items():
+            beside = replace(self, value=found.value, references={})
+            note = f" ({found.note})" if found.note else ""
+            rows[who] = f"{beside}, deviation {100.0 * found.deviation:+.1f} %{note}"
+        body = "".join(
+            f"<tr><td>{escape(who)}</td><td>{escape(text)}</td></tr>" for who, text in rows.items()
+        )
+        return f"<table><caption>{escape(self.name)}</caption>{body}</table>"
 
 
 def _of_kind(value: Any, *kinds: type) -> Any:

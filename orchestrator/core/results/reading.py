@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...files import write_json
 from ..errors import InputRefused, Problem, UnknownName
-from ..system.names import nearest
+from ..system.names import nearest, select
 from .metric import Metric, Metrics
 from .run_folder import (
     COLUMNS,
@@ -33,7 +33,7 @@ from .run_folder import (
     schema,
     streamed_frames,
 )
-from .series import Series
+from .series import Series, SeriesTable
 from .shape import check
 
 
@@ -41,8 +41,9 @@ from .shape import check
 class StoredRun:
     """Results of a run, as its folder holds them.
 
-    ``run["rock.position.x"]`` is a :class:`~rockshed.core.results.series.Series`; iterating over a
-    run gives the names of its variables.
+    ``run["rock.position.x"]`` is a :class:`~rockshed.core.results.series.Series`,
+    ``run["beam.moment[*]"]`` a :class:`~rockshed.core.results.series.SeriesTable` of all elements;
+    iterating over a run gives the names of its variables.
 
     Attributes
     ----------
@@ -87,11 +88,15 @@ class StoredRun:
         """Simulated time of the rows (s)."""
         return self.series["time"]
 
-    def __getitem__(self, name: str) -> Series:
+    def __getitem__(self, name: str) -> Any:
+        """Return a variable; of a name with ``*``, which stands for any text, all that fit."""
         column = next((column for column in self.columns if column.name == name), None)
-        if column is None:
+        if column is not None:
+            return Series(name, column.unit, column.description, self.time, self.series[name])
+        names = select(name, [*self.series]) if "*" in name else []
+        if not names:
             raise UnknownName(f"the run has no variable {name!r}; {nearest(name, self.series)}")
-        return Series(name, column.unit, column.description, self.time, self.series[name])
+        return SeriesTable(self.time, {found: self[found] for found in names})
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.series)
@@ -125,6 +130,9 @@ class StoredRun:
         table = self.to_arrow().to_pandas().set_index("time")
         table.attrs["units"] = {column.name: column.unit for column in self.columns}
         return table
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
 
     def __repr__(self) -> str:
         return f"<Run {self._in_short()}, in {self.folder}>"

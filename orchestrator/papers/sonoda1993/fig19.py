@@ -18,7 +18,7 @@ from ...runs.batch import COMPLETE, FAILED, Outcome, Task
 from ...runs.job import Request
 from ..statistics import power_law
 from ..study import Outcomes, Row, Study, origin, verdict
-from .laboratory import SHORT_IMPACTS, SHORT_JACOBI, STOP
+from .laboratory import SHORT_JACOBI, SHORT_LATTICES, STOP
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -324,5 +324,5 @@ STUDY = Study(
         "kinematics and mean forces; jacobi: all at once, with held inputs and last forces, or "
         "extrapolated.",
     ),
-    stands_on={**SHORT_IMPACTS, **SHORT_JACOBI},
+    stands_on={**SHORT_LATTICES, **SHORT_JACOBI},
 )

@@ -13,7 +13,7 @@ from ...cases.sonoda1993 import DEFAULT_TEST, TableFiveRow, table_5
 from ...metrics.names import PEAK_TRANSMITTED, PENETRATION
 from ...runs.batch import Task
 from ..study import Measure, Outcomes, Row, Study, origin, row_of_runs, verdict
-from .laboratory import READINGS, SEED_NOTE, SHORT_IMPACTS, SHORT_STEEL, impacts
+from .laboratory import READINGS, SEED_NOTE, SHORT_LATTICES, SHORT_STEEL, impacts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -199,5 +199,5 @@ STUDY = Study(
         "then chatter on the beam, with spikes in the force that a coarser exchange averages away.",
         "Ball, box and beam of test 4.",
     ),
-    stands_on={**SHORT_IMPACTS, **SHORT_STEEL},
+    stands_on={**SHORT_LATTICES, **SHORT_STEEL},
 )
