@@ -14,7 +14,7 @@ from ..runs.export import system_text
 from ..runs.inspection import describe_component, describe_fmu
 from ..runs.request import Request
 from ..runs.system import System
-from ..runs.target import is_fmu
+from ..runs.target import is_fmu, wrong_target
 from .analysis import options_named
 from .options import ModelName
 from .screen import opened
@@ -57,4 +57,5 @@ def _refuse_unknown(target: str) -> None:
     known = [*of_cases, *NAMES]
     if target not in known:
         what = "is no FMU, no component, no case and no system file"
-        raise InputRefused([Problem(target, what, nearest(target, known))])
+        unknown = Problem(target, what, nearest(target, known))
+        raise InputRefused([wrong_target(target) or unknown])

@@ -117,7 +117,7 @@ def test_a_size_in_a_system_file_is_told_to_be_fixed_in_the_fmu():
         ("A.FMU", "A.FMU: is an FMU, and a run takes a case"),
         ("plant.ssp", "plant.ssp: is a system structure (SSP), which is not read"),
         ("notes.txt", "notes.txt: is a file whose name does not end in .toml"),
-        ("lab-impakt", "there is no case of this name → did you mean lab-impact"),
+        ("lab-impakt", "→ did you mean lab-impact"),
     ],
 )
 @pytest.mark.parametrize("command", ["run", "info", "export"])
