@@ -10,7 +10,12 @@ store is what the beam gives them.
 import math
 from collections import namedtuple
 
-from ..common.kernels import inlined
+from ..common.kernels import inlined, kernel
+from .declarations import ANGLE, INDEX, RADIUS, ROW
+
+_NEAR = 0.2
+"""Share of a line from its ends within which a foot may belong to the next line: far more than the
+border of both leans over it, as long as they meet at less than 0.4 of length / distance (rad)."""
 
 Lever = namedtuple("Lever", "left right share")
 """A place on the beam: the beam discs left and right of it, and the share of the right one, below 0
@@ -22,27 +27,28 @@ point to the surface, and the distance (m), negative below it."""
 
 
 @inlined
-def top_of(b, bodies):
+def top_of(b, rows):
     """Return the top (m) of beam disc b, to the right and upwards.
 
     Parameters
     ----------
     b : int
         Number of the beam disc.
-    bodies : Bodies
-        Columns of all bodies.
+    rows : ndarray of float64
+        Rows of all bodies.
 
     Returns
     -------
     tuple of float
         Place (m).
     """
-    radius = bodies.radius[b]
-    return bodies.x[b] - radius * bodies.angle[b], bodies.y[b] + radius
+    at = ROW * b & INDEX
+    radius = rows[at + RADIUS]
+    return rows[at] - radius * rows[at + ANGLE], rows[at + 1] + radius
 
 
 @inlined
-def is_before(b, x, y, bodies):
+def is_before(b, x, y, rows):
     """Return whether a point belongs to the surface left of the inner beam disc b.
 
     The border goes through its top, at a right angle to the chord of the tops beside it: discs that
@@ -54,46 +60,68 @@ def is_before(b, x, y, bodies):
         Number of the beam disc.
     x, y : float
         Point (m).
-    bodies : Bodies
-        Columns of all bodies.
+    rows : ndarray of float64
+        Rows of all bodies.
 
     Returns
     -------
     bool
     """
-    top_x, top_y = top_of(b, bodies)
-    left_x, left_y = top_of(b - 1, bodies)
-    right_x, right_y = top_of(b + 1, bodies)
+    top_x, top_y = top_of(b, rows)
+    left_x, left_y = top_of(b - 1, rows)
+    right_x, right_y = top_of(b + 1, rows)
     return (x - top_x) * (right_x - left_x) + (y - top_y) * (right_y - left_y) < 0.0
 
 
 @inlined
-def line_under(x, y, bodies):
-    """Return the beam disc at the left end of the line that is next to a point.
+def line_at(x, rows, first, last):
+    """Return the beam disc at the left end of the line at a place, as if discs were evenly spaced.
 
     Parameters
     ----------
-    x, y : float
-        Point (m).
-    bodies : Bodies
-        Columns of all bodies.
+    x : float
+        Place (m).
+    rows : ndarray of float64
+        Rows of all bodies.
+    first, last : int
+        Numbers of the outermost beam discs, two at least.
 
     Returns
     -------
     int
         Number of the beam disc.
     """
-    first, last = bodies.rock + 1, bodies.end - 1
-    if first == last:
-        return first
-    begin, lines = bodies.x[first], last - first
-    guess = math.floor((x - begin) / (bodies.x[last] - begin) * lines)
-    left = first + min(lines - 1, max(0, guess))
-    while left > first and is_before(left, x, y, bodies):
-        left -= 1
-    while left < last - 1 and not is_before(left + 1, x, y, bodies):
-        left += 1
-    return left
+    begin, lines = rows[ROW * first], last - first
+    number = math.floor((x - begin) / (rows[ROW * last] - begin) * lines)
+    return first + min(lines - 1, max(0, number))
+
+
+@inlined
+def foot_on_line(left, x, y, rows):
+    """Return the :class:`Foot` of a point on the line right of beam disc ``left``.
+
+    Parameters
+    ----------
+    left : int
+        Number of the beam disc.
+    x, y : float
+        Point (m).
+    rows : ndarray of float64
+        Rows of all bodies.
+
+    Returns
+    -------
+    Foot
+    """
+    top_x, top_y = top_of(left, rows)
+    right_x, right_y = top_of(left + 1, rows)
+    along_x, along_y = right_x - top_x, right_y - top_y
+    per_length = 1.0 / math.sqrt(along_x * along_x + along_y * along_y)
+    along_x, along_y = along_x * per_length, along_y * per_length
+    dx, dy = x - top_x, y - top_y
+    share = (dx * along_x + dy * along_y) * per_length
+    height = dy * along_x - dx * along_y
+    return Foot(Lever(left, left + 1, share), along_y, -along_x, height)
 
 
 @inlined
@@ -111,18 +139,43 @@ def foot_of(x, y, bodies):
     -------
     Foot
     """
-    left = line_under(x, y, bodies)
-    top_x, top_y = top_of(left, bodies)
-    if left + 1 == bodies.end:
-        return Foot(Lever(left, left, 0.0), 0.0, -1.0, y - top_y)
-    right_x, right_y = top_of(left + 1, bodies)
-    along_x, along_y = right_x - top_x, right_y - top_y
-    per_length = 1.0 / math.sqrt(along_x * along_x + along_y * along_y)
-    along_x, along_y = along_x * per_length, along_y * per_length
-    dx, dy = x - top_x, y - top_y
-    share = (dx * along_x + dy * along_y) * per_length
-    height = dy * along_x - dx * along_y
-    return Foot(Lever(left, left + 1, share), along_y, -along_x, height)
+    return foot_among(x, y, bodies.rows, bodies.rock + 1, bodies.end - 1)
+
+
+@kernel
+def foot_among(x, y, rows, first, last):
+    """Return the :class:`Foot` of a point, from all lines between the outermost discs.
+
+    Only a foot near an end of its line can belong to the next one. This is no part of its callers:
+    set into the loop over the contacts with boundaries, it would slow down all of them.
+
+    Parameters
+    ----------
+    x, y : float
+        Point (m).
+    rows : ndarray of float64
+        Rows of all bodies.
+    first, last : int
+        Numbers of the outermost beam discs.
+
+    Returns
+    -------
+    Foot
+    """
+    if first == last:
+        _, top_y = top_of(first, rows)
+        return Foot(Lever(first, first, 0.0), 0.0, -1.0, y - top_y)
+    left = line_at(x, rows, first, last)
+    foot = foot_on_line(left, x, y, rows)
+    while foot.lever.share < _NEAR and left > first and is_before(left, x, y, rows):
+        left -= 1
+        foot = foot_on_line(left, x, y, rows)
+    while (
+        foot.lever.share > 1.0 - _NEAR and left < last - 1 and not is_before(left + 1, x, y, rows)
+    ):
+        left += 1
+        foot = foot_on_line(left, x, y, rows)
+    return foot
 
 
 @inlined
@@ -140,12 +193,38 @@ def lever_at(x, bodies):
     -------
     Lever
     """
-    _, level = top_of(bodies.rock + 1, bodies)
-    left = line_under(x, level, bodies)
-    if left + 1 == bodies.end:
-        return Lever(left, left, 0.0)
-    left_x, _ = top_of(left, bodies)
-    right_x, _ = top_of(left + 1, bodies)
+    return lever_among(x, bodies.rows, bodies.rock + 1, bodies.end - 1)
+
+
+@kernel
+def lever_among(x, rows, first, last):
+    """Return the :class:`Lever` of a place, from all lines between the outermost discs.
+
+    Parameters
+    ----------
+    x : float
+        Place (m).
+    rows : ndarray of float64
+        Rows of all bodies.
+    first, last : int
+        Numbers of the outermost beam discs.
+
+    Returns
+    -------
+    Lever
+    """
+    if first == last:
+        return Lever(first, first, 0.0)
+    left = line_at(x, rows, first, last)
+    left_x, _ = top_of(left, rows)
+    while left > first and x < left_x:
+        left -= 1
+        left_x, _ = top_of(left, rows)
+    right_x, _ = top_of(left + 1, rows)
+    while left < last - 1 and x >= right_x:
+        left += 1
+        left_x = right_x
+        right_x, _ = top_of(left + 1, rows)
     return Lever(left, left + 1, (x - left_x) / (right_x - left_x))
 
 
@@ -165,8 +244,8 @@ def surface_height(lever, bodies):
     float
         Height (m).
     """
-    _, left = top_of(lever.left, bodies)
-    _, right = top_of(lever.right, bodies)
+    _, left = top_of(lever.left, bodies.rows)
+    _, right = top_of(lever.right, bodies.rows)
     return (1.0 - lever.share) * left + lever.share * right
 
 

@@ -13,7 +13,7 @@ import math
 from collections import namedtuple
 
 from ..common.kernels import inlined, kernel, view
-from .beam_surface import foot_of, top_of
+from .beam_surface import foot_of
 from .bodies import bodies_of, disc_count
 from .declarations import BEAM_DISCS, BEAM_SURFACE, BLOCK, LAYOUT, PART, PLANES, ROW, SUM
 
@@ -135,32 +135,46 @@ def listed_gap(w):
 
 
 @inlined
-def landmark(b, w, bodies):
+def landmark(b, turning, bodies):
     """Return the point (m) that tells how far the rock or a beam disc has gone.
 
     Parameters
     ----------
     b : int
         Number of the boundary.
-    w : ndarray of float64
-        Variables of the instance.
+    turning : float
+        1 for the top of a disc under a surface, which goes along when the disc turns; 0 for the
+        centre of a round body.
     bodies : Bodies
         Columns of all bodies.
 
     Returns
     -------
     tuple of float
-        To the right and upwards: the top of a disc under a surface, which goes along when the disc
-        turns, else the centre.
+        To the right, and upwards but for a constant.
     """
-    if b > bodies.rock and w[V.base] == BEAM_SURFACE:
-        return top_of(b, bodies)
-    return bodies.x[b], bodies.y[b]
+    return bodies.x[b] - turning * bodies.radius[b] * bodies.angle[b], bodies.y[b]
+
+
+@inlined
+def turning_of(w):
+    """Return whether turning beam discs move what the sand lies on: 1 or 0.
+
+    Parameters
+    ----------
+    w : ndarray of float64
+        Variables of the instance.
+
+    Returns
+    -------
+    float
+    """
+    return 1.0 if w[V.base] == BEAM_SURFACE else 0.0
 
 
 @inlined
 def leverage(w, bodies):
-    """Return how much farther than a landmark a boundary can go: a surface beyond its last tops.
+    """Return how much farther than a landmark a beam can go: a surface beyond its last tops.
 
     Parameters
     ----------
@@ -181,6 +195,32 @@ def leverage(w, bodies):
     return 1.0 + 2.0 * bodies.radius[first] / min(left, right)
 
 
+@inlined
+def travel_of(b, turning, bodies, reference):
+    """Return the square of the way (m2) that a landmark has gone since the list was made.
+
+    Parameters
+    ----------
+    b : int
+        Number of the boundary.
+    turning : float
+        See :func:`landmark`.
+    bodies : Bodies
+        Columns of all bodies.
+    reference : ndarray of float64
+        Landmarks when the list was made.
+
+    Returns
+    -------
+    float
+        Square of the way (m2).
+    """
+    at = 2 * (b - bodies.rock)
+    mark_x, mark_y = landmark(b, turning, bodies)
+    dx, dy = mark_x - reference[at], mark_y - reference[at + 1]
+    return dx * dx + dy * dy
+
+
 @kernel
 def boundary_travel(w, x, k):
     """Return the longest way (m) that the rock or the beam has gone since the list was made.
@@ -196,16 +236,12 @@ def boundary_travel(w, x, k):
         Way (m).
     """
     bodies, reference = bodies_of(x, k), view(x, k, A.boundary_reference)
-    of_rock, of_beam = 0.0, 0.0
-    for b in range(bodies.rock, bodies.end):
-        at = 2 * (b - bodies.rock)
-        mark_x, mark_y = landmark(b, w, bodies)
-        dx, dy = mark_x - reference[at], mark_y - reference[at + 1]
-        if b == bodies.rock:
-            of_rock = dx * dx + dy * dy
-        else:
-            of_beam = max(of_beam, dx * dx + dy * dy)
-    return max(math.sqrt(of_rock), math.sqrt(of_beam) * leverage(w, bodies))
+    turning = turning_of(w)
+    longest = 0.0
+    for b in range(bodies.rock + 1, bodies.end):
+        longest = max(longest, travel_of(b, turning, bodies, reference))
+    of_rock = travel_of(bodies.rock, 0.0, bodies, reference)
+    return max(math.sqrt(of_rock), math.sqrt(longest) * leverage(w, bodies))
 
 
 @kernel
@@ -711,6 +747,9 @@ def rebuild(w, x, k):
     bodies, reference = bodies_of(x, k), view(x, k, A.boundary_reference)
     for b in range(bodies.rock, bodies.end):
         at = 2 * (b - bodies.rock)
-        reference[at], reference[at + 1] = landmark(b, w, bodies)
+        turning = 0.0
+        if b > bodies.rock:
+            turning = turning_of(w)
+        reference[at], reference[at + 1] = landmark(b, turning, bodies)
     view(x, k, A.sums)[SUM.travelled] = 0.0
     return True

@@ -295,7 +295,7 @@ def lab_system(
         },
         connections=impact_connections(("rock", "beam")),
         bonds=impact_bonds(("rock", "beam")),
-        energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
+        energy_alarm=EnergyAlarm(reference="rock.energy.kinetic"),
         master=master,
         order=["sand", "rock", "beam"],
         stop_time=0.04,

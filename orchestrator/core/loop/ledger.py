@@ -4,9 +4,14 @@ Every mechanical interface passes energy from one component to the other. Both s
 with the force and the motion that it knows; an exact exchange makes the sum zero. What remains is
 the energy that the coupling itself has made (positive) or lost, because values are held between
 exchanges.
+
+Where both sides count the same force along the same way, as with a force that is held over an
+exchange, the interface shows nothing: the error then stands in the balance of the component whose
+force has changed on the way. So the balances of the components are watched too.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +32,38 @@ _DESCRIPTIONS = {
 """Columns of a bond, and their descriptions."""
 
 
+@dataclass
+class Watched:
+    """An energy that an exact computation keeps at zero.
+
+    Attributes
+    ----------
+    name, remedy : str
+        What it is, and what makes it smaller.
+    largest, at : float
+        The largest value so far (J), and its time (s).
+    """
+
+    name: str
+    remedy: str
+    largest: float = 0.0
+    at: float = 0.0
+
+    def look(self, energies: NDArray[np.float64], times: NDArray[np.float64]) -> None:
+        """Keep the largest of more values (J) and its time (s)."""
+        i = int(np.argmax(np.abs(energies)))
+        if abs(energies[i]) > abs(self.largest):
+            self.largest, self.at = float(energies[i]), float(times[i])
+
+    def warning(self, share: float, reference: float) -> str:
+        """Return the sentence that warns of it; the share and E0 (J) are those of the alarm."""
+        percent = 100.0 * self.largest / reference
+        return (
+            f"{self.name} reaches {self.largest:.6g} J at t = {self.at:.9g} s, {percent:+.3g} % of "
+            f"E0 = {reference:.6g} J, and {100.0 * share:g} % are tolerated: {self.remedy}"
+        )
+
+
 class Accounts:
     """Work and coupling energy of each bond since the start (J).
 
@@ -36,11 +73,6 @@ class Accounts:
         Initialised.
     buses : Buses
         With the values after the initialisation.
-
-    Attributes
-    ----------
-    warnings : list of str
-        One for each bond whose coupling energy has exceeded its limit.
 
     Raises
     ------
@@ -55,10 +87,23 @@ class Accounts:
         ends = np.cumsum([0, *(bond.force.size for bond in self.plan.bonds)])
         self._channels = [slice(a, b) for a, b in pairwise(ends)]
         self._at_start = [self._read(bond.work) for bond in self.plan.bonds]
-        reference = self.plan.reference
-        self._reference = self._read(reference) if isinstance(reference, End) else reference
-        self._alarmed: set[str] = set()
-        self.warnings: list[str] = []
+        self._balances_at_start = [self._read(end) for end in self.plan.balances]
+        self._kinetic_at_start = sum(self._read(end) for end in self.plan.kinetic)
+        given = self.plan.reference
+        self._reference = self._read(given) if isinstance(given, End) else given
+        self._largest_work = 0.0
+        self._bonds = [
+            Watched(f"bond {bond.name}: the coupling energy", "reduce the exchange step")
+            for bond in self.plan.bonds
+        ]
+        self._balances = [
+            Watched(
+                f"{end.component}: the error of its balance of energy ({end.name})",
+                f"reduce the internal step of {end.component}, and the exchange step over which "
+                "its partners are held",
+            )
+            for end in self.plan.balances
+        ]
         self._newest = np.zeros(self.columns)
 
     @property
@@ -98,9 +143,32 @@ class Accounts:
             else:
                 given_back = rows[:, self._snapshots.place[bond.work.name]] - self._at_start[i]
             found[:, 3 * i : 3 * i + 3] = np.stack((taken, given_back, taken + given_back), axis=1)
-            self._watch(bond.name, taken + given_back, times)
+            self._bonds[i].look(taken + given_back, times)
+            self._largest_work = max(self._largest_work, float(np.abs(taken).max()))
+        for end, watched, start in zip(
+            self.plan.balances, self._balances, self._balances_at_start, strict=True
+        ):
+            watched.look(rows[:, self._snapshots.place[end.name]] - start, times)
         self._newest = found[-1]
         return found
+
+    @property
+    def reference(self) -> float:
+        """Energy E0 (J) that errors are compared with; see EnergyAlarm."""
+        if self._reference is not None:
+            return self._reference
+        return max(self._kinetic_at_start, self._largest_work)
+
+    @property
+    def warnings(self) -> list[str]:
+        """A sentence for each bond and component that made or lost more energy than tolerated."""
+        share = self.plan.system.energy_alarm.share
+        reference = abs(self.reference)
+        return [
+            watched.warning(share, reference)
+            for watched in self._bonds + self._balances
+            if reference and abs(watched.largest) > share * reference
+        ]
 
     def metrics(self) -> list[Metric]:
         """Return the newest values, for the summary."""
@@ -108,18 +176,6 @@ class Accounts:
             Metric(column.name, float(value), column.unit)
             for column, value in zip(self.described, self._newest)
         ]
-
-    def _watch(self, bond: str, energies: NDArray[np.float64], times: NDArray[np.float64]) -> None:
-        alarm = self.plan.system.energy_alarm
-        if alarm is None or not self._reference or bond in self._alarmed:
-            return
-        for i in np.flatnonzero(np.abs(energies) > alarm.share * abs(self._reference))[:1]:
-            self._alarmed.add(bond)
-            self.warnings.append(
-                f"bond {bond}: the coupling energy {energies[i]:.6g} J exceeds {alarm.share:.3g} "
-                f"of the reference {self._reference:.6g} J at t = {times[i]:.9g} s: reduce the "
-                "exchange step"
-            )
 
     def _read(self, end: End | None) -> float:
         """Return a value at the start; 0 without a port."""

@@ -82,7 +82,8 @@ class Snapshots:
 def _apart(plan: Plan) -> list[End]:
     """Return what is recorded or needed for the accounts, and not exchanged, in order of calls."""
     exchanged = {end.name for end in plan.outputs}
-    wanted = [*plan.recorded, *(bond.work for bond in plan.bonds if bond.work is not None)]
+    works = (bond.work for bond in plan.bonds if bond.work is not None)
+    wanted = [*plan.recorded, *works, *plan.balances]
     apart = {end.name: end for end in wanted if end.name not in exchanged}
     turns = {name: turn for turn, name in enumerate(plan.order)}
     return sorted(

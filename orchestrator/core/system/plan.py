@@ -86,7 +86,11 @@ class Plan:
     watched : array of int
         Places among the outputs.
     reference : float, End or None
-        Energy (J) that the ledger compares with; None without an alarm.
+        Energy E0 (J) that the ledger compares with; None where it is to find one.
+    balances : tuple of End
+        Outputs that give the error of a component's own balance of energy.
+    kinetic : tuple of End
+        Outputs that give a kinetic energy.
     warnings : tuple of str
         For the user.
     """
@@ -104,6 +108,8 @@ class Plan:
     recorded: tuple[End, ...]
     watched: NDArray[np.int64]
     reference: float | End | None
+    balances: tuple[End, ...]
+    kinetic: tuple[End, ...]
     warnings: tuple[str, ...] = ()
 
     def tolerance(self, component: str) -> float | None:

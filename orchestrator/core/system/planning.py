@@ -3,12 +3,14 @@
 Nothing runs here. All problems of a system are found at once.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rockshed.components.common.roles import Role
 
 from ..errors import InputRefused, Problem, counted
 from ..fmu.description import Description, Port, UnitDefinition
@@ -138,6 +140,8 @@ class _Planner:
             recorded=tuple(parts.recorded),
             watched=np.array([place[end.name] for end in parts.watched], np.int64),
             reference=parts.reference,
+            balances=tuple(self._of_role(order, Role.RESIDUAL)),
+            kinetic=tuple(self._of_role(order, Role.KINETIC)),
             warnings=tuple(self.warnings),
         )
 
@@ -498,11 +502,18 @@ class _Planner:
 
     def _reference(self) -> float | End | None:
         alarm = self.system.energy_alarm
-        if alarm is None or isinstance(alarm.reference, float):
-            return None if alarm is None else float(alarm.reference)
+        if alarm.reference is None or isinstance(alarm.reference, float):
+            return alarm.reference
         where = "energy_alarm.reference"
         ends = self._of_causality(where, self._ends(where, *_split(alarm.reference)), "output")
         return ends[0] if ends else None
+
+    def _of_role(self, order: Iterable[str], role: Role) -> Iterator[End]:
+        """Yield the outputs that are declared with a role, or a kind of it."""
+        for component in order:
+            for port in self.descriptions[component].named("output"):
+                if port.kind == REAL and role.includes(port.annotation.role):
+                    yield End(component, port)
 
 
 def _of_texts(component: str, description: Description) -> list[str]:

@@ -186,18 +186,20 @@ class PowerBond(_Data):
 
 
 class EnergyAlarm(_Data):
-    """Warn when the energy that a coupling made or lost exceeds ``share`` of a reference.
+    """Warn when a coupling or a component made or lost more energy than ``share`` of E0.
 
     Attributes
     ----------
     share : float
         Largest share that is no alarm.
-    reference : float or str
-        An energy (J), or the output ``component.port`` whose value at the start is taken.
+    reference : float or str, optional
+        E0: an energy (J), or the output ``component.port`` whose value at the start is taken.
+        Without it, the kinetic energy at the start, or the largest work that an interface has done
+        until the end, whichever is more.
     """
 
     share: float = Field(default=0.01, gt=0.0, allow_inf_nan=False)
-    reference: str | Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+    reference: str | Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
 
 
 class SystemSpec(_Data):
@@ -213,8 +215,8 @@ class SystemSpec(_Data):
         Values that several parameters take.
     bonds : dict of str to PowerBond
         Interfaces whose energy is accounted for.
-    energy_alarm : EnergyAlarm, optional
-        Limit of the energy that a coupling makes.
+    energy_alarm : EnergyAlarm
+        Limit of the energy that couplings and components make; a warning beyond it.
     master : str
         ``sequential`` (in ``order``, each component takes the newest values) or ``jacobi`` (all
         take the values of the beginning of the exchange).
@@ -242,7 +244,7 @@ class SystemSpec(_Data):
     connections: list[Connection] = []
     shared: dict[Name, SharedValue] = {}
     bonds: dict[Name, PowerBond] = {}
-    energy_alarm: EnergyAlarm | None = None
+    energy_alarm: EnergyAlarm = EnergyAlarm()
     master: Literal["sequential", "jacobi"] = "sequential"
     order: list[str] = []
     start_time: Time = 0.0
