@@ -1,13 +1,14 @@
 """Variables of the hammer. Equations, frame and signs: README.md beside this file."""
 
+from collections import namedtuple
+
 from ..common.ports import Layout, State, choice, inp, out, param, switch
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2, standard_gravity
-from ..common.wave_port import Heard
 
 KINEMATICS, WAVES = 1, 2
-HEARD = Heard(*range(3))
+HEARD = namedtuple("Kept", "wave rate length")(*range(3))
 """Places in ``heard``, which keeps the wave of the step before."""
 
 _UTO = "Uto et al. 1974, table 1: standard penetration test"

@@ -460,7 +460,7 @@ REFUSED = [
     (
         ["lab-impact", "--stop-time", "1e6"],
         [
-            "output_interval: 10,000,000,001 rows of 310 columns are 3.1e+12 values",
+            "output_interval: 10,000,000,001 rows of 311 columns are 3.1e+12 values",
             "5 s or more will do",
             "state_interval: 2,000,000,001 states would be recorded",
             "100 s or more will do",

@@ -71,7 +71,7 @@ def test_the_warning_stands_in_the_results(tmp_path):
 def test_values_of_a_request_get_their_present_names():
     renamed = {"sand": read_description(SAND.model_description()).renamed_bases}
     values, warnings = with_present_names(
-        {"rock.mass": 4.0, "sand.unit_weight": 1.0, "sand.density": 2.0, "width": 3}, renamed
+        {"rock.mass": 4.0, "sand.unit_weight": 2.0, "sand.density": 2.0, "width": 3}, renamed
     )
     assert values == {"rock.mass": 4.0, "sand.density": 2.0, "width": 3}
     assert warnings == [SAID]

@@ -82,7 +82,9 @@ def test_a_compiler_that_fails_leaves_nothing(rockshed, tmp_path, monkeypatch):
     assert not (tmp_path / "dist").exists()
     run = rockshed("run", "lab-impact", "--runtime", "native", *SHORT)
     assert run.exit_code == 2
-    assert "rockshed build --runtime python" in run.stderr
+    assert "FMUs with Python inside, --runtime python, need no compiler" in " ".join(
+        run.stderr.split()
+    )
 
 
 @pytest.mark.parametrize(
@@ -102,11 +104,11 @@ def test_a_compiler_that_fails_leaves_nothing(rockshed, tmp_path, monkeypatch):
         ),
         (
             ["build", "--fmi", "3", "--runtime", "python"],
-            ["--fmi 3 --runtime python: FMUs with Python inside are for FMI 2.0 only"],
+            ["--runtime python: FMUs with Python inside are for FMI 2.0 only"],
         ),
         (
             ["build", "--fmi", "3", "--runtime", "both"],
-            ["--fmi 3 --runtime both: FMUs with Python", "add --runtime native"],
+            ["--runtime both: FMUs with Python", "add --runtime native"],
         ),
         (
             ["build", "--fmi", "4"],

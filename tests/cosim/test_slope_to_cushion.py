@@ -87,6 +87,7 @@ def test_it_has_its_table_and_pictures(run, tmp_path):
         "forces",
         "penetration",
         "beam",
+        "moment",
         "energy",
     }
     assert told == []
