@@ -8,7 +8,9 @@ from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2, standard_gravity
 
 KINEMATICS, WAVES = 1, 2
-HEARD = namedtuple("Kept", "wave rate length")(*range(3))
+HeardPlaces = namedtuple("HeardPlaces", "wave rate length")
+"""Places of the wave of the step before: mean (N), rate (N/s), length of the step (s)."""
+HEARD = HeardPlaces(*range(3))
 """Places in ``heard``, which keeps the wave of the step before."""
 
 _UTO = "Uto et al. 1974, table 1: standard penetration test"
