@@ -11,6 +11,7 @@ from docs.tables import kept
 from docs.tables.filling import BLOCK, PAGES, TABLES, filled
 from docs.tables.forms import beside, number
 from docs.tables.kept import Kept, NotKeptError, outdated, take
+from docs.tables.pictures import PICTURES, STAMPS, stamp
 from docs.tables.sonoda1993 import PEAK
 from rockshed.papers.reproduction import DATA, PAPERS, studies
 from rockshed.papers.sonoda1993 import full_scale, laboratory, mesh, one_law
@@ -40,6 +41,16 @@ def test_a_table_of_an_older_kernel_is_refused_with_the_study_and_the_remedy():
     ]
     older["studies"].remove(chosen)
     assert outdated("mogami1973", older)[0].startswith("mogami1973/fits: is not kept")
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_pictures_of_pages_are_drawn_with_the_present_kernels(picture):
+    assert json.loads(STAMPS.read_text(encoding="utf-8"))[picture] == stamp(PICTURES[picture])
+
+
+def test_every_picture_of_a_run_of_the_sand_has_a_stamp():
+    shown = re.findall(r"\(docs/([\w-]+\.png)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert set(shown) - {"rockfall.png"} == set(PICTURES)  # of a campaign, without sand
 
 
 @pytest.mark.parametrize("paper", PAPERS)
