@@ -120,9 +120,11 @@ def _reported(element: Element) -> dict[str, Any]:
 
 
 def _picture(element: Element) -> dict[str, Any]:
+    """Read a picture; a panel of no curves shows nothing and is passed over."""
     readers = {"Panel": _panel, "Envelope": _envelope}
     panels = [readers[child.tag](child) for child in element if child.tag in readers]
-    return {"name": element.get("name", ""), "panels": panels}
+    shown = [panel for panel in panels if panel.get("curves", True)]
+    return {"name": element.get("name", ""), "panels": shown}
 
 
 def _bond(element: Element) -> dict[str, Any]:

@@ -6,7 +6,7 @@ Only what readers rely on is described; other entries are passed over.
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
 
 _Name = Annotated[str, Field(max_length=10_000)]
 _Positive = Annotated[float, Field(gt=0.0, lt=1e30)]
@@ -33,8 +33,41 @@ class _Variable(_Shape):
     reported: list[_Reported] = []
 
 
-class _Panel(_Shape):
-    common: bool = False  # an envelope has none
+class _Curve(_Shape):
+    variable: _Name
+    label: _Name
+    factor: float
+    from_start: bool
+    dashed: bool
+
+
+class _Curves(_Shape):
+    label: _Name
+    unit: _Name
+    second_unit: _Name
+    downwards: bool
+    common: bool = False
+    references: _Name
+    curves: Annotated[list[_Curve], Field(min_length=1)]
+
+
+class _Envelope(_Shape):
+    label: _Name
+    unit: _Name
+    variable: _Name
+    along: _Name
+    ends: _Name
+
+
+def _kind_of_panel(panel: Any) -> str:
+    """Return the kind of a panel as pictures tell it: an envelope has places along it."""
+    return "envelope" if isinstance(panel, Mapping) and "along" in panel else "curves"
+
+
+_Panel = Annotated[
+    Annotated[_Curves, Tag("curves")] | Annotated[_Envelope, Tag("envelope")],
+    Discriminator(_kind_of_panel),
+]
 
 
 class _Picture(_Shape):
