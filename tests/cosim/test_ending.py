@@ -30,7 +30,7 @@ print(run.status)
 
 
 def start(fmu, folder, way):
-    """A run of a hundred seconds, once it has written its first rows."""
+    """A run of a hundred seconds, once it has written a row after the start."""
     process = subprocess.Popen(
         [sys.executable, "-c", SCRIPT, str(fmu), str(folder), way],
         cwd=Path(__file__).parents[2],
@@ -41,7 +41,7 @@ def start(fmu, folder, way):
     stream = running_folder(folder) / "timeseries.arrows"
     deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline and process.poll() is None:
-        if stream.is_file() and read_run(folder).series["time"].size:
+        if stream.is_file() and any(read_run(folder).series["time"] > 0.0):
             return process
         time.sleep(0.05)
     process.kill()
