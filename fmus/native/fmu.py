@@ -25,6 +25,7 @@ from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import Component
 from rockshed.components.common.kept import keep, kept
 from rockshed.components.common.ports import Sizes
+from rockshed.processes import with_parent
 from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
 
@@ -357,6 +358,7 @@ def _compile(
         env=inherited | settings | environment,
         capture_output=True,
         check=False,
+        preexec_fn=with_parent(),
     )
     if done.returncode:
         raise BuildError(
@@ -444,7 +446,14 @@ def _linked(
             *PLATFORMS[platform].options,
         ]
         try:
-            done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                command,
+                cwd=work,
+                capture_output=True,
+                text=True,
+                check=False,
+                preexec_fn=with_parent(),
+            )
         except OSError as error:
             raise BuildError(
                 f"{name}: the compiler {compiler[0]} cannot be run: {error.strerror or error}; no "

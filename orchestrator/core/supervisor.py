@@ -20,6 +20,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
+from ..processes import end_with_parent
+
 _NOTE = "ROCKSHED_SUPERVISOR_NOTE"
 """Environment variable with the path to which the child writes what its parent has to know."""
 _notes: list[int] = []
@@ -245,16 +247,6 @@ def _wait(child: int, watched: set[signal.Signals], requests: _Requests) -> tupl
         if requests.is_deaf():
             killed = True
             os.kill(child, signal.SIGKILL)
-
-
-def end_with_parent() -> None:
-    """Have the system end this process as soon as its parent is killed, where it can."""
-    if sys.platform != "linux":
-        return
-    import ctypes
-
-    set_parent_death_signal = 1
-    ctypes.CDLL(None).prctl(set_parent_death_signal, int(signal.SIGKILL))
 
 
 def _report_signal(number: int, facts: Mapping[str, Any], report: Report) -> NoReturn:

@@ -9,9 +9,11 @@ import shutil
 import struct
 import subprocess
 import sys
+import time
 import zipfile
 from pathlib import Path
 
+import psutil
 import pytest
 
 from rockshed.components.catalogue import NAMES, component
@@ -404,6 +406,38 @@ def test_a_compiler_that_fails_shows_its_message_and_leaves_the_old_file(
         build_component(component("FallingRock"), destination=tmp_path, runtime=Runtime.NATIVE)
     assert os.listdir(tmp_path) == ["FallingRock.fmu"]
     assert Path(file).read_bytes() == before
+
+
+SLOW_COMPILER = """#!/bin/sh
+exec sleep 60
+"""
+BUILD = (
+    "import sys, rockshed; rockshed.build_fmu('FallingRock', folder=sys.argv[1], runtime='native')"
+)
+
+
+@linux
+@pytest.mark.parametrize("what", ["the C compiler", "the compiler of the kernels"])
+def test_a_compiler_ends_with_the_build_that_is_killed(native_fmus, tmp_path, what):
+    settings = {"ROCKSHED_CACHE_DIR": str(tmp_path / "cache"), "TMPDIR": str(tmp_path)}
+    if what == "the C compiler":
+        assert native_fmus["FallingRock"]  # its kernels are kept
+        (tmp_path / "cc").write_text(SLOW_COMPILER)
+        (tmp_path / "cc").chmod(0o755)
+        settings = {"CC": str(tmp_path / "cc"), "TMPDIR": str(tmp_path)}
+    building = psutil.Popen(
+        [sys.executable, "-c", BUILD, tmp_path / "dist"], env=os.environ | settings
+    )
+    deadline = time.monotonic() + 60.0
+    while not (children := building.children()) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    building.kill()
+    building.wait()
+    assert children
+    _, living = psutil.wait_procs(children, timeout=10)
+    for child in living:
+        child.kill()
+    assert not living
 
 
 # ------------------------------------------------------------------ kernels that need more than the C library
