@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from .plausible import Plausible
 from .roles import Role
 from .shown import Reported
 from .units import UNITS
@@ -93,6 +94,8 @@ class Variable:
         Figures that are reported of it.
     formerly : tuple of str
         Older names under which a user's value is still taken, with a warning.
+    plausible : Plausible, optional
+        Range beyond which a value is doubted.
     """
 
     name: str
@@ -111,6 +114,7 @@ class Variable:
     label: str = ""
     reported: tuple[Reported, ...] = ()
     formerly: tuple[str, ...] = ()
+    plausible: Plausible | None = None
 
     def __post_init__(self) -> None:
         if self.unit not in UNITS:

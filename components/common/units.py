@@ -43,6 +43,7 @@ UNITS: dict[str, Unit] = {
     "1/s": Unit("Rate", {"s": -1}),
     "m": Unit("Length", {"m": 1}),
     "m2": Unit("Area", {"m": 2}),
+    "m3": Unit("Volume", {"m": 3}),
     "m4": Unit("SecondMomentOfArea", {"m": 4}),
     "m/s": Unit("Velocity", {"m": 1, "s": -1}),
     "m/s2": Unit("Acceleration", {"m": 1, "s": -2}),

@@ -1,0 +1,150 @@
+"""Quantities as fields of input files: kinds with their units, and ranges that are usual."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any, get_args
+
+from pydantic import BaseModel, BeforeValidator, Field
+from pydantic.fields import FieldInfo
+
+from rockshed.components.common.plausible import Plausible
+
+from .form import Data, NotNegative, Number, Positive
+from .places import Key, Places
+from .quantities import InUnit, doubt
+
+Length = Annotated[Positive, BeforeValidator(InUnit("m"))]
+Place = Annotated[Number, BeforeValidator(InUnit("m"))]
+Distance = Annotated[NotNegative, BeforeValidator(InUnit("m"))]
+Area = Annotated[Positive, BeforeValidator(InUnit("m2"))]
+SectionModulus = Annotated[Positive, BeforeValidator(InUnit("m3"))]
+SecondMoment = Annotated[Positive, BeforeValidator(InUnit("m4"))]
+Mass = Annotated[Positive, BeforeValidator(InUnit("kg"))]
+MassPerLength = Annotated[NotNegative, BeforeValidator(InUnit("kg/m"))]
+Density = Annotated[Positive, BeforeValidator(InUnit("kg/m3"))]
+Pressure = Annotated[Positive, BeforeValidator(InUnit("Pa"))]
+Cohesion = Annotated[NotNegative, BeforeValidator(InUnit("Pa"))]
+Force = Annotated[Positive, BeforeValidator(InUnit("N"))]
+Resistance = Annotated[NotNegative, BeforeValidator(InUnit("N"))]
+Moment = Annotated[Positive, BeforeValidator(InUnit("N.m"))]
+Energy = Annotated[NotNegative, BeforeValidator(InUnit("J"))]
+Stiffness = Annotated[Positive, BeforeValidator(InUnit("N/m"))]
+Speed = Annotated[Positive, BeforeValidator(InUnit("m/s"))]
+Velocity = Annotated[Number, BeforeValidator(InUnit("m/s"))]
+Acceleration = Annotated[NotNegative, BeforeValidator(InUnit("m/s2"))]
+Angle = Annotated[Number, BeforeValidator(InUnit("rad"))]
+AngularVelocity = Annotated[Number, BeforeValidator(InUnit("rad/s"))]
+Duration = Annotated[Positive, BeforeValidator(InUnit("s"))]
+SoilDamping = Annotated[NotNegative, BeforeValidator(InUnit("s/m"))]
+
+_USUAL = "usual"
+
+
+def field(
+    meaning: str,
+    default: Any = None,
+    usual: tuple[float, float] | None = None,
+    likely: Sequence[str] = (),
+    **rest: Any,
+) -> Any:
+    """Declare a field of a form.
+
+    Parameters
+    ----------
+    meaning : str
+        Its meaning, for the documentation.
+    default : Any
+        Its value where it is left out; ``...`` where it has to be given.
+    usual : tuple of float, optional
+        Range (SI) beyond which a value is doubted.
+    likely : sequence of str
+        Units in which such a value may have been meant, the likeliest first.
+    **rest
+        Other arguments of ``pydantic.Field``.
+
+    Returns
+    -------
+    Any
+        The field.
+    """
+    extra = {_USUAL: Plausible(*usual, tuple(likely))} if usual else None
+    return Field(default, description=meaning, json_schema_extra=extra, **rest)  # type: ignore[arg-type]
+
+
+def unit_of(entry: FieldInfo) -> str:
+    """Return the SI unit of a field; empty if it is no quantity.
+
+    Parameters
+    ----------
+    entry : FieldInfo
+        Of a form.
+
+    Returns
+    -------
+    str
+        Key of :data:`rockshed.components.common.units.UNITS`.
+    """
+    parts = [*entry.metadata, *_parts(entry.annotation)]
+    readers = (part.func for part in parts if isinstance(part, BeforeValidator))
+    return next((reader.unit for reader in readers if isinstance(reader, InUnit)), "")
+
+
+def _parts(annotation: Any) -> Iterator[Any]:
+    """Yield whatever an annotation is made of."""
+    for part in (*get_args(annotation), *getattr(annotation, "__metadata__", ())):
+        yield part
+        yield from _parts(part)
+
+
+def doubts(data: Data, where: Places) -> list[str]:
+    """Return the values of an input file that are beyond what is usual.
+
+    Parameters
+    ----------
+    data : Data
+        The file in its form.
+    where : Places
+        Of the values in the file.
+
+    Returns
+    -------
+    list of str
+        A sentence for each, with its place and the unit in which it may have been meant.
+    """
+    return [
+        f"{where.of(key)}: {_name(key)} {reason}"
+        for key, value, entry in _numbers(data, ())
+        if (reason := _doubt_of(value, entry))
+    ]
+
+
+def _doubt_of(value: float, entry: FieldInfo) -> str | None:
+    extra = entry.json_schema_extra
+    usual = extra.get(_USUAL) if isinstance(extra, Mapping) else None
+    if not isinstance(usual, Plausible):
+        return None
+    return doubt(value, unit_of(entry) or "1", usual)
+
+
+def _name(key: Key) -> str:
+    return ".".join(str(part + 1 if isinstance(part, int) else part) for part in key)
+
+
+def _numbers(data: BaseModel, key: Key) -> Iterator[tuple[Key, float, FieldInfo]]:
+    """Yield key, value and field of every number of a form that is given."""
+    for name, entry in type(data).model_fields.items():
+        if name not in data.model_fields_set:
+            continue
+        yield from _within(getattr(data, name), (*key, entry.alias or name), entry)
+
+
+def _within(value: Any, key: Key, entry: FieldInfo) -> Iterator[tuple[Key, float, FieldInfo]]:
+    if isinstance(value, BaseModel):
+        yield from _numbers(value, key)
+    elif isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _within(inner, (*key, name), entry)
+    elif isinstance(value, list | tuple):
+        for number, inner in enumerate(value):
+            yield from _within(inner, (*key, number), entry)
+    elif isinstance(value, float | int) and not isinstance(value, bool):
+        yield key, float(value), entry
