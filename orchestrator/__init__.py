@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .core.errors import InputRefused, Problem, RunFailed, UnknownName
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
+    from .runs.projects import shed
     from .runs.run import Run, read_run
     from .runs.simulation import simulate
     from .runs.subsystem import Subsystem, component
@@ -47,6 +48,7 @@ _HOMES = {
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
     "rockfall": "analyses.rockfall.run",
+    "shed": "runs.projects",
     "simulate": "runs.simulation",
 }
 """Modules of the public names."""
@@ -71,6 +73,7 @@ __all__ = [
     "pile",
     "read_run",
     "rockfall",
+    "shed",
     "simulate",
 ]
 

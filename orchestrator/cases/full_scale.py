@@ -313,7 +313,13 @@ def cushion_weight(system: SystemSpec, discs: int) -> float:
         for v in component("SandCushion").layout.variables
         if v.size is None
     }
-    sand = {**given, **system.components["sand"].parameters}
+    shared = {
+        name.removeprefix("sand."): entry.value
+        for entry in system.shared.values()
+        for name in entry.targets
+        if name.startswith("sand.")
+    }
+    sand = {**given, **system.components["sand"].parameters, **shared}
     density = float(sand["density"]) / (
         float(sand["solid_fraction"]) if sand.get("density_of") == "layer" else 1.0
     )

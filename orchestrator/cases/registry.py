@@ -3,9 +3,9 @@
 import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, partial
-from typing import cast
+from typing import Any, cast
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import Component
@@ -52,6 +52,13 @@ class Case:
         ``component.name``.
     other_names : tuple of str
         Further names of the case.
+    follows : mapping of str to str
+        Values, by ``component.parameter`` or name of a shared value, that cannot be set apart from
+        what they follow from.
+    facts : mapping
+        For the provenance of its runs: ``design``, ``project``.
+    warnings : tuple of str
+        Of its values.
     """
 
     name: str
@@ -65,6 +72,9 @@ class Case:
     layer: SandLayer | None = None
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     other_names: tuple[str, ...] = ()
+    follows: Mapping[str, str] = field(default_factory=dict)
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
 
 @cache
@@ -413,8 +423,21 @@ def _full_scale_couplings(impact: full_scale.Impact) -> Mapping[str, str]:
     }
 
 
-def _weight_on_beam(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
-    """Return the weight of the sand, under which a beam starts bent."""
+def weight_on_beam(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
+    """Return the weight of the sand, under which a beam starts bent.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        With sand, and a beam or none.
+    sizes : mapping of str to sizes
+        Sizes by component.
+
+    Returns
+    -------
+    mapping of str to Value
+        By ``component.parameter``; empty without a beam.
+    """
     with suppress(ValueError):  # a value of the sand that is no number: its FMU says so
         return (
             {"beam.cushion.weight": full_scale.cushion_weight(system, sizes["sand"]["discs"])}
@@ -435,7 +458,7 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         )
 
     def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
-        return {**_weight_on_beam(system, sizes), **_start_above(layer, system, sizes)}
+        return {**weight_on_beam(system, sizes), **_start_above(layer, system, sizes)}
 
     layer = full_scale.layer(impact)
     beam = {"beam": "RBSMBeam"} if impact.span else {}
@@ -477,6 +500,6 @@ def _slope_to_cushion() -> Case:
         couplings=_full_scale_couplings(impact),
         make=make,
         one_size=("sand.elements", "beam.elements"),
-        derived=_weight_on_beam,
+        derived=weight_on_beam,
         layer=slope_to_cushion.sand_layer(),
     )

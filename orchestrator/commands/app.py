@@ -19,11 +19,12 @@ Every 700 objects, as Python does by itself, takes a twentieth of the start.
 """
 
 COMMANDS = {
+    "init": "Write a commented project file to begin with; nothing is overwritten.",
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU, a component or a system: ports, values, connections.",
     "export": "Write a system as TOML, with its FMUs, to change and run it.",
-    "run": "Run a case or a system file, compare, draw.",
+    "run": "Run a case, a project or a system file, compare, draw.",
     "plot": "Draw a run again, also one that failed or was killed.",
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",

@@ -19,8 +19,9 @@ Assignments = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
-        metavar="COMPONENT.PARAMETER=VALUE",
-        help="Another value of a parameter or of a shared value. May be repeated.",
+        metavar="NAME=VALUE",
+        help="Another value of component.parameter, of a shared value or of a field of a project, "
+        "in SI or with a unit: cushion.thickness=1.5m. May be repeated.",
     ),
 ]
 CaseSizes = Annotated[
@@ -49,7 +50,10 @@ ModelName = Annotated[
 ]
 Target = Annotated[
     str,
-    typer.Argument(metavar="CASE|SYSTEM.toml", help="A case of `rockshed list`, or a system file."),
+    typer.Argument(
+        metavar="CASE|FILE.toml",
+        help="A case of `rockshed list`, a project of `rockshed init`, or a system file.",
+    ),
 ]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")]
 Workers = Annotated[

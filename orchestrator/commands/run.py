@@ -1,4 +1,4 @@
-"""The command ``rockshed run``: a case or a system file from its values to its pictures."""
+"""The command ``rockshed run``: a case, a project or a system, from its values to its pictures."""
 
 from pathlib import Path
 from shlex import quote
@@ -124,7 +124,7 @@ def command(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Run a case or a system file, compare, draw.
+    """Run a case, a project or a system file, compare, draw.
 
     FMUs of a case that are missing are built.
     """
@@ -197,10 +197,9 @@ def _simulate(
 def _folder(system: System, screen: Screen) -> Path:
     """Return the folder of the results of a system that the user has named no folder for."""
     facts = system.job.facts
-    which = "case" if "case" in facts else "system_file"
-    return results_folder(
-        system.name, facts.get("system_file", system.name), {which: facts[which]}, screen
-    )
+    which = next(key for key in ("case", "project_file", "system_file") if key in facts)
+    place = system.name if which == "case" else facts[which]
+    return results_folder(system.name, place, {which: facts[which]}, screen)
 
 
 def show_run(done: Run, screen: Screen, with_figures: bool) -> None:

@@ -1,7 +1,7 @@
 """Quantities as fields of input files: kinds with their units, and ranges that are usual."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator, Field
 from pydantic.fields import FieldInfo
@@ -36,7 +36,7 @@ AngularVelocity = Annotated[Number, BeforeValidator(InUnit("rad/s"))]
 Duration = Annotated[Positive, BeforeValidator(InUnit("s"))]
 SoilDamping = Annotated[NotNegative, BeforeValidator(InUnit("s/m"))]
 
-_USUAL = "usual"
+_USUAL, _UNIT = "usual", "unit"
 
 
 def field(
@@ -44,6 +44,7 @@ def field(
     default: Any = None,
     usual: tuple[float, float] | None = None,
     likely: Sequence[str] = (),
+    unit: str = "",
     **rest: Any,
 ) -> Any:
     """Declare a field of a form.
@@ -58,6 +59,8 @@ def field(
         Range (SI) beyond which a value is doubted.
     likely : sequence of str
         Units in which such a value may have been meant, the likeliest first.
+    unit : str
+        SI unit, where the kind of the field does not tell it.
     **rest
         Other arguments of ``pydantic.Field``.
 
@@ -66,7 +69,9 @@ def field(
     Any
         The field.
     """
-    extra = {_USUAL: Plausible(*usual, tuple(likely))} if usual else None
+    extra: dict[str, Any] = {_USUAL: Plausible(*usual, tuple(likely))} if usual else {}
+    if unit:
+        extra[_UNIT] = unit
     return Field(default, description=meaning, json_schema_extra=extra, **rest)  # type: ignore[arg-type]
 
 
@@ -83,9 +88,16 @@ def unit_of(entry: FieldInfo) -> str:
     str
         Key of :data:`rockshed.components.common.units.UNITS`.
     """
+    if unit := str(_extra(entry).get(_UNIT, "")):
+        return unit
     parts = [*entry.metadata, *_parts(entry.annotation)]
     readers = (part.func for part in parts if isinstance(part, BeforeValidator))
     return next((reader.unit for reader in readers if isinstance(reader, InUnit)), "")
+
+
+def _extra(entry: FieldInfo) -> Mapping[str, Any]:
+    extra = entry.json_schema_extra
+    return extra if isinstance(extra, Mapping) else {}
 
 
 def _parts(annotation: Any) -> Iterator[Any]:
@@ -93,6 +105,47 @@ def _parts(annotation: Any) -> Iterator[Any]:
     for part in (*get_args(annotation), *getattr(annotation, "__metadata__", ())):
         yield part
         yield from _parts(part)
+
+
+ANY = "NAME"
+"""Stands in the name of a field for a name that the user chooses."""
+EACH = "[]"
+"""Stands behind the name of a list of tables."""
+
+
+def fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Yield all fields of a form by name, those of the tables in it instead of the tables.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        The form.
+    prefix : str
+        Name of the table that it is the form of, with a dot; empty for the whole file.
+
+    Yields
+    ------
+    name : str
+        ``cushion.thickness``, ``cushion.layers[].material``, ``material.NAME.modulus``.
+    entry : FieldInfo
+        Its declaration.
+    """
+    for key, entry in model.model_fields.items():
+        name = f"{prefix}{entry.alias or key}"
+        inner = next(_forms(entry.annotation), None)
+        if inner is None:
+            yield name, entry
+            continue
+        origin: Any = get_origin(entry.annotation)
+        many = {list: EACH, dict: f".{ANY}"}.get(origin, "")
+        yield from fields(inner, f"{name}{many}.")
+
+
+def _forms(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _forms(part)
 
 
 def doubts(data: Data, where: Places) -> list[str]:
@@ -118,8 +171,7 @@ def doubts(data: Data, where: Places) -> list[str]:
 
 
 def _doubt_of(value: float, entry: FieldInfo) -> str | None:
-    extra = entry.json_schema_extra
-    usual = extra.get(_USUAL) if isinstance(extra, Mapping) else None
+    usual = _extra(entry).get(_USUAL)
     if not isinstance(usual, Plausible):
         return None
     return doubt(value, unit_of(entry) or "1", usual)

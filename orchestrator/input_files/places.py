@@ -26,7 +26,8 @@ class Places:
     offsets : mapping of Key to int
         First byte of each value, or of the key before it.
     replaced : collection of str
-        Keys whose values are not those of the file: arguments of the same name replace them.
+        Keys, with dots, whose values are not those of the file: arguments of the same name replace
+        them.
     """
 
     source: str
@@ -48,8 +49,9 @@ class Places:
             ``slope.toml, line 3, column 5``; the source alone where nothing above it is known; the
             name of the argument that replaces the value.
         """
-        if key and key[0] in self.replaced:
-            return str(key[0])
+        names = [".".join(map(str, key[: depth + 1])) for depth in range(len(key))]
+        if argument := next((name for name in names if name in self.replaced), None):
+            return argument
         while key and key not in self.offsets:
             key = key[:-1]
         if key not in self.offsets:

@@ -5,20 +5,18 @@ Everything that is wrong with a request is collected before it is refused.
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from rockshed.components.catalogue import component
-from rockshed.components.common.ports import Kind
+from rockshed.components.common.ports import Kind, Variable
 from rockshed.components.common.units import ms
 
 from ..cases.registry import (
     Case,
     ComponentSizes,
-    case,
     differences,
-    is_case,
     model_changes,
     references,
 )
@@ -26,11 +24,12 @@ from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.renaming import with_present_names
-from ..core.system.system import ONE_VALUE, SystemSpec, load_system, system_from, with_values
+from ..core.system.system import ONE_VALUE, SystemSpec, Value, load_system, system_from, with_values
+from ..input_files.quantities import doubt, in_si
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
+from .chosen import choose
 from .request import AUTO, Request
-from .target import wrong_target
 
 __all__ = ["Job", "Request", "plan_problems", "prepare"]
 
@@ -49,22 +48,21 @@ class Job:
         Components that are made without an FMU file.
     facts : mapping
         For the provenance of the run: case, sizes, request, what differs from the case, references.
+    models : mapping of str to str
+        Components of the catalogue by component of a case; those of a system file are not known.
     """
 
     name: str
     system: SystemSpec
     sources: Mapping[str, Source]
     facts: Mapping[str, Any]
+    models: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def components(self) -> frozenset[str]:
-        """Components of the catalogue whose kernels this process compiles if nobody has before.
-
-        Those of a system file are not known.
-        """
-        if self.facts.get("runtime") == "native" or "case" not in self.facts:
-            return frozenset()
-        return frozenset(case(self.facts["case"]).models.values())
+        """Components of the catalogue whose kernels this process compiles if nobody has before."""
+        native = self.facts.get("runtime") == "native"
+        return frozenset() if native else frozenset(self.models.values())
 
 
 def prepare(
@@ -96,24 +94,32 @@ def prepare(
     InputRefused
         Everything that is wrong with the request.
     """
-    if not is_case(request.target) and (wrong := wrong_target(request.target)):
-        raise InputRefused([wrong])
     known = list(problems)
-    request, warnings = _with_present_names(request)
-    asked = request
-    if not request.is_file:
-        request = _without_foreign_values(request, known)
-    if request.is_file:
+    chosen = choose(request, known)
+    request = chosen.request
+    warnings: list[str] = []
+    if chosen.case is None:
+        asked = request
         job = _from_file(request, known)
     else:
-        job = _from_case(case(request.target), request, known, note, fmus_of)
+        asked, warnings = _with_present_names(request, chosen.case)
+        request = _in_si(asked, chosen.case, known, warnings)
+        job = _from_case(chosen.case, request, known, note, fmus_of)
     system = _changed(job.system, request, known)
     known += _load_cell_problems(request, system)
     if known:
         raise InputRefused(known + plan_problems(system, job.sources))
-    if "case" in job.facts:
-        system = _with_derived(system, request, job.facts)
-    facts: dict[str, Any] = {**job.facts, "request": asked.as_data()}
+    if chosen.case is not None:
+        system = _with_derived(system, request, chosen.case, job.facts["sizes"])
+        warnings = [*chosen.case.warnings, *warnings]
+    asked = replace(asked, values={**chosen.fields, **asked.values})
+    differing = {**chosen.fields, **job.facts["differences"]}
+    facts: dict[str, Any] = {
+        **chosen.facts,
+        **job.facts,
+        "differences": differing,
+        "request": asked.as_data(),
+    }
     if request.load_cell:
         facts["load_cell"] = request.load_cell
     if warnings:
@@ -121,42 +127,60 @@ def prepare(
     return replace(job, system=system, facts=facts)
 
 
-def _with_present_names(request: Request) -> tuple[Request, list[str]]:
+def _with_present_names(request: Request, chosen: Case) -> tuple[Request, list[str]]:
     """Return the request for a case with the present names of variables, and warnings.
 
     The FMUs of a system file are asked when the run is planned.
     """
-    if request.is_file:
-        return request, []
-    models = case(request.target).models
-    renamed = {name: component(model).layout.renamed for name, model in models.items()}
+    renamed = {name: component(model).layout.renamed for name, model in chosen.models.items()}
     values, warnings = with_present_names(request.values, renamed)
     return replace(request, values=values), warnings
 
 
-def _without_foreign_values(request: Request, problems: list[Problem]) -> Request:
-    """Return the request for a case without texts and lists in the place of numbers.
+def _in_si(request: Request, chosen: Case, problems: list[Problem], warnings: list[str]) -> Request:
+    """Return the request for a case with numbers in SI where numbers are meant.
 
-    A case computes with its values before its FMUs are asked.
+    A case computes with its values before its FMUs are asked. Values beyond what is usual are
+    warned of.
     """
-    models = case(request.target).models
     kept = {}
     for name, value in request.values.items():
         owner, _, key = name.partition(".")
-        variables = component(models[owner]).layout.variables if owner in models else ()
-        if owner in models and key in component(models[owner]).sizes:
+        variable = _declared(chosen, owner, key)
+        if owner in chosen.models and key in component(chosen.models[owner]).sizes:
             problems.append(_a_size(name, value))
-            continue
-        declared = {v.name: v for v in variables}.get(key.partition("[")[0])
-        is_word = declared is not None and declared.kind is not Kind.REAL
-        reason = "" if is_word else _why_no_number(value)
-        if reason:
-            what = f" ({declared.description})" if declared else ""
+        elif variable is not None and variable.kind is not Kind.REAL:
+            kept[name] = value
+        elif reason := _why_no_number(value, variable):
+            what = f" ({variable.description})" if variable else ""
             remedy = f"set {name}{what} to another value"
             problems.append(Problem(name, f"{value!r}: {reason}", remedy))
         else:
-            kept[name] = value
+            kept[name] = _number(value, variable)
+            warnings += _implausible(name, kept[name], variable)
     return replace(request, values=kept)
+
+
+def _declared(chosen: Case, owner: str, key: str) -> Variable | None:
+    """Return the variable of a component of a case; None if there is none of this name."""
+    if owner not in chosen.models:
+        return None
+    variables = component(chosen.models[owner]).layout.variables
+    return {v.name: v for v in variables}.get(key.partition("[")[0])
+
+
+def _number(value: Value, variable: Variable | None) -> Value:
+    if isinstance(value, str) and variable is not None:
+        return in_si(value, variable.unit)
+    return value
+
+
+def _implausible(name: str, value: Value, variable: Variable | None) -> list[str]:
+    """Return the warning of a value beyond what is usual, if it is."""
+    if variable is None or variable.plausible is None:
+        return []
+    reason = doubt(float(value), variable.unit, variable.plausible)
+    return [f"{name} {reason}"] if reason else []
 
 
 def _a_size(name: str, value: object) -> Problem:
@@ -164,13 +188,16 @@ def _a_size(name: str, value: object) -> Problem:
     return Problem(name, what, f"give {name} = {value} with sizes=...")
 
 
-def _why_no_number(value: object) -> str:
+def _why_no_number(value: object, variable: Variable | None) -> str:
     if isinstance(value, list | tuple | dict):
         return ONE_VALUE
     try:
-        float(value)  # type: ignore[arg-type]
-    except ValueError:
-        return "must be a number"
+        if isinstance(value, str) and variable is not None:
+            in_si(value, variable.unit)
+        else:
+            float(value)  # type: ignore[arg-type]
+    except ValueError as error:
+        return "must be a number" if variable is None else str(error)
     except TypeError:
         return ONE_VALUE
     return ""
@@ -196,7 +223,6 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     if problems:
         raise InputRefused(problems)
     facts = {
-        "system_file": request.target,
         "differences": {**request.values, **request.options},
     }
     system = _loaded(Path(request.target))
@@ -237,7 +263,7 @@ def _from_case(
     if problems:
         raise InputRefused(problems)
     sources: dict[str, Source] = {}
-    facts: dict[str, Any] = {"case": chosen.name, "coupling": coupling, "sizes": sizes}
+    facts: dict[str, Any] = {**chosen.facts, "coupling": coupling, "sizes": sizes}
     if request.model:
         facts["model"] = request.model
     if request.in_process:
@@ -252,7 +278,7 @@ def _from_case(
     differing = differences(chosen, base, given, sizes, own_sizes(chosen, model.sizes))
     facts["differences"] = differing
     facts["references"] = references(chosen, differing).as_data()
-    return Job(chosen.name, _with_model(base, model), sources, facts)
+    return Job(chosen.name, _with_model(base, model), sources, facts, chosen.models)
 
 
 def _coupling_problems(chosen: Case, coupling: str) -> list[Problem]:
@@ -284,9 +310,11 @@ def _with_model(system: SystemSpec, model: Changes) -> SystemSpec:
     )
 
 
-def _with_derived(system: SystemSpec, request: Request, facts: Mapping[str, Any]) -> SystemSpec:
+def _with_derived(
+    system: SystemSpec, request: Request, chosen: Case, sizes: ComponentSizes
+) -> SystemSpec:
     """Return the system with the values that follow from others where they are not given."""
-    derived = case(facts["case"]).derived(system, facts["sizes"])
+    derived = chosen.derived(system, sizes)
     return with_values(
         system, {name: value for name, value in derived.items() if name not in request.values}
     )

@@ -38,9 +38,10 @@ class Request:
     Attributes
     ----------
     target : str
-        Name of a case, or path of a system file (TOML).
+        Name of a case, or path of a project or system file (TOML).
     values : mapping of str to Value
-        By ``component.parameter`` or by the name of a shared value (SI units).
+        By ``component.parameter`` or by the name of a shared value (SI units, or texts with a
+        unit); of a project also by the name of a field, ``cushion.thickness``.
     sizes : mapping of str to int
         By ``component.size``; for cases.
     coupling : str, optional
@@ -55,6 +56,8 @@ class Request:
         Model of the sand of a case; ``values`` go before it.
     runtime : str
         Of the FMUs of a case: ``python``, ``native`` or ``auto``.
+    project : mapping, optional
+        Content of a project that stands in no file; ``target`` then is only a name.
     """
 
     target: str
@@ -66,10 +69,13 @@ class Request:
     load_cell: float | None = None
     model: str | None = None
     runtime: str = AUTO
+    project: Mapping[str, Any] | None = None
 
     @property
     def is_file(self) -> bool:
-        """Whether the target is meant as a system file and not as the name of a case."""
+        """Whether the target is meant as a file and not as the name of a case."""
+        if self.project is not None:
+            return False
         return self.target.lower().endswith(".toml") or "/" in self.target or "\\" in self.target
 
     def as_data(self) -> dict[str, Any]:

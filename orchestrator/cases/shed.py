@@ -1,0 +1,284 @@
+"""A shed of a project file as a case: its system, its derived values and its design.
+
+The sand is the model ``one-law``; the roof is elastic.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from functools import partial
+from typing import Any
+
+from rockshed.components.common.units import ms, standard_gravity
+
+from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
+from ..sites.shed.geometry import ShedLayout
+from ..sites.shed.preparation import PreparedShed
+from ..sites.shed.site import ShedProject
+from ..sites.shed.words import in_words
+from .registry import Case, ComponentSizes, weight_on_beam
+from .sand_models import SandLayer, Soil, changes, sand_model
+from .sonoda1993 import impact_bonds, impact_connections
+
+MODEL = "one-law"
+"""Model of the sand of every project."""
+_PARTNERS = ("rock", "beam")
+
+FOLLOWS: Mapping[str, str] = {
+    "rock.radius": "rock.mass, rock.size and rock.density",
+    "sand.rock.radius": "rock.mass, rock.size and rock.density",
+    "rock_radius": "rock.mass, rock.size and rock.density",
+    "rock_mass": "rock.mass",
+    "sand.rock.mass": "rock.mass",
+    "rock.position0.x": "rock.place",
+    "rock.position0.y": "cushion.thickness and numerics.clearance",
+    "rock.velocity0.x": "rock.velocity and rock.angle",
+    "rock.velocity0.y": "rock.drop_height, or rock.velocity",
+    "rock.angular_velocity0": "rock.spin",
+    "sand.thickness": "cushion.effective_width",
+    "sand.disc.radius": "numerics.disc_radius",
+    "sand.beam.radius": "roof.span and numerics.elements",
+    "beam_radius": "roof.span and numerics.elements",
+    "sand.base": "roof",
+    "sand.base.y": "roof",
+    "sand.seed": "numerics.seed",
+    "beam.span": "roof.span",
+    "beam.axis.x": "roof.span",
+    "beam.axis.y": "roof.span and numerics.elements",
+    "beam.section.area": "roof.section and cushion.effective_width",
+    "beam.section.second_moment": "roof.section and cushion.effective_width",
+    "beam.section.height": "roof.section",
+    "beam.elastic_modulus": "roof.elastic_modulus",
+    "beam.supports": "supports.kind",
+    "beam.deck.mass": "roof.slab",
+    **dict.fromkeys(("box_left", "sand.box.left", "beam.box.left"), "cushion.width"),
+    **dict.fromkeys(("box_width", "sand.box.width", "beam.box.width"), "cushion.width"),
+}
+"""Parameters that follow from fields of the project, and cannot be set apart from them."""
+
+
+def shed_case(shed: PreparedShed) -> Case:
+    """Return the case of a project.
+
+    Parameters
+    ----------
+    shed : PreparedShed
+        The project with all its numbers.
+
+    Returns
+    -------
+    Case
+        To be run as those of the catalogue.
+    """
+    found = shed.layout
+    words = shed.project.description or in_words(found)
+    return Case(
+        shed.name,
+        words,
+        models={"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam"},
+        sizes={
+            "sand": {"discs": found.discs, "elements": found.elements},
+            "beam": {"elements": found.elements},
+        },
+        couplings={
+            "impulse": "sand first, kinematics extrapolated, mean forces, exchange every "
+            f"{found.exchange_step / ms:g} ms"
+        },
+        make=partial(_make, found, shed.name, words),
+        one_size=("sand.elements", "beam.elements"),
+        derived=weight_on_beam,
+        follows=FOLLOWS,
+        facts={"project": _project(shed), "design": design(shed.project, found)},
+        warnings=shed.warnings,
+    )
+
+
+def _make(
+    found: ShedLayout,
+    name: str,
+    words: str,
+    fmus: Mapping[str, str],
+    sizes: ComponentSizes,
+    coupling: str,
+) -> SystemSpec:
+    """Return the system; rock, sand and beam in one frame, whose origin is the left support."""
+    watched = ("transmitted_force", "rock.force.y", "penetration", "clearance")
+    return SystemSpec(
+        name=name,
+        description=words,
+        components={
+            "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters=_sand(found)),
+            "rock": ComponentSpec(fmu=fmus["rock"], parameters=_rock(found)),
+            "beam": ComponentSpec(fmu=fmus["beam"], parameters=_beam(found)),
+        },
+        shared=_shared(found),
+        connections=impact_connections(_PARTNERS),
+        bonds=impact_bonds(_PARTNERS),
+        energy_alarm=EnergyAlarm(share=0.005, reference="rock.energy.kinetic"),
+        master="sequential",
+        order=["sand", *_PARTNERS],
+        stop_time=found.stop_time,
+        exchange_step=found.exchange_step,
+        output_interval=found.output_interval,
+        state_interval=found.state_interval,
+        watch=[f"sand.{name}" for name in watched]
+        + ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"],
+    )
+
+
+def _sand(found: ShedLayout) -> dict[str, Value]:
+    """Return the parameters of the sand: those of its model, its material and its place."""
+    cushion = found.cushion
+    soil = Soil(float(cushion.sand.cohesion or 0.0), float(cushion.sand.solid_fraction or 0.0))
+    layer = SandLayer(
+        cushion.width,
+        cushion.thickness,
+        found.disc_radius,
+        found.rock.radius,
+        found.rock.speed,
+        soil,
+        found.stop_time,
+        dropped=False,
+        on_beam=True,
+    )
+    of_model = changes(sand_model(MODEL), layer).values
+    return {
+        **{name.removeprefix("sand."): value for name, value in of_model.items()},
+        "modulus": float(cushion.sand.modulus or 0.0),
+        "density": float(cushion.sand.density or 0.0),
+        "friction_angle": float(cushion.sand.friction_angle or 0.0),
+        "thickness": cushion.effective_width,
+        "disc.radius": found.disc_radius,
+        "seed": found.seed,
+        "kinematics": "linear",
+        "forces": "mean",
+        "internal_step": found.sand_step,
+    }
+
+
+def _rock(found: ShedLayout) -> dict[str, Value]:
+    return {
+        "position0.x": found.start_x,
+        "position0.y": found.start_y,
+        "velocity0.x": found.rock.velocity_x,
+        "velocity0.y": found.start_velocity_y,
+        "angular_velocity0": found.rock.spin,
+        "internal_step": found.sand_step,
+    }
+
+
+def _beam(found: ShedLayout) -> dict[str, Value]:
+    """Return the parameters of all girders that take part, as one beam."""
+    roof = found.roof
+    return {
+        "span": roof.span,
+        "axis.y": found.axis_y,
+        "supports": roof.supports,
+        "elastic_modulus": roof.elastic_modulus,
+        "section.area": found.girders * roof.area,
+        "section.second_moment": found.girders * roof.second_moment,
+        "section.height": roof.height,
+        "density": roof.density,
+        "deck.mass": roof.deck_mass * found.cushion.effective_width,
+        "damping.stiffness": found.beam_damping,
+        "internal_step": found.beam_step,
+    }
+
+
+def _shared(found: ShedLayout) -> dict[str, SharedValue]:
+    """Return the values that several components take: one rock, one gravity, one box."""
+    boxed = ("sand", "beam")
+    return {
+        "gravity": SharedValue(
+            value=standard_gravity, targets=[f"{name}.gravity" for name in ("sand", *_PARTNERS)]
+        ),
+        "rock_mass": SharedValue(value=found.rock.mass, targets=["rock.mass", "sand.rock.mass"]),
+        "rock_radius": SharedValue(
+            value=found.rock.radius, targets=["rock.radius", "sand.rock.radius"]
+        ),
+        "box_left": SharedValue(
+            value=found.box_left, targets=[f"{name}.box.left" for name in boxed]
+        ),
+        "box_width": SharedValue(
+            value=found.cushion.width, targets=[f"{name}.box.width" for name in boxed]
+        ),
+        "beam_radius": SharedValue(value=0.5 * found.element, targets=["sand.beam.radius"]),
+    }
+
+
+def _project(shed: PreparedShed) -> dict[str, Any]:
+    """Return the project as the provenance of a run keeps it."""
+    return {
+        "file": str(shed.source.file) if shed.source.file else "",
+        "content": dict(shed.source.content),
+        "derived": asdict(shed.layout),
+    }
+
+
+def design(project: ShedProject, found: ShedLayout) -> dict[str, Any]:
+    """Return what the results of a shed are compared with.
+
+    Parameters
+    ----------
+    project : ShedProject
+        With the criteria.
+    found : ShedLayout
+        The numbers.
+
+    Returns
+    -------
+    dict
+        ``rock``, ``cushion``, ``roof`` of one girder, and ``criteria``, in SI units.
+    """
+    rock, cushion, roof = found.rock, found.cushion, found.roof
+    return {
+        "rock": {
+            "mass": rock.mass,
+            "radius": rock.radius,
+            "density": rock.density,
+            "speed": rock.speed,
+            "drop_height": rock.drop_height,
+        },
+        "cushion": {
+            "thickness": cushion.thickness,
+            "width": cushion.width,
+            "effective_width": cushion.effective_width,
+            "rule": cushion.rule,
+            "materials": {cushion.material: cushion.sand.model_dump(exclude={"like"})},
+        },
+        "roof": {
+            "kind": roof.kind,
+            "section": roof.section,
+            "area": roof.area,
+            "second_moment": roof.second_moment,
+            "section_modulus": roof.section_modulus,
+            "plastic_modulus": roof.plastic_modulus,
+            "height": roof.height,
+            "yield_stress": roof.yield_stress,
+            "girders": found.girders,
+            "spacing": roof.spacing,
+            "span": roof.span,
+        },
+        "criteria": [
+            {"name": name, "limit": limit, "unit": unit}
+            for name, limit, unit in _criteria(project, found)
+            if limit is not None
+        ],
+    }
+
+
+def _criteria(project: ShedProject, found: ShedLayout) -> list[tuple[str, float | None, str]]:
+    """Return name, limit and unit of the criteria; None where there is no limit."""
+    given = project.criteria
+    roof = found.roof
+    stress = given.stress
+    moment = given.plastic_moment
+    if roof.yield_stress is not None:
+        stress = stress or (roof.yield_stress if roof.kind == "girders" else None)
+        moment = moment or roof.yield_stress * roof.plastic_modulus * found.girders
+    return [
+        ("stress", stress, "Pa"),
+        ("plastic moment", moment, "N.m"),
+        ("deflection", given.deflection, "m"),
+        ("pile set", given.pile_set, "m"),
+        ("penetration", given.penetration or found.cushion.thickness, "m"),
+    ]

@@ -1,0 +1,149 @@
+"""Faults of a shed whose parts do not fit together, each with the field of the project."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from rockshed.components.common.units import standard_gravity
+from rockshed.components.sand_cushion.declarations import SIZES
+from rockshed.components.sand_cushion.models import SPREAD
+
+from ...core.errors import Problem
+from ...input_files.places import Key, Places
+from .geometry import ShedLayout
+from .site import ShedProject
+
+_FIT = 1e-9
+"""Part by which a length may be exceeded by rounding."""
+FEWEST_LAYERS = 4.0
+"""Disc diameters in the thickness, at least."""
+
+
+def fit_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield what does not fit in a shed.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    found : ShedLayout
+        Its numbers.
+    where : Places
+        Of the values of the project.
+
+    Yields
+    ------
+    Problem
+        With the field of the project that is at fault.
+    """
+    yield from _width_problems(project, found, where)
+    yield from _rock_problems(found, where)
+    yield from _disc_problems(found, where)
+    yield from _start_problems(found, where)
+    yield from _time_problems(found, where)
+
+
+def _at(where: Places, key: Key, text: str, remedy: str) -> Problem:
+    return Problem(where.of(key), f"{'.'.join(map(str, key))}: {text}", remedy)
+
+
+def _width_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield a cushion that is wider than the roof, and more girders than there are."""
+    cushion, roof = found.cushion, found.roof
+    if cushion.width > roof.span * (1.0 + _FIT):
+        text = f"{cushion.width:g} m is beyond the roof, whose span is {roof.span:g} m"
+        yield _at(where, ("cushion", "width"), text, "reduce it, or raise roof.span")
+    if project.roof.number is not None and found.girders > project.roof.number * (1.0 + _FIT):
+        text = (
+            f"{cushion.effective_width:.4g} m take {found.girders:.3g} girders, and the roof has "
+            f"{project.roof.number}"
+        )
+        yield _at(where, ("cushion", "effective_width"), text, "reduce it, or raise roof.number")
+
+
+def _rock_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield a rock that is not above the cushion when it starts or strikes."""
+    left = found.box_left
+    right = left + found.cushion.width
+    radius = found.rock.radius
+    if 2.0 * radius >= found.cushion.width:
+        text = f"a rock of {2.0 * radius:.4g} m does not fit on it, {found.cushion.width:g} m wide"
+        yield _at(where, ("cushion", "width"), text, "widen it")
+        return
+    for x, key, what in (
+        (found.rock.place, ("rock", "place"), "strikes"),
+        (found.start_x, ("rock", "angle"), "starts"),
+    ):
+        if not left + radius < x < right - radius:
+            text = (
+                f"the rock {what} at x = {x:.4g} m with a radius of {radius:.4g} m, and the "
+                f"cushion lies from {left:.4g} to {right:.4g} m"
+            )
+            yield _at(where, key, text, "move it, or widen the cushion")
+            return
+
+
+def _disc_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield sand discs that are too many or too large."""
+    key = ("numerics", "disc_radius")
+    most = SIZES["discs"].maximum
+    if found.discs > most:
+        text = f"{found.disc_radius:g} m makes {found.discs:,} discs, and {most:,} are the most"
+        yield _at(where, key, text, "raise it, or reduce cushion.width")
+    if found.cushion.thickness < FEWEST_LAYERS * 2.0 * found.disc_radius * (1.0 - _FIT):
+        text = (
+            f"{found.disc_radius:g} m leaves fewer than {FEWEST_LAYERS:g} layers in the thickness "
+            f"of {found.cushion.thickness:g} m"
+        )
+        yield _at(where, key, text, "reduce it")
+    widest = 2.0 * found.disc_radius * (1.0 + SPREAD)
+    if widest > found.rock.radius:
+        text = f"discs of up to {widest:.4g} m are no sand to a rock of {found.rock.radius:.4g} m"
+        yield _at(where, key, text, "reduce it")
+
+
+def _start_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield a rock that is slower than the clearance alone makes it."""
+    if found.start_velocity_y < 0.0:
+        return
+    height = found.rock.velocity_y**2 / (2.0 * standard_gravity)
+    text = (
+        f"the rock starts {found.clearance:.4g} m above the surface, and its speed is that of a "
+        f"fall of {height:.4g} m"
+    )
+    remedy = "give a smaller one or smaller discs (numerics.disc_radius), or a larger drop_height"
+    yield _at(where, ("numerics", "clearance"), text, remedy)
+
+
+def _time_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+    if found.stop_time <= found.exchange_step:
+        text = f"{found.stop_time:g} s is not above the exchange step, {found.exchange_step:g} s"
+        yield _at(where, ("numerics", "stop_time"), text, "raise it")
+
+
+def support_problems(project: ShedProject, folder: Path, where: Places) -> Iterator[Problem]:
+    """Yield what is wrong with the supports.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    folder : Path
+        From which the file of a pile counts.
+    where : Places
+        Of the values of the project.
+
+    Yields
+    ------
+    Problem
+    """
+    supports = project.supports
+    if supports.kind in ("elastic", "piles"):
+        text = f"{supports.kind} supports are not computed yet"
+        yield _at(where, ("supports", "kind"), text, "take hinged or fixed")
+    for kind, key in (("elastic", "stiffness"), ("piles", "file")):
+        given = getattr(supports, key) is not None
+        if given and supports.kind != kind:
+            text = f"is for {kind} supports, and kind is {supports.kind}"
+            yield _at(where, ("supports", key), text, "leave one of both out")
+        if not given and supports.kind == kind:
+            yield _at(where, ("supports",), f"{key} is missing", f"{kind} supports need it")

@@ -1,0 +1,63 @@
+"""Materials of a cushion by name: those that ship, and those of a project, which build on them."""
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from ...core.errors import Problem
+from ...core.system.names import nearest
+from ...input_files.places import Places
+from .site import SandMaterial
+
+DEFAULT_MATERIAL = "compacted sand"
+STATE = ("modulus", "density", "solid_fraction", "cohesion", "friction_angle")
+"""Names of the values that a complete material has."""
+OWN_SOURCE = "given with the project"
+"""Source of a value that the project's file gives."""
+
+
+@cache
+def shipped_sands() -> Mapping[str, SandMaterial]:
+    """Return the materials of the table ``materials.toml`` by name."""
+    data = tomllib.loads((Path(__file__).parent / "materials.toml").read_text(encoding="utf-8"))
+    return {name: SandMaterial.model_validate(entry) for name, entry in data.items()}
+
+
+def sands(
+    own: Mapping[str, SandMaterial], where: Places, problems: list[Problem]
+) -> dict[str, SandMaterial]:
+    """Return all materials by name, complete.
+
+    Parameters
+    ----------
+    own : mapping of str to SandMaterial
+        Materials of the project; they come before those that ship.
+    where : Places
+        Of the values of the project.
+    problems : list of Problem
+        Materials that build on one that does not exist are appended.
+
+    Returns
+    -------
+    dict of str to SandMaterial
+        Those that ship and those of the project.
+    """
+    every = dict(shipped_sands())
+    for name, material in own.items():
+        base = shipped_sands().get(material.like or DEFAULT_MATERIAL)
+        if base is None:
+            text = f"there is no material {material.like!r}"
+            remedy = nearest(str(material.like), shipped_sands())
+            problems.append(Problem(where.of(("material", name, "like")), text, remedy))
+            base = shipped_sands()[DEFAULT_MATERIAL]
+        every[name] = _completed_sand(material, base)
+    return every
+
+
+def _completed_sand(material: SandMaterial, base: SandMaterial) -> SandMaterial:
+    """Return a material with the values of the one it is like, and the sources of all of them."""
+    given = {key: value for key in STATE if (value := getattr(material, key)) is not None}
+    source = {**base.source, **{key: material.source.get(key, OWN_SOURCE) for key in given}}
+    description = material.description or base.description
+    return base.model_copy(update={**given, "source": source, "description": description})

@@ -1,0 +1,342 @@
+"""Rock, cushion and roof of a project with all their values, and what is wrong with them."""
+
+import math
+
+from rockshed.components.common.units import standard_gravity
+
+from ...core.errors import Problem
+from ...core.system.names import nearest
+from ...input_files.places import Key, Places
+from ...input_files.quantities import in_si
+from .effective_width import ON_A_SLAB, ON_GIRDERS, RULES, Spread
+from .geometry import CushionPart, RockPart, RoofPart
+from .materials import DEFAULT_MATERIAL, sands
+from .sections import section
+from .site import Roof, ShedProject, StrikingRock
+from .steels import DEFAULT_STEEL, Steel, steels
+
+ROCK_DENSITY = 2600.0
+"""Density (kg/m3) of a rock whose own is not given: common rock."""
+CONCRETE_DENSITY = 2500.0
+"""Density (kg/m3) of reinforced concrete."""
+_TOLERANCE = 0.02
+"""Part by which two values of one thing may differ."""
+_STEEPEST = math.radians(85.0)
+
+
+def rock_part(project: ShedProject, where: Places, problems: list[Problem]) -> RockPart | None:
+    """Return the rock of a project.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    where : Places
+        Of its values.
+    problems : list of Problem
+        Contradictions, and what is missing, are appended.
+
+    Returns
+    -------
+    RockPart or None
+        None where it is not known.
+    """
+    rock = project.rock
+    body = _body(rock, where, problems)
+    speed = _speed(rock, where, problems)
+    if abs(rock.angle) > _STEEPEST:
+        text = f"angle is {math.degrees(rock.angle):.4g} deg from the vertical: it does not strike"
+        remedy = 'give at most 85 deg; a bare number is in rad, "15 deg" is written with its unit'
+        problems.append(Problem(where.of(("rock", "angle")), text, remedy))
+        return None
+    if body is None or speed is None:
+        return None
+    mass, radius, density = body
+    return RockPart(
+        mass,
+        radius,
+        density,
+        speed * math.sin(rock.angle),
+        speed * math.cos(rock.angle),
+        rock.spin,
+        0.5 * project.roof.span if rock.place is None else rock.place,
+    )
+
+
+def _body(
+    rock: StrikingRock, where: Places, problems: list[Problem]
+) -> tuple[float, float, float] | None:
+    """Return mass (kg), radius (m) and density (kg/m3) of the sphere."""
+    if rock.mass is None and rock.size is None:
+        problems.append(Problem(where.of(("rock",)), "rock: mass is missing", "or give its size"))
+        return None
+    volume = _volume(rock)
+    if rock.mass is not None and volume is not None:
+        density = rock.mass / volume
+        if rock.density is not None and abs(density / rock.density - 1.0) > _TOLERANCE:
+            text = (
+                f"rock: mass {rock.mass:.5g} kg, size {rock.size:.4g} m and density "
+                f"{rock.density:.5g} kg/m3 disagree: mass and size make {density:.5g} kg/m3"
+            )
+            problems.append(Problem(where.of(("rock", "size")), text, "leave one of them out"))
+            return None
+        mass = rock.mass
+    else:
+        density = rock.density or ROCK_DENSITY
+        mass = density * volume if volume is not None else float(rock.mass or 0.0)
+    return mass, (3.0 * mass / density / (4.0 * math.pi)) ** (1.0 / 3.0), density
+
+
+def _volume(rock: StrikingRock) -> float | None:
+    if rock.size is None:
+        return None
+    return rock.size**3 * (math.pi / 6.0 if rock.shape == "sphere" else 1.0)
+
+
+def _speed(rock: StrikingRock, where: Places, problems: list[Problem]) -> float | None:
+    """Return the speed at the surface (m/s)."""
+    if (rock.drop_height is None) == (rock.velocity is None):
+        text = "rock: drop_height and velocity are two ways to say one thing"
+        if rock.velocity is None:
+            text = "rock: neither drop_height nor velocity is given"
+        key = ("rock", "velocity") if rock.velocity is not None else ("rock",)
+        problems.append(Problem(where.of(key), text, "give one of the two"))
+        return None
+    if rock.drop_height is not None and rock.angle:
+        text = "rock: a rock that falls from a height strikes vertically, and an angle is given"
+        problems.append(
+            Problem(where.of(("rock", "angle")), text, "give velocity and angle, or drop_height")
+        )
+    if rock.velocity is not None:
+        return rock.velocity
+    return math.sqrt(2.0 * standard_gravity * float(rock.drop_height or 0.0))
+
+
+def roof_part(project: ShedProject, where: Places, problems: list[Problem]) -> RoofPart | None:
+    """Return the roof of a project: a girder, or a metre of a slab.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    where : Places
+        Of its values.
+    problems : list of Problem
+        Unknown sections and steels, contradictions, and what is missing, are appended.
+
+    Returns
+    -------
+    RoofPart or None
+        None where it is not known.
+    """
+    roof = project.roof
+    if roof.concrete is not None:
+        return _concrete(project, where, problems)
+    if roof.spacing is None:
+        text = "roof: spacing is missing"
+        problems.append(Problem(where.of(("roof",)), text, "give the distance of the girders"))
+    steel = _steel(roof, where, problems)
+    values = _section_values(roof, where, problems)
+    if steel is None or values is None or roof.spacing is None:
+        return None
+    flange = values.pop("flange")
+    stress = roof.yield_stress or steel.yield_at(flange)
+    if stress is None:
+        text = f"roof: {roof.steel or DEFAULT_STEEL} has no yield stress for {flange:g} m"
+        problems.append(Problem(where.of(("roof", "steel")), text, "give yield_stress"))
+    return RoofPart(
+        "girders",
+        roof.section or "own section",
+        **values,
+        density=roof.mass / values["area"] if roof.mass else steel.density,
+        elastic_modulus=roof.elastic_modulus or steel.elastic_modulus,
+        yield_stress=stress,
+        span=roof.span,
+        spacing=roof.spacing,
+        deck_mass=roof.slab.thickness * roof.slab.density if roof.slab else 0.0,
+        supports=_ends(project),
+    )
+
+
+def _ends(project: ShedProject) -> str:
+    return "fixed" if project.supports.kind == "fixed" else "simple"
+
+
+def _steel(roof: Roof, where: Places, problems: list[Problem]) -> Steel | None:
+    name = roof.steel or DEFAULT_STEEL
+    if name not in steels():
+        text = f"roof: there is no steel {name!r}"
+        remedy = f"{nearest(name, steels())}; or give yield_stress alone"
+        problems.append(Problem(where.of(("roof", "steel")), text, remedy))
+    return steels().get(name)
+
+
+_OWN = ("area", "second_moment", "height")
+"""Values that a section of one's own has."""
+
+
+def _section_values(roof: Roof, where: Places, problems: list[Problem]) -> dict[str, float] | None:
+    """Return area, moments, height and flange thickness (m) of a girder."""
+    own = [key for key in (*_OWN, "section_modulus", "plastic_modulus") if getattr(roof, key)]
+    if roof.section is not None:
+        if own:
+            text = f"roof: section {roof.section!r} has its own {', '.join(own)}"
+            remedy = "leave them out, or the section"
+            problems.append(Problem(where.of(("roof", own[0])), text, remedy))
+        found = section(roof.section, where.of(("roof", "section")), problems)
+        if found is None:
+            return None
+        names = (*_OWN, "section_modulus", "plastic_modulus", "flange")
+        return {name: getattr(found, name) for name in names}
+    if missing := [key for key in _OWN if getattr(roof, key) is None]:
+        text = f"roof: section is missing, or {', '.join(missing)} of one of your own"
+        problems.append(Problem(where.of(("roof",)), text, 'section = "H-400x400x13x21" for one'))
+        return None
+    modulus = roof.section_modulus or 2.0 * float(roof.second_moment or 0.0) / float(
+        roof.height or 1.0
+    )
+    return {
+        **{name: float(getattr(roof, name)) for name in _OWN},
+        "section_modulus": modulus,
+        "plastic_modulus": roof.plastic_modulus or modulus,
+        "flange": 0.0,
+    }
+
+
+def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> RoofPart | None:
+    """Return a metre of a slab, uncracked: E after EN 1992-1-1, table 3.1."""
+    roof = project.roof
+    strip = roof.concrete
+    if strip is None:
+        return None
+    girder = ("section", "steel", "spacing", "number", "slab", "yield_stress", "mass", *_OWN)
+    if given := [key for key in girder if getattr(roof, key) is not None]:
+        text = f"roof: {', '.join(given)} belong to girders, and a slab of concrete is given"
+        problems.append(Problem(where.of(("roof", given[0])), text, "leave one of both out"))
+    if strip.cover >= 0.5 * strip.thickness:
+        text = "roof.concrete: cover is half of the thickness or more: the bars are not below"
+        problems.append(Problem(where.of(("roof", "concrete", "cover")), text, "reduce it"))
+        return None
+    modulus = 22e9 * ((strip.concrete_strength + 8e6) / 10e6) ** 0.3
+    steel = 0.25 * math.pi * strip.bar_diameter**2 / strip.bar_spacing
+    force = steel * strip.bar_yield_stress
+    lever = strip.thickness - strip.cover - 0.5 * force / (0.85 * strip.concrete_strength)
+    return RoofPart(
+        "concrete",
+        f"concrete slab of {strip.thickness:g} m",
+        area=strip.thickness,
+        second_moment=strip.thickness**3 / 12.0,
+        section_modulus=strip.thickness**2 / 6.0,
+        plastic_modulus=max(lever, 0.0) * steel,
+        height=strip.thickness,
+        density=CONCRETE_DENSITY,
+        elastic_modulus=roof.elastic_modulus or modulus,
+        yield_stress=strip.bar_yield_stress,
+        span=roof.span,
+        spacing=1.0,
+        supports=_ends(project),
+    )
+
+
+def cushion_part(
+    project: ShedProject, rock: RockPart | None, where: Places, problems: list[Problem]
+) -> CushionPart | None:
+    """Return the cushion of a project.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    rock : RockPart or None
+        Its rock, where it is known.
+    where : Places
+        Of its values.
+    problems : list of Problem
+        Unknown materials and rules, contradictions, and what is missing, are appended.
+
+    Returns
+    -------
+    CushionPart or None
+        None where it is not known.
+    """
+    thickness = _thickness(project, where, problems)
+    known = sands(project.material, where, problems)
+    name = _material(project, list(known), where, problems)
+    spread = Spread(rock.radius if rock else 0.0, thickness or 0.0, project.roof.spacing or 0.0)
+    effective, rule = _effective_width(project, spread, where, problems)
+    if thickness is None or name is None or effective is None or rock is None:
+        return None
+    width = project.cushion.width or project.roof.span
+    return CushionPart(thickness, width, effective, rule, name, known[name])
+
+
+def _thickness(project: ShedProject, where: Places, problems: list[Problem]) -> float | None:
+    cushion = project.cushion
+    if not cushion.layers:
+        if cushion.thickness is None:
+            text = "cushion: thickness is missing"
+            problems.append(Problem(where.of(("cushion",)), text, "give it, or layers"))
+        return cushion.thickness
+    total = sum(layer.thickness for layer in cushion.layers)
+    if cushion.thickness and abs(total / cushion.thickness - 1.0) > _TOLERANCE:
+        text = f"cushion: the layers make {total:g} m, and thickness is {cushion.thickness:g} m"
+        problems.append(Problem(where.of(("cushion", "thickness")), text, "leave it out"))
+    return total
+
+
+def _material(
+    project: ShedProject, known: list[str], where: Places, problems: list[Problem]
+) -> str | None:
+    """Return the name of the one material of a cushion."""
+    cushion = project.cushion
+    named: list[tuple[str, Key]] = [
+        (layer.material, ("cushion", "layers", i)) for i, layer in enumerate(cushion.layers)
+    ]
+    if not named:
+        named = [(cushion.material or DEFAULT_MATERIAL, ("cushion", "material"))]
+    elif cushion.material is not None:
+        text = "cushion: the layers have materials, and material is given too"
+        problems.append(Problem(where.of(("cushion", "material")), text, "leave one of them out"))
+    for name, key in named:
+        if name not in known:
+            text = f"cushion: there is no material {name!r}"
+            remedy = f"{nearest(name, known)}; or describe it as [material.{name!r}]"
+            problems.append(Problem(where.of(key), text, remedy))
+    names = list(dict.fromkeys(name for name, _ in named))
+    if len(names) > 1:
+        text = (
+            f"cushion: {' on '.join(reversed(names))} cannot be computed: all of the sand has one "
+            "set of parameters"
+        )
+        remedy = (
+            "compute it once with each material alone, which bounds the result, or describe one "
+            "material with the values of the layer that the rock reaches"
+        )
+        problems.append(Problem(where.of(("cushion", "layers")), text, remedy))
+    return names[0] if names[0] in known else None
+
+
+def _effective_width(
+    project: ShedProject, spread: Spread, where: Places, problems: list[Problem]
+) -> tuple[float | None, str]:
+    """Return the effective width (m) and its rule."""
+    given = project.cushion.effective_width
+    place = where.of(("cushion", "effective_width"))
+    if given is None:
+        given = ON_A_SLAB if project.roof.concrete else ON_GIRDERS
+    if isinstance(given, str) and given in RULES:
+        width = RULES[given].width(spread)
+        if width <= 0.0 and project.roof.concrete:
+            text = f"cushion: the rule {given!r} is for girders, and the roof is a slab"
+            problems.append(Problem(place, text, f"take {ON_A_SLAB!r}, or give a length"))
+        return (width if width > 0.0 else None), given
+    try:
+        width = in_si(given, "m") if isinstance(given, str) else float(given)
+    except ValueError as error:
+        text = f"cushion: effective_width is neither a rule nor a length: {error}"
+        problems.append(Problem(place, text, f"rules: {nearest(str(given), RULES)}"))
+        return None, ""
+    if width <= 0.0:
+        problems.append(Problem(place, "cushion: effective_width must be above 0", "raise it"))
+        return None, ""
+    return width, "given"

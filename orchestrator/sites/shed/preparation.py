@@ -1,0 +1,161 @@
+"""From a project file to a shed whose every number is known.
+
+Everything that is wrong with a project is collected before it is refused.
+"""
+
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+from ...core.errors import InputRefused, Problem
+from ...core.system.names import nearest
+from ...input_files.fields import ANY, EACH, doubts, fields
+from ...input_files.form import first, formed
+from ..source import SiteLike, SiteSource, site_source
+from .checks import fit_problems, support_problems
+from .geometry import ShedLayout, layout
+from .parts import cushion_part, rock_part, roof_part
+from .site import ShedProject
+
+SECTIONS = ("rock", "cushion", "roof")
+"""Tables that every project has."""
+
+
+@dataclass(frozen=True)
+class PreparedShed:
+    """A shed that can be computed.
+
+    Attributes
+    ----------
+    source : SiteSource
+        The project as it is written, with what replaces it.
+    project : ShedProject
+        Its data.
+    layout : ShedLayout
+        Its numbers.
+    warnings : tuple of str
+        Values beyond what is usual.
+    changes : mapping of str to Any
+        Fields that replace those of the file, as they were given.
+    """
+
+    source: SiteSource
+    project: ShedProject
+    layout: ShedLayout
+    warnings: tuple[str, ...]
+    changes: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Name of the project, or of its file."""
+        return self.source.name
+
+
+def is_project(content: Mapping[str, Any]) -> bool:
+    """Tell whether the content of a TOML file is meant as a project.
+
+    Parameters
+    ----------
+    content : mapping
+        Of the file.
+
+    Returns
+    -------
+    bool
+        Whether it has a table of a project and no components, as a system has.
+    """
+    meant = any(key in content for key in ("cushion", "roof"))
+    return meant and not any(key in content for key in ("components", "hammer", "profile"))
+
+
+def is_field(name: str) -> bool:
+    """Tell whether a name is that of a field of a project, ``cushion.thickness`` for instance.
+
+    Parameters
+    ----------
+    name : str
+        With dots.
+
+    Returns
+    -------
+    bool
+    """
+    parts = name.split(".")
+    if parts[0] == "material" and len(parts) == 3:
+        parts[1] = ANY
+    return ".".join(parts) in all_fields()
+
+
+@cache
+def all_fields() -> tuple[str, ...]:
+    """Return the names of all fields of a project that have one value."""
+    return tuple(name for name, _ in fields(ShedProject) if EACH not in name)
+
+
+def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> PreparedShed:
+    """Read and check a project.
+
+    Parameters
+    ----------
+    project : path, mapping or ShedProject
+        Project file (TOML), or its content.
+    changes : mapping of str to Any, optional
+        Fields that replace those of the project: ``{"cushion.thickness": "1.5 m"}``.
+
+    Returns
+    -------
+    PreparedShed
+        All of its numbers.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with the project, with line and column.
+    """
+    source = _changed(site_source(project), changes or {})
+    where = source.places
+    problems: list[Problem] = []
+    data = formed(ShedProject, source.content, where, problems)
+    if data is None:
+        raise InputRefused(first(problems))
+    rock = rock_part(data, where, problems)
+    roof = roof_part(data, where, problems)
+    cushion = cushion_part(data, rock, where, problems)
+    problems += support_problems(data, source.folder, where)
+    if rock is None or roof is None or cushion is None:
+        raise InputRefused(first(problems))
+    found = layout(rock, cushion, roof, data.numerics)
+    problems += fit_problems(data, found, where)
+    if problems:
+        raise InputRefused(first(problems))
+    return PreparedShed(source, data, found, tuple(doubts(data, where)), dict(changes or {}))
+
+
+def _changed(source: SiteSource, changes: Mapping[str, Any]) -> SiteSource:
+    """Return a project with other fields.
+
+    Raises
+    ------
+    InputRefused
+        There are no such fields.
+    """
+    content = deepcopy(dict(source.content))
+    problems = []
+    for name, value in changes.items():
+        if not is_field(name):
+            problems.append(Problem(name, "is no field of a project", nearest(name, all_fields())))
+            continue
+        *section, key = name.split(".")
+        table = content
+        for part in section:
+            table = table.setdefault(part, {})
+            if not isinstance(table, dict):
+                break  # the form says so
+        else:
+            table[key] = value
+    if problems:
+        raise InputRefused(problems)
+    places = replace(source.places, replaced=(*source.places.replaced, *changes))
+    return replace(source, content=content, places=places)
