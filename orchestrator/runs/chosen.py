@@ -17,7 +17,7 @@ from .target import wrong_target
 
 @dataclass(frozen=True)
 class Chosen:
-    """What a request asks for.
+    """The system that a request asks for.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Spread:
-    """What the effective width may depend on.
+    """Quantities that the effective width may depend on.
 
     Attributes
     ----------

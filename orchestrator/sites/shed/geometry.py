@@ -230,7 +230,7 @@ def layout(rock: RockPart, cushion: CushionPart, roof: RoofPart, numerics: Numer
     rock, cushion, roof : RockPart, CushionPart, RoofPart
         The parts.
     numerics : Numerics
-        What is given of the rest.
+        Those of the rest that are given.
 
     Returns
     -------

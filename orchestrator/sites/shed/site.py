@@ -174,7 +174,7 @@ class Roof(Data):
 
 
 class Supports(Data):
-    """What the roof stands on, the same at both ends."""
+    """The supports of the roof, the same at both ends."""
 
     kind: Literal["hinged", "fixed", "elastic", "piles"] = field(
         "hinged, fixed, elastic (stiffness) or piles (file)", "hinged"
