@@ -10,6 +10,7 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from shutil import copyfile, rmtree
 from typing import Any
 
@@ -40,7 +41,7 @@ CONTENTS = {
         "security",
         "limits",
     ),
-    "Physics": ("components/index", "papers", "sonoda1993"),
+    "Physics": ("components/index", "formulas", "papers", "sonoda1993"),
     "Reference": ("api/index", "api/components", "api/core", "api/analyses", "api/papers"),
     "Project": ("glossary", "contributing", "changelog"),
 }
@@ -303,13 +304,17 @@ def face() -> str:
 
     names = [name for name in getattr(rockshed, "__all__", ()) if name != "__version__"]
     members = "\n\n".join(
-        automatic(
-            "class" if isinstance(getattr(rockshed, name), type) else "function", f"rockshed.{name}"
-        )
-        for name in names
+        automatic(kind_of(getattr(rockshed, name)), f"rockshed.{name}") for name in names
     )
     text = "The names of `import rockshed`. [How they work together](../python.md)."
     return f"# Python API reference\n\n{text}\n\n{members}\n"
+
+
+def kind_of(member: object) -> str:
+    """Return what a public name is, as the directive that shows it calls it."""
+    if isinstance(member, type):
+        return "class"
+    return "module" if isinstance(member, ModuleType) else "function"
 
 
 def component_list() -> str:

@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import formulas
     from .analyses.calibration.run import calibrate
     from .analyses.pile.run import pile
     from .analyses.rockfall.run import rockfall
@@ -52,6 +53,8 @@ _HOMES = {
     "simulate": "runs.simulation",
 }
 """Modules of the public names."""
+_ROOMS = ("formulas",)
+"""Packages whose names are public under theirs."""
 
 __all__ = [
     "ComponentError",
@@ -68,6 +71,7 @@ __all__ = [
     "calibrate",
     "case",
     "component",
+    "formulas",
     "list_cases",
     "list_components",
     "pile",
@@ -83,6 +87,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("rockshed")
+    if name in _ROOMS:
+        return import_module(f".{name}", __name__)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(f".{_HOMES[name]}", __name__), name)

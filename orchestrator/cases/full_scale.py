@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from functools import cache
 
 from rockshed.components.catalogue import component
-from rockshed.components.common.units import cm, cm2, cm4, kgf, kN, standard_gravity
+from rockshed.components.common.units import cm, cm2, cm4, kgf, standard_gravity
 
 from ..core.system.schedule import Scheme
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
+from ..formulas.handbook import handbook_force
 from ..references import Known, Reference, References
 from .sand_models import FULL_SCALE_SOIL, SandLayer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
@@ -354,60 +355,6 @@ def layer(impact: Impact, dropped: bool = True) -> SandLayer:
         on_beam=bool(impact.span),
         dropped=dropped,
     )
-
-
-HANDBOOK_LAME = 1e6
-"""Lame constant (Pa) that the Japanese rockfall handbook recommends for sand: 1000 kN/m2."""
-
-
-def handbook_force(mass: float, height: float, lame: float = HANDBOOK_LAME) -> float:
-    """Return the impact force on a rock by the Japanese rockfall handbook.
-
-    P = 2.108 (m g)^(2/3) lambda^(2/5) H^(3/5), with weight and force in kN and lambda in kN/m2.
-    It is Hertz's solution for a sphere on a half-space with Poisson's ratio 0.25.
-
-    Parameters
-    ----------
-    mass : float
-        Of the rock (kg).
-    height : float
-        Of its fall (m).
-    lame : float
-        Lame constant lambda of the sand (Pa).
-
-    Returns
-    -------
-    float
-        Force (N).
-    """
-    return 2.108 * (mass * kgf / kN) ** (2 / 3) * (lame / kN) ** 0.4 * height**0.6 * kN
-
-
-def hertz_force(
-    mass: float, radius: float, speed: float, lame: float = HANDBOOK_LAME, poisson: float = 0.25
-) -> float:
-    """Return the largest force on a rigid sphere that strikes an elastic half-space (Hertz).
-
-    P = K^(2/5) (5/4 m v^2)^(3/5), K = 4/3 E / (1 - nu^2) sqrt(R), from P = K d^(3/2) and
-    2/5 K d^(5/2) = m v^2 / 2, with E = lambda (1 + nu)(1 - 2 nu) / nu.
-
-    Parameters
-    ----------
-    mass, radius, speed : float
-        Of the sphere (kg, m, m/s).
-    lame : float
-        Lame constant lambda (Pa).
-    poisson : float
-        Poisson's ratio nu.
-
-    Returns
-    -------
-    float
-        Force (N).
-    """
-    modulus = lame * (1.0 + poisson) * (1.0 - 2.0 * poisson) / poisson
-    stiffness = 4.0 / 3.0 * modulus / (1.0 - poisson**2) * math.sqrt(radius)
-    return float(stiffness**0.4 * (1.25 * mass * speed**2) ** 0.6)
 
 
 ASSUMED = ("beam.deck.mass", "beam.box.mass", "beam.cushion.weight")

@@ -30,6 +30,7 @@ COMMANDS = {
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find E_bar of a sand from a spring constant or a load-penetration curve.",
     "rockfall": "Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.",
+    "formula": "Impact force by formulas of practice: Japanese handbook, ASTRA, Labiouse, Hertz.",
     "pile": "Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph.",
     "doctor": "Look at kept code, compilers, leftovers of killed runs, and what is slow.",
 }

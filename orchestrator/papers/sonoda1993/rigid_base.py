@@ -13,10 +13,10 @@ from ...cases.full_scale import (
     ROCK_MASS,
     ROCK_RADIUS,
     Impact,
-    handbook_force,
-    hertz_force,
     impacts,
 )
+from ...formulas.handbook import handbook_force
+from ...formulas.hertz import hertz_force
 from ...metrics.names import (
     PENETRATION,
     SETTLED_CUT_OFF,

@@ -6,15 +6,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from scipy.integrate import solve_ivp
 
 from rockshed.cases.full_scale import (
-    DROP,
     LAYER,
     ROCK_MASS,
     ROCK_RADIUS,
-    handbook_force,
-    hertz_force,
     impacts,
 )
 from rockshed.cases.registry import case
@@ -179,32 +175,6 @@ def test_fmus_give_what_the_components_give_in_process():
 def test_cushions_have_the_papers_number_of_discs():
     discs = {name: impact.discs for name, impact in impacts().items()}
     assert discs == {**dict.fromkeys(RIGID, 360), **dict.fromkeys(GIRDERS, 270)}
-
-
-def test_handbook_formula_is_hertz_for_a_sphere():
-    """Rock of 2650 kg/m3, nu = 0.25. 609.5 kN is printed for 1 tf, 10 m, 1000 kN/m2 with g rounded."""
-    assert handbook_force(ROCK_MASS, DROP) == pytest.approx(609.5e3, rel=1e-3)
-    for mass, height in ((1000.0, 10.0), (400.0, 25.0)):
-        radius = (0.75 * mass / 2650.0 / math.pi) ** (1 / 3)
-        assert handbook_force(mass, height) == pytest.approx(
-            hertz_force(mass, radius, math.sqrt(2 * 9.80665 * height)), rel=2e-3
-        )
-
-
-def test_hertz_force_is_the_largest_of_a_sphere_that_is_stopped_by_its_half_space():
-    """The motion m d'' = -4/3 E/(1 - nu2) sqrt(R) d^(3/2), integrated; E and nu from the Lame constants lambda, G."""
-    mass, radius, speed, lame, shear = 1000.0, 0.456, 14.0, 1e6, 1.5e6
-    modulus, poisson = shear * (3 * lame + 2 * shear) / (lame + shear), 0.5 * lame / (lame + shear)
-
-    def force(depth):
-        return 4 / 3 * modulus / (1 - poisson**2) * math.sqrt(radius) * max(depth, 0.0) ** 1.5
-
-    path = solve_ivp(
-        lambda t, y: (y[1], -force(y[0]) / mass), (0.0, 0.2), (0.0, speed), max_step=1e-4
-    )
-    assert hertz_force(mass, radius, speed, lame, poisson) == pytest.approx(
-        max(map(force, path.y[0])), rel=1e-4
-    )
 
 
 def packed(name, number=0):

@@ -1,0 +1,67 @@
+"""Estimates as a table."""
+
+from collections.abc import Iterable, Mapping
+
+from rockshed.components.common.units import SCREEN_UNITS
+
+from ..tables import Table
+from .estimate import Estimate
+
+_SCALES = {"N": ("kN", 0), "m": ("m", 2)}
+"""Unit on the screen and decimals, by the unit of an estimate."""
+_WORDS = {True: "yes", False: "no", None: "not known"}
+
+
+def table_of(
+    estimates: Iterable[Estimate], computed: Mapping[str, float] | None = None, title: str = ""
+) -> Table:
+    """Return a table of estimates, with computed values beside them where there are any.
+
+    Parameters
+    ----------
+    estimates : iterable of Estimate
+        From :func:`rockshed.formulas.estimates`.
+    computed : mapping of str to float, optional
+        Values of a run by quantity (SI units): their deviation from each estimate is shown.
+    title : str
+        Of the table.
+
+    Returns
+    -------
+    Table
+        A row for each estimate; notes with source, range and parameters of each formula.
+    """
+    listed = list(estimates)
+    beside = computed or {}
+    deviations = ["computed"] if beside else []
+    columns = ("quantity", "formula", "value", "unit", *deviations, "in its range", "verified")
+    made = Table(columns, right=("value", *deviations), title=title)
+    for estimate in listed:
+        unit, decimals = _SCALES[estimate.unit]
+        shown = f"{estimate.value / SCREEN_UNITS[unit]:,.{decimals}f}"
+        against = [_deviation(estimate, beside)] if beside else []
+        range_and_proof = (_WORDS[estimate.within_range], _WORDS[estimate.verified])
+        made.add(estimate.quantity, estimate.name, shown, unit, *against, *range_and_proof)
+    made.notes = notes_of(listed)
+    return made
+
+
+def notes_of(estimates: Iterable[Estimate]) -> list[str]:
+    """Return a line on each formula: parameters, verification, range and source.
+
+    Parameters
+    ----------
+    estimates : iterable of Estimate
+        Estimates.
+    """
+    lines = {
+        e.name: f"{e.name}: {e.remark}. Range: {e.validity}. Source: {e.source}." for e in estimates
+    }
+    return list(lines.values())
+
+
+def _deviation(estimate: Estimate, computed: Mapping[str, float]) -> str:
+    found = computed.get(estimate.quantity)
+    if found is None or not estimate.value:
+        return ""
+    return f"{100.0 * (found / estimate.value - 1.0):+.0f} %"
