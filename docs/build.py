@@ -10,8 +10,8 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 from shutil import copyfile, rmtree
+from types import ModuleType
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]

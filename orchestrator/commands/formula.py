@@ -9,8 +9,8 @@ import typer
 from rockshed.components.common.units import deg, kN
 
 from ..core.errors import InputRefused, Problem
-from ..formulas import Blow, estimates, table_of
-from ..formulas.blow import FRICTION_ANGLE, LAME, MODULUS, ROCK_DENSITY, radius_of
+from ..formulas import RockImpact, estimates, table_of
+from ..formulas.rock_impact import FRICTION_ANGLE, LAME, MODULUS, ROCK_DENSITY, radius_of
 from ..input_files.quantities import quantity
 from .options import Json
 from .screen import opened
@@ -68,27 +68,26 @@ def command(
     """
     texts = (mass, height, speed, diameter, density, thickness, lame, modulus, friction_angle)
     with opened(quiet=False, as_json=as_json) as screen:
-        blow = _blow({name: text for name, text in zip(_UNITS, texts, strict=True) if text})
-        listed = estimates(blow)
+        impact = _impact({name: text for name, text in zip(_UNITS, texts, strict=True) if text})
+        listed = estimates(impact)
         if as_json:
-            shown = {**vars(blow), "drop_height": blow.drop_height, "energy": blow.energy}
-            screen.dump({"blow": shown, "estimates": [entry.as_data() for entry in listed]})
+            shown = {**vars(impact), "drop_height": impact.drop_height, "energy": impact.energy}
+            screen.dump({"impact": shown, "estimates": [entry.as_data() for entry in listed]})
             return
-        table = table_of(listed, title=_title(blow))
+        table = table_of(listed, title=_title(impact))
         screen.table(table)
         screen.show("", *table.notes)
 
 
-def _title(blow: Blow) -> str:
-    cushion = f" on {blow.thickness:g} m" if blow.thickness else ""
-    return (
-        f"{blow.mass / 1e3:.3g} t, {2.0 * blow.radius:.2f} m in diameter, from "
-        f"{blow.drop_height:.3g} m ({blow.speed:.3g} m/s, {blow.energy / 1e3:,.0f} kJ){cushion}"
-    )
+def _title(impact: RockImpact) -> str:
+    cushion = f" on {impact.thickness:g} m" if impact.thickness else ""
+    rock = f"{impact.mass / 1e3:.3g} t, {2.0 * impact.radius:.2f} m in diameter"
+    motion = f"{impact.speed:.3g} m/s, {impact.energy / 1e3:,.0f} kJ"
+    return f"{rock}, from {impact.drop_height:.3g} m ({motion}){cushion}"
 
 
-def _blow(texts: Mapping[str, str]) -> Blow:
-    """Return the blow of the options that were given."""
+def _impact(texts: Mapping[str, str]) -> RockImpact:
+    """Return the impact of the options that were given."""
     problems: list[Problem] = []
     given: dict[str, float] = {}
     for name, text in texts.items():
@@ -104,12 +103,12 @@ def _blow(texts: Mapping[str, str]) -> Blow:
     return _made(given)
 
 
-def _made(given: Mapping[str, float]) -> Blow:
+def _made(given: Mapping[str, float]) -> RockImpact:
     density = given.get("--density", ROCK_DENSITY)
     radius = (
         given["--diameter"] / 2.0 if "--diameter" in given else radius_of(given["--mass"], density)
     )
-    make: Callable[..., Blow] = Blow.fallen if "--height" in given else Blow
+    make: Callable[..., RockImpact] = RockImpact.fallen if "--height" in given else RockImpact
     return make(
         given["--mass"],
         radius,

@@ -1,8 +1,8 @@
 """Formulas of practice for the impact of a rock on a cushion, beside which a run is held.
 
->>> from rockshed.formulas import Blow, estimates
->>> blow = Blow.fallen(mass=1000.0, radius=0.456, height=10.0, thickness=0.9)
->>> for estimate in estimates(blow):
+>>> from rockshed.formulas import RockImpact, estimates
+>>> impact = RockImpact.fallen(mass=1000.0, radius=0.456, height=10.0, thickness=0.9)
+>>> for estimate in estimates(impact):
 ...     if estimate.quantity == FORCE:
 ...         print(f"{estimate.name}: {estimate.value / 1e3:.0f} kN")
 Japanese handbook: 609 kN
@@ -15,10 +15,10 @@ A formula is no measurement: what its source covers, and whether the source itse
 stands with every estimate.
 """
 
-from .blow import Blow as Blow
 from .estimate import FORCE as FORCE
 from .estimate import PENETRATION as PENETRATION
 from .estimate import THICKNESS as THICKNESS
-from .estimate import Estimate as Estimate
+from .estimate import FormulaValue as FormulaValue
 from .practice import estimates as estimates
+from .rock_impact import RockImpact as RockImpact
 from .shown import table_of as table_of

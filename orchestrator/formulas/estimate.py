@@ -1,4 +1,4 @@
-"""What a formula gives, with its source and how far it can be relied on."""
+"""Values by formulas, each with its source and how far it can be relied on."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -13,7 +13,7 @@ THICKNESS = "least thickness of the cushion"
 
 
 @dataclass(frozen=True)
-class Estimate:
+class FormulaValue:
     """A value by a formula of practice.
 
     Attributes
@@ -31,7 +31,7 @@ class Estimate:
     verified : bool
         Whether the formula was compared with its source, a printed table or a derivation.
     within_range : bool or None
-        Whether the blow lies within what the formula was found for; None where that is not known.
+        Whether the impact lies within what the formula was found for; None where that is not known.
     validity : str
         That range in words.
     remark : str
@@ -53,6 +53,6 @@ class Estimate:
         return asdict(self)
 
     @classmethod
-    def from_data(cls, data: Mapping[str, Any]) -> "Estimate":
+    def from_data(cls, data: Mapping[str, Any]) -> "FormulaValue":
         """Read what :meth:`as_data` wrote; entries of later versions are passed over."""
         return cls(**{name: data[name] for name in cls.__dataclass_fields__ if name in data})

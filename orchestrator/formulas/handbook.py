@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 from rockshed.components.common.units import kgf, kN
 
-from .blow import LAME, Blow
-from .estimate import FORCE, Estimate
+from .estimate import FORCE, FormulaValue
+from .rock_impact import LAME, RockImpact
 
 _NAME = "Japanese handbook"
 _SOURCE = "Japan Road Association, Handbook of rockfall countermeasures (落石対策便覧)"
@@ -54,25 +54,25 @@ def thickness_factor(diameter: float, thickness: float) -> float:
     return max(1.0, math.sqrt(diameter / thickness))
 
 
-def handbook(blow: Blow) -> Iterator[Estimate]:
+def handbook(impact: RockImpact) -> Iterator[FormulaValue]:
     """Yield the force without and, where the thickness is known, with the thickness factor.
 
     Parameters
     ----------
-    blow : Blow
-        The blow.
+    impact : RockImpact
+        The impact.
     """
-    force = handbook_force(blow.mass, blow.drop_height, blow.lame)
-    used = f"λ = {blow.lame / kN:g} kN/m²"
-    diameter, thickness = 2.0 * blow.radius, blow.thickness
+    force = handbook_force(impact.mass, impact.drop_height, impact.lame)
+    used = f"λ = {impact.lame / kN:g} kN/m²"
+    diameter, thickness = 2.0 * impact.radius, impact.thickness
     covers = None if thickness is None else diameter <= thickness
     tabled = f"{used}; reproduces a printed table of forces within 0.2 %"
-    yield Estimate(_NAME, FORCE, force, "N", _SOURCE, True, covers, _VALIDITY, tabled)
+    yield FormulaValue(_NAME, FORCE, force, "N", _SOURCE, True, covers, _VALIDITY, tabled)
     if thickness is None:
         return
     factor = thickness_factor(diameter, thickness)
     remark = f"{used}, α = (D/T)^½ = {factor:.3f}, 1 for D < T; the handbook could not be read"
-    yield Estimate(
+    yield FormulaValue(
         f"{_NAME}, thickness factor",
         FORCE,
         factor * force,

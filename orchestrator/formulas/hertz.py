@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator
 
-from .blow import LAME, Blow
-from .estimate import FORCE, PENETRATION, Estimate
+from .estimate import FORCE, PENETRATION, FormulaValue
+from .rock_impact import LAME, RockImpact
 
 POISSON = 0.25
 """Poisson's ratio nu with which the handbook's formula is the one of Hertz."""
@@ -58,17 +58,17 @@ def hertz_force(
     return float(stiffness**0.4 * (1.25 * mass * speed**2) ** 0.6)
 
 
-def hertz(blow: Blow) -> Iterator[Estimate]:
+def hertz(impact: RockImpact) -> Iterator[FormulaValue]:
     """Yield force and penetration.
 
     Parameters
     ----------
-    blow : Blow
-        The blow.
+    impact : RockImpact
+        The impact.
     """
-    force = hertz_force(blow.mass, blow.radius, blow.speed, blow.lame)
-    depth = (force / hertz_stiffness(blow.radius, blow.lame)) ** (2.0 / 3.0)
-    small = depth < 0.1 * blow.radius
-    remark = f"λ = {blow.lame / 1e3:g} kN/m², ν = {POISSON}; the closed form is tested"
-    yield Estimate("Hertz", FORCE, force, "N", _SOURCE, True, small, _VALIDITY, remark)
-    yield Estimate("Hertz", PENETRATION, depth, "m", _SOURCE, True, small, _VALIDITY, remark)
+    force = hertz_force(impact.mass, impact.radius, impact.speed, impact.lame)
+    depth = (force / hertz_stiffness(impact.radius, impact.lame)) ** (2.0 / 3.0)
+    small = depth < 0.1 * impact.radius
+    remark = f"λ = {impact.lame / 1e3:g} kN/m², ν = {POISSON}; the closed form is tested"
+    yield FormulaValue("Hertz", FORCE, force, "N", _SOURCE, True, small, _VALIDITY, remark)
+    yield FormulaValue("Hertz", PENETRATION, depth, "m", _SOURCE, True, small, _VALIDITY, remark)

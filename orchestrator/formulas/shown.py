@@ -1,11 +1,11 @@
-"""Estimates as a table."""
+"""Tables of values by formulas, with those of a run beside them."""
 
 from collections.abc import Iterable, Mapping
 
 from rockshed.components.common.units import SCREEN_UNITS
 
 from ..tables import Table
-from .estimate import Estimate
+from .estimate import FormulaValue
 
 _SCALES = {"N": ("kN", 0), "m": ("m", 2)}
 """Unit on the screen and decimals, by the unit of an estimate."""
@@ -13,13 +13,13 @@ _WORDS = {True: "yes", False: "no", None: "not known"}
 
 
 def table_of(
-    estimates: Iterable[Estimate], computed: Mapping[str, float] | None = None, title: str = ""
+    estimates: Iterable[FormulaValue], computed: Mapping[str, float] | None = None, title: str = ""
 ) -> Table:
     """Return a table of estimates, with computed values beside them where there are any.
 
     Parameters
     ----------
-    estimates : iterable of Estimate
+    estimates : iterable of FormulaValue
         From :func:`rockshed.formulas.estimates`.
     computed : mapping of str to float, optional
         Values of a run by quantity (SI units): their deviation from each estimate is shown.
@@ -46,12 +46,12 @@ def table_of(
     return made
 
 
-def notes_of(estimates: Iterable[Estimate]) -> list[str]:
+def notes_of(estimates: Iterable[FormulaValue]) -> list[str]:
     """Return a line on each formula: parameters, verification, range and source.
 
     Parameters
     ----------
-    estimates : iterable of Estimate
+    estimates : iterable of FormulaValue
         Estimates.
     """
     lines = {
@@ -60,7 +60,7 @@ def notes_of(estimates: Iterable[Estimate]) -> list[str]:
     return list(lines.values())
 
 
-def _deviation(estimate: Estimate, computed: Mapping[str, float]) -> str:
+def _deviation(estimate: FormulaValue, computed: Mapping[str, float]) -> str:
     found = computed.get(estimate.quantity)
     if found is None or not estimate.value:
         return ""

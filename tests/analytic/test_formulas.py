@@ -11,15 +11,23 @@ from typer.testing import CliRunner
 
 import rockshed
 from rockshed.commands.app import app
-from rockshed.formulas import FORCE, PENETRATION, THICKNESS, Blow, Estimate, estimates, table_of
-from rockshed.formulas.blow import radius_of
+from rockshed.formulas import (
+    FORCE,
+    PENETRATION,
+    THICKNESS,
+    FormulaValue,
+    RockImpact,
+    estimates,
+    table_of,
+)
 from rockshed.formulas.handbook import handbook_force, thickness_factor
 from rockshed.formulas.hertz import hertz_force
+from rockshed.formulas.rock_impact import radius_of
 from rockshed.formulas.swiss import astra_force, labiouse_force
 
 G = 9.80665
 ROCK_MASS, DROP = 1000.0, 10.0
-BLOW = Blow.fallen(ROCK_MASS, 0.456, DROP, thickness=0.9)
+IMPACT = RockImpact.fallen(ROCK_MASS, 0.456, DROP, thickness=0.9)
 POSITIVE = st.floats(0.01, 1e4)
 
 
@@ -60,37 +68,37 @@ def test_thickness_factor_is_1_for_a_rock_that_is_smaller_than_the_cushion_is_th
 
 
 def test_swiss_formulas_give_the_values_of_one_tonne_from_ten_metres():
-    stiff = Blow.fallen(ROCK_MASS, 0.456, DROP, modulus=10e6)
-    assert labiouse_force(BLOW) == pytest.approx(581e3, rel=1e-3)
+    stiff = RockImpact.fallen(ROCK_MASS, 0.456, DROP, modulus=10e6)
+    assert labiouse_force(IMPACT) == pytest.approx(581e3, rel=1e-3)
     assert labiouse_force(stiff) == pytest.approx(941e3, rel=1e-3)
-    assert astra_force(BLOW, 0.9) == pytest.approx(460e3, rel=2e-3)
+    assert astra_force(IMPACT, 0.9) == pytest.approx(460e3, rel=2e-3)
 
 
 @given(mass=POSITIVE, radius=st.floats(0.05, 3.0), height=st.floats(0.1, 200.0))
-def test_labiouse_is_hertz_with_the_modulus_of_a_plate_for_every_blow(mass, radius, height):
+def test_labiouse_is_hertz_with_the_modulus_of_a_plate_for_every_impact(mass, radius, height):
     """Both are proportional to E^(2/5) R^(1/5) (m g H)^(3/5): their ratio is one number."""
-    blow = Blow.fallen(mass, radius, height)
-    ratio = labiouse_force(blow) / hertz_force(mass, radius, blow.speed)
-    assert ratio == pytest.approx(labiouse_force(BLOW) / hertz_force(1000.0, 0.456, BLOW.speed))
+    impact = RockImpact.fallen(mass, radius, height)
+    ratio = labiouse_force(impact) / hertz_force(mass, radius, impact.speed)
+    assert ratio == pytest.approx(labiouse_force(IMPACT) / hertz_force(1000.0, 0.456, IMPACT.speed))
 
 
 @given(height=st.floats(0.1, 200.0), thickness=st.floats(0.2, 5.0))
 def test_penetration_of_astra_uses_up_the_energy_under_half_the_force(height, thickness):
-    blow = Blow.fallen(ROCK_MASS, 0.456, height, thickness=thickness)
-    found = {(e.name, e.quantity): e.value for e in estimates(blow)}
+    impact = RockImpact.fallen(ROCK_MASS, 0.456, height, thickness=thickness)
+    found = {(e.name, e.quantity): e.value for e in estimates(impact)}
     force, depth = found["ASTRA 2008", FORCE], found["ASTRA 2008", PENETRATION]
     assert 0.5 * force * depth == pytest.approx(ROCK_MASS * G * height)
     assert found["ASTRA 2008", THICKNESS] == max(0.5, 2.0 * depth)
 
 
 def test_formulas_that_need_the_thickness_are_left_out_where_it_is_not_known():
-    names = {e.name for e in estimates(Blow.fallen(ROCK_MASS, 0.456, DROP))}
+    names = {e.name for e in estimates(RockImpact.fallen(ROCK_MASS, 0.456, DROP))}
     assert names == {"Japanese handbook", "Labiouse 1996", "Hertz"}
 
 
 def test_estimates_say_what_was_verified_and_whether_the_blow_is_in_range():
-    heavy = Blow.fallen(20e3, radius_of(20e3), 100.0, thickness=0.9)
-    assert {e.name: e.verified for e in estimates(BLOW)} == {
+    heavy = RockImpact.fallen(20e3, radius_of(20e3), 100.0, thickness=0.9)
+    assert {e.name: e.verified for e in estimates(IMPACT)} == {
         "Japanese handbook": True,
         "Japanese handbook, thickness factor": False,
         "ASTRA 2008": False,
@@ -98,22 +106,22 @@ def test_estimates_say_what_was_verified_and_whether_the_blow_is_in_range():
         "Hertz": True,
     }
     assert not any(e.within_range for e in estimates(heavy))
-    assert all("could not be read" in e.remark for e in estimates(BLOW) if not e.verified)
+    assert all("could not be read" in e.remark for e in estimates(IMPACT) if not e.verified)
 
 
 def test_estimates_are_plain_data_that_can_be_read_again():
-    data = json.loads(json.dumps([e.as_data() for e in estimates(BLOW)]))
-    assert [Estimate.from_data({**entry, "later": 1}) for entry in data] == estimates(BLOW)
+    data = json.loads(json.dumps([e.as_data() for e in estimates(IMPACT)]))
+    assert [FormulaValue.from_data({**entry, "later": 1}) for entry in data] == estimates(IMPACT)
 
 
 @pytest.mark.parametrize("changed", [{"mass": 0.0}, {"speed": -1.0}, {"friction_angle": 1.6}])
 def test_a_blow_that_cannot_be_is_refused(changed):
     with pytest.raises(ValueError, match=next(iter(changed))):
-        estimates(Blow(**{**vars(BLOW), **changed}))
+        estimates(RockImpact(**{**vars(IMPACT), **changed}))
 
 
 def test_a_table_shows_computed_values_as_deviations():
-    table = table_of(estimates(BLOW), {FORCE: 700e3})
+    table = table_of(estimates(IMPACT), {FORCE: 700e3})
     first = next(iter(table))
     assert (first["value"], first["unit"], first["computed"]) == ("609", "kN", "+15 %")
     assert all(not row["computed"] for row in table if row["quantity"] != FORCE)
@@ -121,7 +129,7 @@ def test_a_table_shows_computed_values_as_deviations():
 
 
 def test_formulas_are_reached_by_the_face():
-    assert rockshed.formulas.estimates(BLOW) == estimates(BLOW)
+    assert rockshed.formulas.estimates(IMPACT) == estimates(IMPACT)
     assert "formulas" in dir(rockshed)
 
 
@@ -133,7 +141,7 @@ def test_the_command_reads_units_and_gives_json():
     words[1] = f"{30 / G} t"
     shown = CliRunner().invoke(app, ["formula", *words, "--thickness", "90 cm", "--json"])
     content = json.loads(shown.stdout)
-    assert content["blow"]["thickness"] == pytest.approx(0.9)
+    assert content["impact"]["thickness"] == pytest.approx(0.9)
     assert content["estimates"][0]["value"] == pytest.approx(1945e3, rel=1e-3)
 
 

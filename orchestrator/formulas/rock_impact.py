@@ -16,7 +16,7 @@ ROCK_DENSITY = 2600.0
 
 
 @dataclass(frozen=True)
-class Blow:
+class RockImpact:
     """A rock that strikes a cushion, perpendicular to its surface.
 
     Attributes
@@ -42,8 +42,10 @@ class Blow:
     friction_angle: float = FRICTION_ANGLE
 
     @classmethod
-    def fallen(cls, mass: float, radius: float, height: float, **others: float | None) -> "Blow":
-        """Return the blow of a rock that has fallen freely.
+    def fallen(
+        cls, mass: float, radius: float, height: float, **others: float | None
+    ) -> "RockImpact":
+        """Return the impact of a rock that has fallen freely.
 
         Parameters
         ----------
@@ -63,7 +65,7 @@ class Blow:
 
     @property
     def energy(self) -> float:
-        """Kinetic energy (J)."""
+        """Kinetic energy of the rock at contact (J)."""
         return 0.5 * self.mass * self.speed**2
 
 
