@@ -11,7 +11,7 @@ from rockshed.components.common.units import deg, kN
 from ..core.errors import InputRefused, Problem
 from ..formulas import RockImpact, estimates, table_of
 from ..formulas.rock_impact import FRICTION_ANGLE, LAME, MODULUS, ROCK_DENSITY, radius_of
-from ..input_files.quantities import quantity
+from ..input_files.quantities import in_si
 from .options import Json
 from .screen import opened
 
@@ -92,7 +92,7 @@ def _impact(texts: Mapping[str, str]) -> RockImpact:
     given: dict[str, float] = {}
     for name, text in texts.items():
         with _collected(name, problems):
-            given[name] = _possible(name, quantity(text, _UNITS[name]))
+            given[name] = _possible(name, in_si(text, _UNITS[name]))
     for one, other in (("--height", "--speed"), ("--diameter", "--density")):
         if one in texts and other in texts:
             problems.append(Problem(f"{one} and {other}", "exclude each other", _ONE_OF))
