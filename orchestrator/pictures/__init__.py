@@ -24,8 +24,20 @@ Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class _Picture:
-    """A picture and what it needs: columns of the results, recorded states of a component."""
+class RunPicture:
+    """A picture and what it needs.
+
+    Attributes
+    ----------
+    name : str
+        Name of its file without the ending.
+    draw : callable
+        Draws it into a file, ``.png`` or ``.svg``.
+    columns : sequence of str
+        Columns of the results without which it is not drawn.
+    states_of : str or None
+        Component whose recorded states are drawn.
+    """
 
     name: str
     draw: Callable[[Path], None]
@@ -69,7 +81,7 @@ def draw_all(
         The folder cannot be written.
     """
     drawn = []
-    for picture in _pictures(run):
+    for picture in pictures_of(run):
         file = folder / f"{picture.name}.png"
         try:
             if missing := picture.missing(run):
@@ -97,8 +109,14 @@ def draw_all(
     return drawn
 
 
-def _pictures(run: StoredRun) -> list[_Picture]:
-    """Return the pictures of the components that take part."""
+def pictures_of(run: StoredRun) -> list[RunPicture]:
+    """Return the pictures of the components that take part, whether the results allow them or not.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
     from .energy import energy  # matplotlib is imported when something is drawn
 
     known = known_of(run)
@@ -109,15 +127,15 @@ def _pictures(run: StoredRun) -> list[_Picture]:
         for picture in _of_cushion(run, cushion, known)
     ]
     of_components = [
-        _Picture(picture.name, partial(picture.draw, run, known), picture.columns)
+        RunPicture(picture.name, partial(picture.draw, run, known), picture.columns)
         for picture in declared_pictures(run)
     ]
     striking = [member.column for member in members(run, Role.STRIKING)]
-    balance = [_Picture("energy", partial(energy, run), striking)] if striking else []
+    balance = [RunPicture("energy", partial(energy, run), striking)] if striking else []
     return of_cushions + of_components + balance
 
 
-def _of_cushion(run: StoredRun, cushion: str, known: KnownMetrics) -> list[_Picture]:
+def _of_cushion(run: StoredRun, cushion: str, known: KnownMetrics) -> list[RunPicture]:
     """Return the pictures of a cushion; those of its grains only where they can be read."""
     from . import cushion as curves
     from . import sand
@@ -128,17 +146,17 @@ def _of_cushion(run: StoredRun, cushion: str, known: KnownMetrics) -> list[_Pict
     overview = []
     if reader_of(run, cushion) is not None:
         draw = partial(sand.snapshots, run, cushion)
-        grains = [_Picture("sand", draw, forces[:1] + depth, cushion)]
+        grains = [RunPicture("sand", draw, forces[:1] + depth, cushion)]
         draw = partial(sand.overview, run, cushion, known)
-        overview = [_Picture("overview", draw, forces + depth, cushion)]
+        overview = [RunPicture("overview", draw, forces + depth, cushion)]
     if driven(run):
         draw = partial(curves.load, run, cushion, known)
-        return [_Picture("load", draw, forces[1:] + depth), *grains]
+        return [RunPicture("load", draw, forces[1:] + depth), *grains]
     return [
         *overview,
         *grains,
-        _Picture("forces", partial(curves.forces, run, cushion, known), forces),
-        _Picture("penetration", partial(curves.penetration, run, cushion, known), depth),
+        RunPicture("forces", partial(curves.forces, run, cushion, known), forces),
+        RunPicture("penetration", partial(curves.penetration, run, cushion, known), depth),
     ]
 
 

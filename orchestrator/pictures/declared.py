@@ -1,12 +1,14 @@
 """Pictures that components declare as data: curves of their outputs over time, and envelopes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import cycle
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from rockshed.components.common.units import SCREEN_UNITS, ms
 
@@ -36,8 +38,16 @@ _FORCES = ("N", "kN", "kgf")
 
 
 @dataclass
-class _Panel:
-    """A panel as it is declared, and the components that are drawn into it."""
+class DeclaredPanel:
+    """A panel as it is declared, and the components that are drawn into it.
+
+    Attributes
+    ----------
+    told : mapping
+        The declaration, as ``run.json`` has it.
+    components : list of str
+        Names of the components in the system.
+    """
 
     told: Mapping[str, Any]
     components: list[str] = field(default_factory=list)
@@ -73,7 +83,7 @@ class DeclaredPicture:
     """
 
     name: str
-    panels: Sequence[_Panel]
+    panels: Sequence[DeclaredPanel]
 
     @property
     def columns(self) -> list[str]:
@@ -81,6 +91,17 @@ class DeclaredPicture:
         return [
             f"{component}.{panel.needed}" for panel in self.panels for component in panel.components
         ]
+
+    def owner(self, panel: DeclaredPanel) -> str:
+        """Return the component that a panel belongs to; empty if all belong to one.
+
+        Parameters
+        ----------
+        panel : DeclaredPanel
+            One of the panels.
+        """
+        owners = {panel.components[0] for panel in self.panels if not panel.common}
+        return panel.components[0] if len(owners) > 1 and not panel.common else ""
 
     def draw(self, run: StoredRun, known: KnownMetrics, file: Path) -> None:
         """Draw the picture.
@@ -96,11 +117,11 @@ class DeclaredPicture:
         """
         with figure(run, file, WIDTH, 1.0 + _PANEL * len(self.panels)) as made:
             rows = made.subplots(len(self.panels), 1, squeeze=False).ravel()
-            owners = {panel.components[0] for panel in self.panels if not panel.common}
             for axes, panel in zip(rows, self.panels, strict=True):
-                owner = f"{panel.components[0]}: " if len(owners) > 1 and not panel.common else ""
+                owner = self.owner(panel)
                 if panel.is_envelope:
-                    draw_envelope(run, panel.components[0], panel.told, axes, owner)
+                    before = f"{owner}: " if owner else ""
+                    draw_envelope(run, panel.components[0], panel.told, axes, before)
                 else:
                     _draw_panel(run, panel, axes, owner)
                     _draw_known(panel, known, axes)
@@ -121,13 +142,13 @@ def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
     list of DeclaredPicture
         One for each name.
     """
-    pictures: dict[str, list[_Panel]] = {}
+    pictures: dict[str, list[DeclaredPanel]] = {}
     for component, facts in run.provenance["components"].items():
         for picture in facts.get("pictures", ()):
             panels = pictures.setdefault(picture["name"], [])
             for told in picture["panels"]:
                 shared = [p for p in panels if p.common and p.told == told]
-                panels += [] if shared else [_Panel(told)]
+                panels += [] if shared else [DeclaredPanel(told)]
                 (shared or panels[-1:])[0].components.append(component)
     return [
         DeclaredPicture(name, sorted(panels, key=lambda panel: panel.common))
@@ -145,57 +166,140 @@ def _share_time(run: StoredRun, rows: Sequence[Axes]) -> None:
         over_time(axes, run.series["time"] / ms)
 
 
-def _draw_panel(run: StoredRun, panel: _Panel, axes: Axes, owner: str) -> None:
-    """Draw the curves of a panel."""
-    told = panel.told
+@dataclass(frozen=True)
+class DeclaredCurve:
+    """A curve of a panel.
+
+    Attributes
+    ----------
+    label : str
+        Its name in the legend, empty where the panel has no other.
+    values : array of float, shape (rows,)
+        In the unit of the panel.
+    colour : str
+        That of the solid curve of which it is a part, if it is dashed.
+    dashed : bool
+        Whether it is a part of the curve before it.
+    """
+
+    label: str
+    values: NDArray[np.float64]
+    colour: str
+    dashed: bool
+
+
+def curves_of(run: StoredRun, panel: DeclaredPanel) -> Iterator[DeclaredCurve]:
+    """Yield the curves of a panel whose outputs were recorded.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    panel : DeclaredPanel
+        A panel of curves over time.
+    """
     colours = cycle(_COLOURS)
-    unit = told["unit"]
     for component in panel.components:
         colour = ""
-        for curve in told["curves"]:
+        for curve in panel.told["curves"]:
             colour = colour if curve["dashed"] and colour else next(colours)
-            _draw_curve(run, panel, component, curve, axes, colour)
-        if unit in _FORCES and (load := load_at_rest(run, component)):
-            _note(axes, f"beyond the load at rest, {abs(load) / SCREEN_UNITS[unit]:.1f} {unit}")
-    axes.axhline(0.0, color=GREY, linewidth=0.7)
+            name = f"{component}.{curve['variable']}"
+            if name not in run.series:
+                continue
+            values = curve["factor"] * run.series[name]
+            if curve["from_start"]:
+                values = values - values[0]
+            words = [component] if panel.common else []
+            yield DeclaredCurve(
+                ", ".join(filter(None, [*words, curve["label"]])),
+                values / SCREEN_UNITS[panel.told["unit"]],
+                colour,
+                curve["dashed"],
+            )
+
+
+def label_of(panel: DeclaredPanel, owner: str) -> str:
+    """Return the label of a panel's vertical axis.
+
+    Parameters
+    ----------
+    panel : DeclaredPanel
+        The panel.
+    owner : str
+        Component, put before the label; empty if it is the only one.
+    """
+    unit = panel.told["unit"]
     shown = "" if unit == "1" else f" ({unit})"
-    shown += "\ndownwards" if told["downwards"] else ""
-    axes.set(ylabel=f"{owner}{told['label']}{shown}")
+    return f"{owner}: {panel.told['label']}{shown}" if owner else f"{panel.told['label']}{shown}"
+
+
+def loads_at_rest(run: StoredRun, panel: DeclaredPanel) -> list[str]:
+    """Return a note for each load at rest that a panel of forces leaves out.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    panel : DeclaredPanel
+        A panel of curves over time.
+    """
+    unit = panel.told["unit"]
+    if unit not in _FORCES:
+        return []
+    loads = [load_at_rest(run, component) for component in panel.components]
+    return [
+        f"beyond the load at rest, {abs(load) / SCREEN_UNITS[unit]:.1f} {unit}"
+        for load in loads
+        if load
+    ]
+
+
+def _draw_panel(run: StoredRun, panel: DeclaredPanel, axes: Axes, owner: str) -> None:
+    """Draw the curves of a panel."""
+    told = panel.told
+    for curve in curves_of(run, panel):
+        axes.plot(
+            run.series["time"] / ms,
+            curve.values,
+            "--" if curve.dashed else "-",
+            color=curve.colour,
+            linewidth=1.1,
+            label=curve.label or None,
+        )
+    for text in loads_at_rest(run, panel):
+        _note(axes, text)
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
+    downwards = "\ndownwards" if told["downwards"] else ""
+    axes.set(ylabel=label_of(panel, owner) + downwards)
     if told["downwards"]:
         axes.invert_yaxis()
     if told["second_unit"]:
-        factor = SCREEN_UNITS[unit] / SCREEN_UNITS[told["second_unit"]]
+        factor = SCREEN_UNITS[told["unit"]] / SCREEN_UNITS[told["second_unit"]]
         second_scale(axes, factor, f"({told['second_unit']})")
     legend(axes, loc="best")
 
 
-def _draw_curve(
-    run: StoredRun, panel: _Panel, component: str, curve: Mapping[str, Any], axes: Axes, colour: str
-) -> None:
-    """Draw a curve of a component, if its output was recorded."""
-    name = f"{component}.{curve['variable']}"
-    if name not in run.series:
-        return
-    values = curve["factor"] * run.series[name]
-    if curve["from_start"]:
-        values = values - values[0]
-    words = [component] if panel.common else []
-    label = ", ".join(filter(None, [*words, curve["label"]]))
-    axes.plot(
-        run.series["time"] / ms,
-        values / SCREEN_UNITS[panel.told["unit"]],
-        "--" if curve["dashed"] else "-",
-        color=colour,
-        linewidth=1.1,
-        label=label or None,
-    )
+def known_in(panel: DeclaredPanel, known: KnownMetrics) -> KnownMetrics:
+    """Return the references of the metric that a panel names.
+
+    Parameters
+    ----------
+    panel : DeclaredPanel
+        A panel of curves over time.
+    known : mapping of str to Known
+        References by the name of the metric.
+    """
+    return {
+        name: references
+        for name, references in known.items()
+        if identifier(without_component(name)) == panel.told["references"]
+    }
 
 
-def _draw_known(panel: _Panel, known: KnownMetrics, axes: Axes) -> None:
+def _draw_known(panel: DeclaredPanel, known: KnownMetrics, axes: Axes) -> None:
     """Draw the references of the metric that a panel names."""
-    for name, references in known.items():
-        if identifier(without_component(name)) == panel.told["references"]:
-            draw_references(axes, references, panel.told["unit"], name)
+    for name, references in known_in(panel, known).items():
+        draw_references(axes, references, panel.told["unit"], name)
 
 
 def _note(axes: Axes, text: str) -> None:

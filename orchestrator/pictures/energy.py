@@ -48,7 +48,7 @@ _SHOWN = 1e-4
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer of the balance.
+    """A layer of the balance, or a line over it.
 
     Attributes
     ----------
@@ -95,19 +95,14 @@ def _stack(run: StoredRun, axes: Axes) -> None:
             edgecolor="white",
             linewidth=0.3,
         )
-    start = np.full(time.size, sum(float(layer.values[0]) for layer in shown))
-    works = {
-        "work of the machine": machine_work(run),
-        "work of the loads at rest": carried_work(run),
-    }
-    added = {words: work for words, work in works.items() if work is not None and work.any()}
+    there_should_be = expected(run)
     axes.plot(
         time,
-        sum(added.values(), start),
+        there_should_be.values,
         color=INK,
         linewidth=0.9,
         linestyle="--",
-        label="\nand ".join(["all energy at the start", *added]),
+        label=there_should_be.label,
     )
     axes.set(ylabel="energy (J)")
     over_time(axes, time)
@@ -116,20 +111,60 @@ def _stack(run: StoredRun, axes: Axes) -> None:
 
 
 def _error(run: StoredRun, axes: Axes) -> None:
-    """Draw the error of the balance.
+    """Draw the error of the balance."""
+    found = balance_error(run)
+    if found is not None:
+        axes.plot(run.series["time"] / ms, found.values, color=INK, linewidth=1.0)
+        axes.set_ylabel(f"error of the balance\n({found.label})", fontsize=8)
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
 
-    It is a share of the impact energy, or of what a machine has put in.
+
+def expected(run: StoredRun) -> Layer:
+    """Return the energy that the layers should add up to.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    Layer
+        A line over all layers: their sum at the start, and what comes from outside.
+    """
+    start = sum(float(layer.values[0]) for layer in layers(run))
+    works = {
+        "work of the machine": machine_work(run),
+        "work of the loads at rest": carried_work(run),
+    }
+    added = {words: work for words, work in works.items() if work is not None and work.any()}
+    whole = np.full(run.series["time"].size, start) + sum(added.values())
+    return Layer("\nand ".join(["all energy at the start", *added]), INK, whole)
+
+
+def balance_error(run: StoredRun) -> Layer | None:
+    """Return the error of the balance.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    Layer or None
+        In percent of the impact energy, or of the work of a machine, as its label tells; None if a
+        component gives no balance.
     """
     residual, machine = system_residual(run), machine_work(run)
     whole = impact_energy(run)
-    name = "impact\nenergy"
+    label = "% of the impact\nenergy"
     if machine is not None:
         whole = float(abs(machine[-1]))
-        name = "work of\nthe machine"
-    if residual is not None and whole:
-        axes.plot(run.series["time"] / ms, 100.0 * residual / whole, color=INK, linewidth=1.0)
-        axes.set_ylabel(f"error of the balance\n(% of the {name})", fontsize=8)
-    axes.axhline(0.0, color=GREY, linewidth=0.7)
+        label = "% of the work of\nthe machine"
+    if residual is None or not whole:
+        return None
+    return Layer(label, INK, 100.0 * residual / whole)
 
 
 def layers(run: StoredRun) -> Iterator[Layer]:

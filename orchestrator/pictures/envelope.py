@@ -32,7 +32,7 @@ def draw_envelope(
     owner : str
         Put before the label of the axis.
     """
-    places, values = _along(run, component, told)
+    places, values = along(run, component, told)
     values = values / SCREEN_UNITS[told["unit"]]
     row = int(np.unravel_index(np.abs(values).argmax(), values.shape)[1])
     high, low = values.max(axis=1), values.min(axis=1)
@@ -47,10 +47,27 @@ def draw_envelope(
     legend(axes, loc="best")
 
 
-def _along(
+def along(
     run: StoredRun, component: str, told: Mapping[str, Any]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the places (m), shape (n,), and the values, shape (n, rows), ends included."""
+    """Return the values of an array along a component, those at its ends included.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component : str
+        Name of the component in the system.
+    told : mapping
+        The envelope as it is declared.
+
+    Returns
+    -------
+    places : array of float, shape (n,)
+        In m.
+    values : array of float, shape (n, rows)
+        In SI units.
+    """
     places = np.array([at[0] for at in elements(run, f"{component}.{told['along']}")])
     values = np.array(elements(run, f"{component}.{told['variable']}"))
     ends = elements(run, f"{component}.{told['ends']}") if told["ends"] else []

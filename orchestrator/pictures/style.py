@@ -27,7 +27,10 @@ _LETTERS = 20
 """Letters of the caption in an inch."""
 _LONGEST_NAME = 80
 """Letters of a name in a picture, at most."""
+_METADATA = {".png": {"Software": "rockshed"}, ".svg": {"Creator": "rockshed", "Date": None}}
+"""Entries in the head of a file, by its ending; equal pictures are equal files."""
 _LOOK = {
+    "svg.hashsalt": "rockshed",
     "text.parse_math": False,  # names of variables are text, whatever signs are in them
     "font.family": "sans-serif",
     "font.size": 9.0,
@@ -90,7 +93,7 @@ def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> 
     with styled(lines, width, height) as made:
         yield made
         with whole_file(file) as temporary:
-            made.savefig(temporary, format="png", metadata={"Software": "rockshed"})
+            made.savefig(temporary, metadata=_METADATA.get(file.suffix))
 
 
 @contextmanager
