@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .analyses.rockfall.run import rockfall
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunFailed, UnknownName
+    from .reports.writing import report
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
     from .runs.projects import shed
@@ -48,6 +49,7 @@ _HOMES = {
     "list_components": "runs.catalogue",
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
+    "report": "reports.writing",
     "rockfall": "analyses.rockfall.run",
     "shed": "runs.projects",
     "simulate": "runs.simulation",
@@ -76,6 +78,7 @@ __all__ = [
     "list_components",
     "pile",
     "read_run",
+    "report",
     "rockfall",
     "shed",
     "simulate",

@@ -26,6 +26,7 @@ COMMANDS = {
     "export": "Write a system as TOML, with its FMUs, to change and run it.",
     "run": "Run a case, a project or a system file, compare, draw.",
     "plot": "Draw a run again, also one that failed or was killed.",
+    "report": "Write a report that a reviewer can check, as an HTML page and a PDF.",
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find E_bar of a sand from a spring constant or a load-penetration curve.",

@@ -1,0 +1,256 @@
+"""The report of a run, finished or not."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rockshed.components.common.units import ms
+
+from ..core.results.reading import StoredRun
+from ..metrics import contents
+from ..metrics.caption import models
+from ..metrics.contents import ForeignStateError
+from ..metrics.roles import parameters as values_of
+from ..pictures import RunPicture, pictures_of
+from ..runs.run import Run
+from ..tables import Table, digits
+from . import inputs, origin
+from .charts import charts_of
+from .film import film_of
+from .form import Chapter, Chart, Document, Film, Illustration
+from .step_halving import StepHalving, in_words
+
+_FRAME = (
+    "Frame: x to the right, y upwards, angles counter-clockwise. Forces are named by what they act "
+    "on. Times count from the start of the run."
+)
+
+_SHARP = ".svg"
+
+
+def report_of_run(
+    run: Run, halving: StepHalving | None, without: str = "", repeat: str = ""
+) -> Document:
+    """Return the report of a run.
+
+    Parameters
+    ----------
+    run : Run
+        Finished or not.
+    halving : StepHalving or None
+        The check by halved steps.
+    without : str
+        Why there is no such check.
+    repeat : str
+        Command that repeats the run; by default lines of Python.
+
+    Returns
+    -------
+    Document
+        With what there is: of a run that failed, until then.
+    """
+    chapters = [
+        *_warnings(run),
+        *_results(run),
+        *_formulas(run),
+        *_illustrations(run),
+        *_inputs(run),
+        _assumptions(run),
+        _check(halving, without),
+        _origin(run),
+        *_repetition(run, repeat),
+    ]
+    return Document(title_of(run), run.caption if run.time.size else [], status_of(run), chapters)
+
+
+def title_of(run: StoredRun) -> str:
+    """Return the title of a run, of the values that were computed with.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    design = run.provenance.get("design", {})
+    name = str(run.provenance.get("name", "run"))
+    rock = design.get("rock", {})
+    cushion = design.get("cushion", {})
+    roof = design.get("roof", {})
+    words = [
+        f"{digits(float(rock['mass']) / 1e3, 3)} t" if rock.get("mass") else "",
+        f"from {digits(float(rock['drop_height']), 3)} m" if rock.get("drop_height") else "",
+        f"on {digits(float(cushion['thickness']), 3)} m of sand"
+        if cushion.get("thickness")
+        else "",
+        f"over {roof['section']}" if roof.get("section") else "",
+    ]
+    told = " ".join(filter(None, words))
+    return f"{name}: {told}" if told else name
+
+
+def status_of(run: StoredRun) -> str:
+    """Return why a run is not complete; empty if it is.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    if run.status == "complete":
+        return ""
+    reached = f"until t = {1e3 * run.time[-1]:g} ms" if run.time.size else "before its first row"
+    told = {
+        "failed": f"This run failed. It is reported on what was computed {reached}. {run.error}",
+        "interrupted": f"This run was interrupted {reached}, and is reported on until then.",
+    }
+    killed = (
+        f"This run has not ended: it goes on, or was killed. Reported is what there is {reached}."
+    )
+    return told.get(run.status, killed)
+
+
+def _warnings(run: Run) -> Iterator[Chapter]:
+    texts = run.warnings
+    if texts:
+        yield Chapter("Warnings", texts, alarm=True)
+
+
+def _results(run: Run) -> Iterator[Chapter]:
+    if not run.time.size:
+        return
+    made = run.table()
+    if len(made):
+        deviation = "Deviations from what others found are computed / reference - 1."
+        told = [deviation] if len(made.columns) > len(("quantity", "unit", "computed")) else []
+        yield Chapter("Results", [*told, *run.notes], [made])
+
+
+def _formulas(run: StoredRun) -> Iterator[Chapter]:
+    """Yield the formulas of practice beside the run, where it has them."""
+    estimates = run.provenance.get("formulas", ())
+    if not isinstance(estimates, Sequence) or not estimates:
+        return
+    made = Table(("formula", "quantity", "value", "unit", "source", "remark"), right=("value",))
+    for told in estimates:
+        doubts = [
+            "" if told.get("verified", True) else "source not verified",
+            "" if told.get("within_range", True) else "outside of its range",
+            str(told.get("remark") or ""),
+        ]
+        made.add(
+            *(str(told.get("name", "")), str(told.get("quantity", ""))),
+            *_in_screen_unit(float(told.get("value", 0.0)), str(told.get("unit", "1"))),
+            *(str(told.get("source", "")), "; ".join(filter(None, doubts))),
+        )
+    yield Chapter("Formulas of practice", tables=[made])
+
+
+def _in_screen_unit(value: float, unit: str) -> tuple[str, str]:
+    """Return a value in SI as a table shows it, and its unit."""
+    if unit == "N":
+        return digits(value / 1e3, 4), "kN"
+    return digits(value, 4), "" if unit == "1" else unit.replace(".", " ")
+
+
+def _illustrations(run: StoredRun) -> Iterator[Chapter]:
+    """Yield the pictures that the results allow; of the others, why there are none."""
+    if not run.time.size:
+        return
+    charts = charts_of(run)
+    films: dict[str, Film | None] = {}
+    made: list[Illustration] = []
+    remarks: list[str] = []
+    for picture in pictures_of(run):
+        if missing := picture.missing(run):
+            remarks.append(f"No picture {picture.name}: the run has no {', '.join(missing)}.")
+            continue
+        try:
+            made.append(_illustration(run, picture, charts, films))
+        except ForeignStateError as error:
+            remarks.append(f"No picture {picture.name}: another version made its states ({error}).")
+    if made or remarks:
+        yield Chapter("Figures", remarks, illustrations=made)
+
+
+def _illustration(
+    run: StoredRun,
+    picture: RunPicture,
+    charts: Mapping[str, Sequence[Chart]],
+    films: dict[str, Film | None],
+) -> Illustration:
+    """Return a picture with its charts; the first picture of a cushion's states has their film."""
+    title = picture.name.replace("_", " ").capitalize()
+    shown = charts.get(picture.name, ())
+    if picture.states_of is None or shown:
+        return Illustration(title, shown, draw=picture.draw, printed=_SHARP)
+    if picture.states_of in films:
+        return Illustration(title, draw=picture.draw, on_page=False, printed=_SHARP)
+    film = films[picture.states_of] = film_of(run, picture.states_of)
+    return Illustration(title, film=film, draw=picture.draw, printed=_SHARP)
+
+
+def _inputs(run: StoredRun) -> Iterator[Chapter]:
+    project = run.provenance.get("project", {})
+    content = str(project.get("content", "")) if isinstance(project, Mapping) else ""
+    tables = [*inputs.project_tables(run)]
+    tables += filter(None, (inputs.differences(run), inputs.shared_values(run)))
+    told = (
+        [f"The project file {project['file']}, as it was when the run was made:"] if content else []
+    )
+    description = str(run.provenance.get("system", {}).get("description", ""))
+    if not content and description:
+        told = [f"{run.provenance.get('case', 'system')}: {description}"]
+    yield Chapter("Inputs", told, tables, content)
+    yield Chapter("All parameters", tables=list(inputs.parameters(run)), folded=True)
+
+
+def _assumptions(run: StoredRun) -> Chapter:
+    """Return what the figures rest on: models, what is calibrated, width, frame."""
+    told = [_FRAME]
+    told += [f"Model: {text}." for text in models(run)]
+    for component in run.provenance["components"]:
+        known = contents.measures(run, component)
+        assumed = getattr(known, "assumptions", None)
+        told += assumed(values_of(run, component)) if assumed else []
+    cushion = run.provenance.get("design", {}).get("cushion", {})
+    if cushion.get("effective_width"):
+        rule = f", by the rule {cushion['rule']}" if cushion.get("rule") else ""
+        width = digits(float(cushion["effective_width"]), 4)
+        told.append(f"Effective width of the plane model: {width} m{rule}.")
+    return Chapter("Assumptions", list(dict.fromkeys(told)))
+
+
+def _check(halving: StepHalving | None, without: str) -> Chapter:
+    title = "Check by halved steps"
+    if halving is None:
+        return Chapter(title, [without or "The run was not made again with half of its steps."])
+    return Chapter(title, [in_words(halving)], [halving.table])
+
+
+def _origin(run: StoredRun) -> Chapter:
+    told = [scheme_of(run)] if run.provenance.get("system") else []
+    return Chapter("Origin", told, [origin.circumstances(run), origin.fmus(run)])
+
+
+def scheme_of(run: StoredRun) -> str:
+    """Return how long the run was to be, and how often values were exchanged and recorded.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    system: Mapping[str, Any] = run.provenance["system"]
+    step = float(system["exchange_step"])
+    interval = float(system.get("output_interval") or step)
+    stop = float(system.get("stop_time", 0.0))
+    return (
+        f"Simulated time {digits(stop, 6)} s, exchange every {digits(step / ms)} ms by the "
+        f"{system['master']} master, rows every {digits(interval / ms)} ms."
+    )
+
+
+def _repetition(run: StoredRun, repeat: str) -> Iterator[Chapter]:
+    told = run.provenance.get("request")
+    if isinstance(told, Mapping):
+        listing = repeat or origin.in_python(told)
+        yield Chapter("How to repeat it", ["With the versions above:"], listing=listing)
