@@ -37,6 +37,7 @@ CONTENTS = {
         "command-line",
         "systems",
         "results",
+        "report",
         "fmus",
         "security",
         "limits",

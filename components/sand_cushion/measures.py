@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from ..common.units import cm, kgf
-from .models import model_of
+from .models import MODELS, model_of
 
 Parameters = Mapping[str, float | str]
 
@@ -92,3 +92,28 @@ def description(parameters: Parameters) -> str:
         f"fictitious modulus E_bar {float(parameters['modulus']) / kgf * cm**2:.1f} kgf/cm²",
     ]
     return f"{model_of(parameters) or 'modified'} sand: {', '.join(parts)}"
+
+
+def assumptions(parameters: Parameters) -> list[str]:
+    """Return what the forces of a cushion rest on, for a report.
+
+    Parameters
+    ----------
+    parameters : mapping of str to value
+        Parameters of the cushion.
+
+    Returns
+    -------
+    list of str
+        A sentence or two each.
+    """
+    model = model_of(parameters)
+    thickness = float(parameters["thickness"])
+    plane = (
+        f"The sand is a plane layer of discs, {thickness:g} m thick out of the plane; all forces "
+        "are those of this thickness. Nothing spreads out of the plane."
+    )
+    made = "It is none of the models that were calibrated together."
+    if model is not None:
+        made = f"Model {model} of the sand: {MODELS[model].summary}."
+    return [plane, made]

@@ -27,7 +27,7 @@ class Reader:
     ----------
     measures : str
         Module with ``contact_frequency(parameters)``, ``doubts(parameters, structures)`` and
-        ``description(parameters)``.
+        ``description(parameters)``, and for reports, if it likes, ``assumptions(parameters)``.
     states : str
         Module with ``decoded(state)``, which gives the geometry in a serialized state.
     """
