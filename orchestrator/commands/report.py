@@ -71,8 +71,10 @@ def repeating(request: Mapping[str, Any]) -> str:
     Returns
     -------
     str
-        One line for a shell.
+        One line for a shell; empty if the run is made of a project that stands in no file.
     """
+    if request.get("project"):
+        return ""
     words = ["rockshed", "run", str(request.get("target", ""))]
     for option in ("model", "coupling", "load_cell"):
         if request.get(option) is not None:

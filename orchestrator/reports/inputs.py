@@ -3,10 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import tomli_w
+
 from rockshed.components.catalogue import NAMES, component
 
 from ..core.results.reading import StoredRun
 from ..tables import Table, digits
+from .facts import table_of, tables_of
 
 _LONGEST = 60
 """Letters of a value in a table, at most."""
@@ -49,7 +52,7 @@ def differences(run: StoredRun) -> Table | None:
     run : StoredRun
         The run.
     """
-    told = run.provenance.get("differences", {})
+    told = table_of(run.provenance, "differences")
     made = Table(("changed", "value"), right=("value",), title="Other than in the case")
     for name, value in told.items():
         made.add(str(name), value_text(value))
@@ -64,10 +67,12 @@ def shared_values(run: StoredRun) -> Table | None:
     run : StoredRun
         The run.
     """
-    told = run.provenance.get("system", {}).get("shared", {})
+    told = table_of(run.provenance, "system", "shared")
     made = Table(("shared value", "value (SI)", "of"), right=("value (SI)",))
-    for name, entry in told.items():
-        made.add(str(name), value_text(entry["value"]), ", ".join(entry["targets"]))
+    for name in told:
+        entry = table_of(told, name)
+        targets = ", ".join(map(str, entry.get("targets", ())))
+        made.add(str(name), value_text(entry.get("value", "")), targets)
     return made if len(made) else None
 
 
@@ -116,32 +121,62 @@ def _meanings(model: str) -> dict[str, str]:
     return {variable.name: variable.description for variable in component(model).layout.variables}
 
 
-def project_tables(run: StoredRun) -> Iterator[Table]:
-    """Yield what follows from the project file of a run: the design, and all derived numbers.
+def project_text(run: StoredRun) -> str:
+    """Return the project of a run as a project file has it; empty if there is none.
 
     Parameters
     ----------
     run : StoredRun
         The run.
     """
-    design = run.provenance.get("design", {})
-    for part, entries in design.items() if isinstance(design, Mapping) else ():
+    content = table_of(run.provenance, "project").get("content", "")
+    return tomli_w.dumps(dict(content)) if isinstance(content, Mapping) else str(content)
+
+
+def project_tables(run: StoredRun) -> Iterator[Table]:
+    """Yield the design of a run: rock, cushion, roof and criteria.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    design = table_of(run.provenance, "design")
+    for part, entries in design.items():
         if isinstance(entries, Mapping):
-            yield _plain(f"{part}, SI units", entries)
-    criteria = design.get("criteria", ()) if isinstance(design, Mapping) else ()
-    if criteria:
-        made = Table(("criterion", "limit", "unit"), right=("limit",), title="criteria")
-        for entry in criteria:
-            made.add(str(entry["name"]), value_text(entry["limit"]), _unit(entry.get("unit")))
+            yield _plain(f"{part} (SI units)", entries)
+    made = Table(("criterion", "limit", "unit"), right=("limit",), title="criteria")
+    for entry in tables_of(design, "criteria"):
+        limit = value_text(entry.get("limit", ""))
+        made.add(str(entry.get("name", "")), limit, _unit(entry.get("unit")))
+    if len(made):
         yield made
-    derived = run.provenance.get("project", {}).get("derived", {})
-    if derived:
-        yield _plain("derived, SI units", derived)
+
+
+def derived(run: StoredRun) -> Table | None:
+    """Return everything that was derived from the project of a run; None if there is none.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    entries = table_of(run.provenance, "project", "derived")
+    return _plain("SI units", dict(_flat(entries, ""))) if entries else None
+
+
+def _flat(entries: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
+    """Yield the entries of tables in one another by their dotted names."""
+    for name, value in entries.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
 
 
 def _plain(title: str, entries: Mapping[str, Any]) -> Table:
     made = Table(("quantity", "value"), right=("value",), title=title)
-    for name, value in entries.items():
+    for name, value in _flat(entries, ""):
         if value is not None:
             made.add(str(name).replace("_", " "), value_text(value))
     return made

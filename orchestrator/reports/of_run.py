@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rockshed.components.common.units import ms
+from rockshed.components.common.units import ms, tonne
 
 from ..core.results.reading import StoredRun
 from ..metrics import contents
@@ -15,6 +15,7 @@ from ..runs.run import Run
 from ..tables import Table, digits
 from . import inputs, origin
 from .charts import charts_of
+from .facts import number_of, table_of, tables_of
 from .film import film_of
 from .form import Chapter, Chart, Document, Film, Illustration
 from .step_halving import StepHalving, in_words
@@ -70,21 +71,25 @@ def title_of(run: StoredRun) -> str:
     run : StoredRun
         The run.
     """
-    design = run.provenance.get("design", {})
     name = str(run.provenance.get("name", "run"))
-    rock = design.get("rock", {})
-    cushion = design.get("cushion", {})
-    roof = design.get("roof", {})
+    rock, cushion, roof = (
+        table_of(run.provenance, "design", p) for p in ("rock", "cushion", "roof")
+    )
+    mass, height = number_of(rock, "mass"), number_of(rock, "drop_height")
+    thickness = number_of(cushion, "thickness")
     words = [
-        f"{digits(float(rock['mass']) / 1e3, 3)} t" if rock.get("mass") else "",
-        f"from {digits(float(rock['drop_height']), 3)} m" if rock.get("drop_height") else "",
-        f"on {digits(float(cushion['thickness']), 3)} m of sand"
-        if cushion.get("thickness")
-        else "",
+        _mass(mass) if mass else "",
+        f"from {digits(height, 3)} m" if height else "",
+        f"on {digits(thickness, 3)} m of sand" if thickness else "",
         f"over {roof['section']}" if roof.get("section") else "",
     ]
     told = " ".join(filter(None, words))
     return f"{name}: {told}" if told else name
+
+
+def _mass(mass: float) -> str:
+    """Return a mass (kg) in the unit in which one says it."""
+    return f"{digits(mass / tonne, 3)} t" if mass >= tonne else f"{digits(mass, 3)} kg"
 
 
 def status_of(run: StoredRun) -> str:
@@ -126,19 +131,19 @@ def _results(run: Run) -> Iterator[Chapter]:
 
 def _formulas(run: StoredRun) -> Iterator[Chapter]:
     """Yield the formulas of practice beside the run, where it has them."""
-    estimates = run.provenance.get("formulas", ())
-    if not isinstance(estimates, Sequence) or not estimates:
+    estimates = tables_of(run.provenance, "formulas")
+    if not estimates:
         return
     made = Table(("formula", "quantity", "value", "unit", "source", "remark"), right=("value",))
     for told in estimates:
         doubts = [
             "" if told.get("verified", True) else "source not verified",
-            "" if told.get("within_range", True) else "outside of its range",
-            str(told.get("remark") or ""),
+            "outside of its range" if told.get("within_range") is False else "",
+            *(str(told.get(key) or "") for key in ("validity", "remark")),
         ]
         made.add(
             *(str(told.get("name", "")), str(told.get("quantity", ""))),
-            *_in_screen_unit(float(told.get("value", 0.0)), str(told.get("unit", "1"))),
+            *_in_screen_unit(number_of(told, "value") or 0.0, str(told.get("unit", "1"))),
             *(str(told.get("source", "")), "; ".join(filter(None, doubts))),
         )
     yield Chapter("Formulas of practice", tables=[made])
@@ -189,17 +194,18 @@ def _illustration(
 
 
 def _inputs(run: StoredRun) -> Iterator[Chapter]:
-    project = run.provenance.get("project", {})
-    content = str(project.get("content", "")) if isinstance(project, Mapping) else ""
+    content = inputs.project_text(run)
     tables = [*inputs.project_tables(run)]
     tables += filter(None, (inputs.differences(run), inputs.shared_values(run)))
-    told = (
-        [f"The project file {project['file']}, as it was when the run was made:"] if content else []
-    )
-    description = str(run.provenance.get("system", {}).get("description", ""))
-    if not content and description:
-        told = [f"{run.provenance.get('case', 'system')}: {description}"]
+    description = str(table_of(run.provenance, "system").get("description", ""))
+    told = [f"{run.provenance.get('case', 'system')}: {description}"] if description else []
+    if content:
+        file = table_of(run.provenance, "project").get("file") or "that was given in Python"
+        told = [f"The project {file}, as it was when the run was made:"]
     yield Chapter("Inputs", told, tables, content)
+    derived = inputs.derived(run)
+    if derived is not None:
+        yield Chapter("Derived from the project", tables=[derived], folded=True)
     yield Chapter("All parameters", tables=list(inputs.parameters(run)), folded=True)
 
 
@@ -211,11 +217,11 @@ def _assumptions(run: StoredRun) -> Chapter:
         known = contents.measures(run, component)
         assumed = getattr(known, "assumptions", None)
         told += assumed(values_of(run, component)) if assumed else []
-    cushion = run.provenance.get("design", {}).get("cushion", {})
-    if cushion.get("effective_width"):
+    cushion = table_of(run.provenance, "design", "cushion")
+    width = number_of(cushion, "effective_width")
+    if width:
         rule = f", by the rule {cushion['rule']}" if cushion.get("rule") else ""
-        width = digits(float(cushion["effective_width"]), 4)
-        told.append(f"Effective width of the plane model: {width} m{rule}.")
+        told.append(f"Effective width of the plane model: {digits(width, 4)} m{rule}.")
     return Chapter("Assumptions", list(dict.fromkeys(told)))
 
 
@@ -241,8 +247,8 @@ def scheme_of(run: StoredRun) -> str:
     """
     system: Mapping[str, Any] = run.provenance["system"]
     step = float(system["exchange_step"])
-    interval = float(system.get("output_interval") or step)
-    stop = float(system.get("stop_time", 0.0))
+    interval = number_of(system, "output_interval") or step
+    stop = number_of(system, "stop_time") or 0.0
     return (
         f"Simulated time {digits(stop, 6)} s, exchange every {digits(step / ms)} ms by the "
         f"{system['master']} master, rows every {digits(interval / ms)} ms."
@@ -250,7 +256,7 @@ def scheme_of(run: StoredRun) -> str:
 
 
 def _repetition(run: StoredRun, repeat: str) -> Iterator[Chapter]:
-    told = run.provenance.get("request")
-    if isinstance(told, Mapping):
-        listing = repeat or origin.in_python(told)
+    told = table_of(run.provenance, "request")
+    if told:
+        listing = repeat or origin.in_python(told, "project" in run.provenance)
         yield Chapter("How to repeat it", ["With the versions above:"], listing=listing)

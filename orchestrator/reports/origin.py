@@ -5,6 +5,7 @@ from typing import Any
 
 from ..core.results.reading import StoredRun
 from ..tables import Table
+from .facts import number_of, table_of
 from .inputs import value_text
 
 
@@ -33,8 +34,7 @@ def circumstances(run: StoredRun) -> Table:
     """
     facts = run.provenance
     made = Table(("what", "value"))
-    versions = facts.get("versions", {})
-    for name, version in versions.items():
+    for name, version in table_of(facts, "versions").items():
         made.add(str(name), str(version))
     for name, seed in seeds(facts).items():
         made.add(name, value_text(seed))
@@ -43,9 +43,9 @@ def circumstances(run: StoredRun) -> Table:
             made.add(title, str(facts[key]))
     if "runtime" in facts:
         made.add("FMUs", f"{facts['runtime']} ({facts.get('runtime_reason', '')})")
-    spent = facts.get("wall_time", {})
-    for name, seconds in spent.items() if isinstance(spent, Mapping) else ():
-        made.add(f"{name} took", f"{float(seconds):.3g} s")
+    spent = table_of(facts, "wall_time")
+    for name in spent:
+        made.add(f"{name} took", f"{number_of(spent, name) or 0.0:.3g} s")
     return made
 
 
@@ -65,25 +65,36 @@ def seeds(facts: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def in_python(request: Mapping[str, Any]) -> str:
+def in_python(request: Mapping[str, Any], is_project: bool = False) -> str:
     """Return lines of Python that repeat a run.
 
     Parameters
     ----------
     request : mapping
         That of the run's provenance.
+    is_project : bool
+        Whether it was made of a project.
     """
-    target = str(request.get("target", ""))
-    is_file = target.lower().endswith(".toml")
-    keys = ("values",) if is_file else ("values", "sizes", "model", "coupling", "load_cell")
-    given = {key: request.get(key) for key in (*keys, "in_process") if request.get(key)}
-    options = {**given, **dict(request.get("options") or {})}
-    words = "".join(f", {name}={value!r}" for name, value in options.items())
-    made = f"rockshed.case({target!r}{words})"
-    if is_file:
-        values = dict(options.pop("values", {}))
-        made = f"rockshed.System.load({target!r})"
-        made += f".with_values({values!r})" if values else ""
-        changed = ", ".join(f"{name}={value!r}" for name, value in options.items())
-        made += f".with_options({changed})" if changed else ""
+    target = request.get("project") or str(request.get("target", ""))
+    keys = ("values", "sizes", "model", "coupling", "load_cell", "in_process")
+    given = {key: request[key] for key in keys if request.get(key)}
+    options = table_of(request, "options")
+    if is_project:
+        made = _call("rockshed.shed", target, {**given, **_named("options", options)})
+    elif str(target).lower().endswith(".toml"):
+        made = _call("rockshed.System.load", target, {})
+        if given.get("values"):
+            made += f".with_values({given['values']!r})"
+        made += f".with_options(**{options!r})" if options else ""
+    else:
+        made = _call("rockshed.case", target, {**given, **options})
     return f"import rockshed\n\nrun = rockshed.simulate({made})\n"
+
+
+def _named(name: str, entries: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: entries} if entries else {}
+
+
+def _call(function: str, target: object, arguments: Mapping[str, Any]) -> str:
+    words = "".join(f", {name}={value!r}" for name, value in arguments.items())
+    return f"{function}({target!r}{words})"

@@ -56,7 +56,7 @@ def page(report: Document) -> str:
         report=report,
         chapters=chapters,
         data=_packed(json.dumps(collected.as_data())),
-        library=_packed(_plotly()) if collected.charts else "",
+        library=_packed_plotly() if collected.charts else "",
         script=script,
         style=(HERE / "page.css").read_text(encoding="utf-8"),
         policy=_policy(script, _plotly() if collected.charts else ""),
@@ -72,6 +72,7 @@ class _Collected:
         self.films: list[Any] = []
 
     def as_data(self) -> dict[str, Any]:
+        """Return both as plain data, for the script."""
         return {"charts": self.charts, "films": self.films}
 
 
@@ -197,6 +198,11 @@ def _plotly() -> str:
     from plotly.offline import get_plotlyjs
 
     return str(get_plotlyjs())
+
+
+@cache
+def _packed_plotly() -> str:
+    return _packed(_plotly())
 
 
 def _policy(*scripts: str) -> str:

@@ -29,6 +29,7 @@ from ..runs.request import Request
 from ..runs.simulation import simulate
 from ..runs.system import System
 from ..tables import Table, digits
+from .facts import number_of, table_of
 
 FILE = "step_halving.json"
 """File of the check in the folder of a run."""
@@ -78,9 +79,8 @@ def is_cheap(run: StoredRun) -> bool:
     run : StoredRun
         The run.
     """
-    spent = run.provenance.get("wall_time", {})
-    known = isinstance(spent, Mapping) and "exchanges" in spent
-    return run.status == "complete" and known and float(spent["exchanges"]) <= CHEAP
+    spent = number_of(table_of(run.provenance, "wall_time"), "exchanges")
+    return run.status == "complete" and spent is not None and spent <= CHEAP
 
 
 def kept(run: StoredRun) -> StepHalving | None:

@@ -1,4 +1,4 @@
-"""Reports written to files."""
+"""Reports on results of any kind, written to files."""
 
 from collections.abc import Callable
 from contextlib import suppress

@@ -149,7 +149,11 @@ def test_formulas_design_and_project_of_a_run_are_shown(copy):
     change(
         copy,
         formulas=[{**estimate, "within_range": True, "remark": ""}],
-        project={"file": "my.toml", "content": 'mass = "2.5 t"', "derived": {"discs": 370}},
+        project={
+            "file": "my.toml",
+            "content": {"rock": {"mass": "2.5 t"}},
+            "derived": {"n": {"m": 3}},
+        },
         design={
             "rock": {"mass": 2500.0, "drop_height": 25.0},
             "cushion": {"thickness": 1.2, "effective_width": 2.4, "rule": "spread"},
@@ -163,6 +167,7 @@ def test_formulas_design_and_project_of_a_run_are_shown(copy):
     assert "source not verified" in shown
     assert 'mass = "2.5 t"' in shown
     assert "2.4 m, by the rule spread" in shown
+    assert ">n.m<" in shown
 
 
 def test_a_report_is_a_file_of_the_run_and_spares_files_of_the_user(copy):
