@@ -1,5 +1,6 @@
 """Variables of the falling rock. Equations, frame and signs: README.md beside this file."""
 
+from ..common.plausible import Plausible
 from ..common.ports import Layout, choice, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
@@ -14,8 +15,24 @@ _SONODA = "Sonoda et al. 1993, sec. 2 (1) b): steel ball of 4 kgf, diameter 9.9 
 
 LAYOUT = Layout(
     (
-        param("mass", "mass of the rock", _BALL_MASS, "kg", minimum=1e-6, source=_SONODA),
-        param("radius", "radius of the rock", _BALL_RADIUS, "m", minimum=1e-6, source=_SONODA),
+        param(
+            "mass",
+            "mass of the rock",
+            _BALL_MASS,
+            "kg",
+            minimum=1e-6,
+            source=_SONODA,
+            plausible=Plausible(1e-3, 1e6, ("t",)),
+        ),
+        param(
+            "radius",
+            "radius of the rock",
+            _BALL_RADIUS,
+            "m",
+            minimum=1e-6,
+            source=_SONODA,
+            plausible=Plausible(1e-3, 10.0, ("cm", "mm")),
+        ),
         choice(
             "shape",
             "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the "
@@ -50,8 +67,21 @@ LAYOUT = Layout(
         param("position0.x", "position of the centre at the start, to the right", 0.0, "m"),
         param("position0.y", "position of the centre at the start, upwards", 1.0, "m"),
         param("angle0", "angle at the start, counter-clockwise", 0.0, "rad"),
-        param("velocity0.x", "velocity at the start, to the right", 0.0, "m/s"),
-        param("velocity0.y", "velocity at the start, upwards", -8.0, "m/s", source=_SONODA),
+        param(
+            "velocity0.x",
+            "velocity at the start, to the right",
+            0.0,
+            "m/s",
+            plausible=Plausible(1e-3, 150.0, ("mm/s", "km/h")),
+        ),
+        param(
+            "velocity0.y",
+            "velocity at the start, upwards",
+            -8.0,
+            "m/s",
+            source=_SONODA,
+            plausible=Plausible(1e-3, 150.0, ("mm/s", "km/h")),
+        ),
         param(
             "angular_velocity0", "angular velocity at the start, counter-clockwise", 0.0, "rad/s"
         ),

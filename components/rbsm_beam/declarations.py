@@ -1,6 +1,7 @@
 """Variables of the beam. Equations, frame and signs: README.md beside this file."""
 
 from ..common.component import Size
+from ..common.plausible import Plausible
 from ..common.ports import Layout, Sizes, State, choice, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
@@ -53,7 +54,13 @@ def _supports(sizes: Sizes) -> int:
 LAYOUT = Layout(
     (
         param(
-            "span", "distance of the outer supports", 120 * cm, "m", minimum=1e-3, source=_SONODA
+            "span",
+            "distance of the outer supports",
+            120 * cm,
+            "m",
+            minimum=1e-3,
+            source=_SONODA,
+            plausible=Plausible(0.1, 200.0, ("cm", "mm")),
         ),
         param("axis.x", "x of the left support", 0.0, "m"),
         param(
@@ -85,9 +92,16 @@ LAYOUT = Layout(
             2.1e6 * kgf / cm2,
             "Pa",
             minimum=1.0,
+            plausible=Plausible(1e8, 1e12, ("GPa", "MPa", "kgf/cm2")),
         ),
         param(
-            "section.area", "area of the section", 11.85 * cm2, "m2", minimum=1e-12, source=_SONODA
+            "section.area",
+            "area of the section",
+            11.85 * cm2,
+            "m2",
+            minimum=1e-12,
+            source=_SONODA,
+            plausible=Plausible(1e-5, 20.0, ("cm2", "mm2")),
         ),
         param(
             "section.second_moment",
@@ -96,6 +110,7 @@ LAYOUT = Layout(
             "m4",
             minimum=1e-18,
             source=_SONODA,
+            plausible=Plausible(1e-11, 100.0, ("cm4", "mm4")),
         ),
         param(
             "section.height",
@@ -104,6 +119,7 @@ LAYOUT = Layout(
             "m",
             minimum=1e-6,
             source=_SONODA,
+            plausible=Plausible(5e-3, 10.0, ("cm", "mm")),
         ),
         param(
             "density",
@@ -111,6 +127,7 @@ LAYOUT = Layout(
             7850.0,
             "kg/m3",
             minimum=1e-3,
+            plausible=Plausible(200.0, 25000.0, ("t/m3", "kN/m3")),
         ),
         param(
             "deck.mass",
@@ -118,6 +135,7 @@ LAYOUT = Layout(
             0.0,
             "kg/m",
             minimum=0.0,
+            plausible=Plausible(1.0, 1e5, ("t/m",)),
         ),
         param(
             "box.left",

@@ -7,6 +7,7 @@ import math
 from collections import namedtuple
 
 from ..common.component import Size
+from ..common.plausible import Plausible
 from ..common.ports import Indices, Layout, Sizes, State, choice, count, inp, out, param
 from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
@@ -180,6 +181,7 @@ LAYOUT = Layout(
             "m",
             minimum=1e-6,
             source="Sonoda et al. 1993, fig. 2",
+            plausible=Plausible(1e-2, 200.0, ("cm", "mm")),
         ),
         param(
             "box.wall_height",
@@ -208,6 +210,7 @@ LAYOUT = Layout(
             minimum=1e-9,
             source="Sonoda et al. 1993, sec. 3 (2): diameter 1.0 cm",
             role=Role.GRAIN_RADIUS,
+            plausible=Plausible(1e-4, 1.0, ("cm", "mm")),
         ),
         param(
             "disc.spread",
@@ -224,6 +227,7 @@ LAYOUT = Layout(
             minimum=1e-6,
             source="Sonoda et al. 1993, sec. 3 (2)",
             formerly=("depth",),
+            plausible=Plausible(1e-3, 50.0, ("cm", "mm")),
         ),
         param(
             "density",
@@ -233,6 +237,7 @@ LAYOUT = Layout(
             minimum=1e-6,
             source=_TABLE_3,
             formerly=("unit_weight",),
+            plausible=Plausible(500.0, 5000.0, ("kN/m3", "t/m3")),
         ),
         choice(
             "density_of",
@@ -297,6 +302,7 @@ LAYOUT = Layout(
             "Pa",
             minimum=1e-6,
             source="Sonoda et al. 1993, table 4, test 4",
+            plausible=Plausible(1e5, 1e9, ("kgf/cm2", "MPa", "kPa")),
         ),
         choice(
             "rotation",
@@ -329,6 +335,7 @@ LAYOUT = Layout(
             minimum=0.0,
             maximum=1.5,
             source=_TABLE_3,
+            plausible=Plausible(0.05, 1.3, ("deg",)),
         ),
         param(
             "rolling_resistance",
@@ -351,6 +358,7 @@ LAYOUT = Layout(
             0.0,
             "Pa",
             minimum=0.0,
+            plausible=Plausible(1.0, 5e5, ("kPa", "kgf/cm2")),
         ),
         param(
             "cohesion_range",

@@ -260,7 +260,6 @@ def _girders(fmu: str, impact: Impact, spacing: float) -> ComponentSpec:
         "section.area": GIRDERS * GIRDER_AREA,
         "section.second_moment": GIRDERS * GIRDER_SECOND_MOMENT,
         "section.height": GIRDER_HEIGHT,
-        "gravity": standard_gravity,
         "deck.mass": DECK_MASS,
         "box.mass": BOX_MASS,
         "damping.stiffness": BEAM_DAMPING,
@@ -272,11 +271,15 @@ def _girders(fmu: str, impact: Impact, spacing: float) -> ComponentSpec:
 def _shared(impact: Impact, spacing: float) -> dict[str, SharedValue]:
     """Return the values that several components take; spacing: length of an element (m), or 0."""
     boxed = ["sand", "beam"] if impact.span else ["sand"]
+    falling = ["rock", *boxed]
     left = _middle(impact) - 0.5 * impact.width
     shared = {
         "box_left": SharedValue(value=left, targets=[f"{name}.box.left" for name in boxed]),
         "box_width": SharedValue(
             value=impact.width, targets=[f"{name}.box.width" for name in boxed]
+        ),
+        "gravity": SharedValue(
+            value=standard_gravity, targets=[f"{name}.gravity" for name in falling]
         ),
         "rock_radius": SharedValue(value=ROCK_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
         "rock_mass": SharedValue(value=ROCK_MASS, targets=["rock.mass", "sand.rock.mass"]),

@@ -8,7 +8,6 @@ from functools import cache, partial
 from typing import Any, cast
 
 from rockshed.components.catalogue import component
-from rockshed.components.common.component import Component
 from rockshed.components.common.units import ms
 
 from ..core.errors import InputRefused, Problem
@@ -17,10 +16,13 @@ from ..core.system.system import SystemSpec, Value
 from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test
-from .sand_models import Changes, SandLayer, Soil, changes, lattice_height, sand_model
+from .sand_models import Changes, SandLayer, Soil, changes, sand_model
+from .together import ComponentSizes, declared_value, described, moved
 
-ComponentSizes = Mapping[str, Mapping[str, int]]
-"""Sizes by component of the system: ``{"sand": {"discs": 370}}``."""
+
+def _as_it_is(own: SystemSpec, system: SystemSpec, sizes: ComponentSizes) -> str:
+    """Return the description that a system has, whatever its values."""
+    return system.description
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,9 @@ class Case:
     follows : mapping of str to str
         Values, by ``component.parameter`` or name of a shared value, that cannot be set apart from
         what they follow from.
+    described : callable
+        ``described(own, system, sizes)`` returns the description of a run from its values; ``own``
+        is the system of the case.
     facts : mapping
         For the provenance of its runs: ``design``, ``project``.
     warnings : tuple of str
@@ -73,6 +78,7 @@ class Case:
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     other_names: tuple[str, ...] = ()
     follows: Mapping[str, str] = field(default_factory=dict)
+    described: Callable[[SystemSpec, SystemSpec, ComponentSizes], str] = _as_it_is
     facts: Mapping[str, Any] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
@@ -243,16 +249,7 @@ def _own_value(chosen: Case, system: SystemSpec, name: str) -> Value | None:
         return None
     if port in system.components[owner].parameters:
         return system.components[owner].parameters[port]
-    return _declared_value(component(chosen.models[owner]), port)
-
-
-def _declared_value(declared: Component, port: str) -> Value | None:
-    """Return the start value that a component declares, of a choice its word."""
-    for variable in declared.layout.ordered:
-        if variable.name == port:
-            start = variable.start_at(0, {})
-            return variable.choices[int(start) - 1] if variable.choices else start
-    return None
+    return declared_value(component(chosen.models[owner]), port)
 
 
 def _same(one: Value, other: Value | None) -> bool:
@@ -261,35 +258,6 @@ def _same(one: Value, other: Value | None) -> bool:
         return other is not None and math.isclose(float(one), float(other), rel_tol=1e-9)
     except (TypeError, ValueError):
         return str(one) == str(other)
-
-
-def _start_above(
-    layer: SandLayer, system: SystemSpec, sizes: ComponentSizes
-) -> Mapping[str, Value]:
-    """Return the start of the rock above a lattice of other discs, or in another box."""
-    if _of_sand(system, "packing") != "square":
-        return {}
-    with suppress(ValueError, ArithmeticError):  # no number, or none above 0: the FMU says so
-        discs = sizes["sand"]["discs"]
-        width, radius = (float(_of_sand(system, key)) for key in ("box.width", "disc.radius"))
-        more = lattice_height(discs, width, radius) - lattice_height(
-            discs, layer.width, layer.disc_radius
-        )
-        if abs(more) > 1e-9 * layer.height:
-            start = float(system.components["rock"].parameters["position0.y"])
-            return {"rock.position0.y": start + more}
-    return {}
-
-
-def _of_sand(system: SystemSpec, key: str) -> Value:
-    """Return the value that a parameter of the sand has in a system."""
-    for entry in system.shared.values():
-        if f"sand.{key}" in entry.targets:
-            return entry.value
-    given = system.components["sand"].parameters
-    return (
-        given[key] if key in given else cast(Value, _declared_value(component("SandCushion"), key))
-    )
 
 
 def _laboratory(test: sonoda1993.Test) -> Case:
@@ -321,7 +289,8 @@ def _laboratory(test: sonoda1993.Test) -> Case:
         one_size=("sand.elements", "beam.elements"),
         references=partial(sonoda1993.references, test),
         layer=sonoda1993.layer(test),
-        derived=partial(_start_above, sonoda1993.layer(test)),
+        derived=partial(moved, sonoda1993.layer(test)),
+        described=partial(described, sonoda1993.layer(test)),
         other_names=(numbered,) if numbered != name else (),
     )
 
@@ -343,7 +312,7 @@ def _static_test() -> Case:
         make=make,
         references=static_test.references,
         layer=static_test.LAYER_OF_SAND,
-        derived=partial(_start_above, static_test.LAYER_OF_SAND),
+        derived=partial(moved, static_test.LAYER_OF_SAND),
     )
 
 
@@ -354,7 +323,7 @@ def _shed_on_piles() -> Case:
         )
 
     def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
-        values = dict(_start_above(layer, system, sizes))
+        values = moved(layer, system, sizes)
         with suppress(ValueError, ArithmeticError):  # no number, or 0: the FMU says so
             discs, elements = sizes["sand"]["discs"], sizes["beam"]["elements"]
             values |= shed_on_piles.derived(system, discs, elements)
@@ -385,6 +354,7 @@ def _shed_on_piles() -> Case:
         make=make,
         one_size=("sand.elements", "beam.elements"),
         derived=derived,
+        described=partial(described, layer),
         layer=layer,
     )
 
@@ -458,7 +428,7 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         )
 
     def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
-        return {**weight_on_beam(system, sizes), **_start_above(layer, system, sizes)}
+        return {**weight_on_beam(system, sizes), **moved(layer, system, sizes)}
 
     layer = full_scale.layer(impact)
     beam = {"beam": "RBSMBeam"} if impact.span else {}
@@ -474,6 +444,7 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         derived=derived,
         references=partial(full_scale.references, impact),
         layer=layer,
+        described=partial(described, layer),
     )
 
 
@@ -502,4 +473,8 @@ def _slope_to_cushion() -> Case:
         one_size=("sand.elements", "beam.elements"),
         derived=weight_on_beam,
         layer=slope_to_cushion.sand_layer(),
+        follows=dict.fromkeys(
+            ("beam.span", "beam.axis.x", "box_left", "sand.box.left", "beam.box.left"),
+            "the slope of this case, on which the roof stands",
+        ),
     )

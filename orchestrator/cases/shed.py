@@ -86,7 +86,7 @@ def shed_case(shed: PreparedShed) -> Case:
         make=partial(_make, found, shed.name, words),
         one_size=("sand.elements", "beam.elements"),
         derived=weight_on_beam,
-        follows=FOLLOWS,
+        follows={name: f"the project's {fields}" for name, fields in FOLLOWS.items()},
         facts={"project": _project(shed), "design": design(shed.project, found)},
         warnings=shed.warnings,
     )

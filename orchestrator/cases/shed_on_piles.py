@@ -219,7 +219,7 @@ def derived(system: SystemSpec, discs: int, elements: int) -> dict[str, Value]:
     mass = (
         density * float(beam["section.area"]) + float(beam.get("deck.mass", 0.0))
     ) * span + float(beam.get("box.mass", 0.0))
-    at_head = 0.5 * (mass * float(beam["gravity"]) + cushion)
+    at_head = 0.5 * (mass * float(system.shared["gravity"].value) + cushion)
     stiffness = (
         4.0
         * float(beam.get("elastic_modulus", _STEEL))

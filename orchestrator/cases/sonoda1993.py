@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from rockshed.components.common.units import cm, kgf, mm
+from rockshed.components.common.units import cm, kgf, mm, standard_gravity
 
 from ..core.system.schedule import Scheme
 from ..core.system.system import (
@@ -289,6 +289,9 @@ def lab_system(
         shared={
             "rock_radius": SharedValue(
                 value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]
+            ),
+            "gravity": SharedValue(
+                value=standard_gravity, targets=["rock.gravity", "sand.gravity"]
             ),
             "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
             "beam_radius": SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"]),

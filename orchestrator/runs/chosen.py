@@ -103,11 +103,6 @@ def _of_project(
         found = shed_case(prepare(project, changes))
     except InputRefused as refusal:
         raise InputRefused([*problems, *refusal.problems]) from None
-    problems += [
-        Problem(name, f"follows from the project's {found.follows[name]}", "set that")
-        for name in others
-        if name in found.follows
-    ]
     if request.sizes:
         remedy = "set numerics.disc_radius or numerics.elements"
         problems.append(Problem("sizes", "follow from the fields of a project", remedy))

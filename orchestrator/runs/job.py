@@ -24,7 +24,15 @@ from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.renaming import with_present_names
-from ..core.system.system import ONE_VALUE, SystemSpec, Value, load_system, system_from, with_values
+from ..core.system.system import (
+    ONE_VALUE,
+    SystemSpec,
+    Value,
+    aliases,
+    load_system,
+    system_from,
+    with_values,
+)
 from ..input_files.quantities import doubt, in_si
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
@@ -103,6 +111,7 @@ def prepare(
         job = _from_file(request, known)
     else:
         asked, warnings = _with_present_names(request, chosen.case)
+        known += _follower_problems(asked, chosen.case)
         request = _in_si(asked, chosen.case, known, warnings)
         job = _from_case(chosen.case, request, known, note, fmus_of)
     system = _changed(job.system, request, known)
@@ -110,7 +119,7 @@ def prepare(
     if known:
         raise InputRefused(known + plan_problems(system, job.sources))
     if chosen.case is not None:
-        system = _with_derived(system, request, chosen.case, job.facts["sizes"])
+        system = _with_derived(job.system, system, request, chosen.case, job.facts["sizes"])
         warnings = [*chosen.case.warnings, *warnings]
     asked = replace(asked, values={**chosen.fields, **asked.values})
     differing = {**chosen.fields, **job.facts["differences"]}
@@ -159,6 +168,15 @@ def _in_si(request: Request, chosen: Case, problems: list[Problem], warnings: li
             kept[name] = _number(value, variable)
             warnings += _implausible(name, kept[name], variable)
     return replace(request, values=kept)
+
+
+def _follower_problems(request: Request, chosen: Case) -> list[Problem]:
+    """Refuse values that cannot be set apart from what they follow from."""
+    return [
+        Problem(name, f"follows from {chosen.follows[name]}", "set that")
+        for name in request.values
+        if name in chosen.follows
+    ]
 
 
 def _declared(chosen: Case, owner: str, key: str) -> Variable | None:
@@ -311,13 +329,15 @@ def _with_model(system: SystemSpec, model: Changes) -> SystemSpec:
 
 
 def _with_derived(
-    system: SystemSpec, request: Request, chosen: Case, sizes: ComponentSizes
+    own: SystemSpec, system: SystemSpec, request: Request, chosen: Case, sizes: ComponentSizes
 ) -> SystemSpec:
-    """Return the system with the values that follow from others where they are not given."""
+    """Return the system with what follows from others where it is not given, and described so."""
     derived = chosen.derived(system, sizes)
-    return with_values(
-        system, {name: value for name, value in derived.items() if name not in request.values}
-    )
+    given = {other for name in request.values for other in aliases(system, name)}
+    made = with_values(system, {name: derived[name] for name in derived if name not in given})
+    if "description" in request.options:
+        return made
+    return made.model_copy(update={"description": chosen.described(own, made, sizes)})
 
 
 def _in_process(chosen: Case, sizes: ComponentSizes) -> dict[str, Source]:

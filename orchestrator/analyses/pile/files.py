@@ -98,6 +98,7 @@ def write_facts(
         "ended": datetime.now(UTC).isoformat(timespec="seconds"),
         "site_file": str(file) if file else None,
         "site": pile.site.model_dump(mode="json", by_alias=True),
+        "warnings": list(pile.warnings),
         "exchange_step": pile.step,
         "time": pile.time,
         "wall_time": wall_time,

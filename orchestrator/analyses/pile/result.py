@@ -63,8 +63,8 @@ class PileResult(Result):
 
     @property
     def warnings(self) -> list[str]:
-        """Reasons for doubts about the blows, a sentence each."""
-        return warnings([*self.blows, *self.graph])
+        """Values of the site that are not usual, and doubts about the blows, a sentence each."""
+        return [*self.pile.warnings, *warnings([*self.blows, *self.graph])]
 
     def tables(self) -> list[Table]:
         """Return the blows, and the bearing graph where the site has one.

@@ -102,6 +102,7 @@ def write_facts(
         "ended": datetime.now(UTC).isoformat(timespec="seconds"),
         "site_file": str(file) if file else None,
         "site": slope.site.model_dump(mode="json", by_alias=True),
+        "warnings": list(slope.warnings),
         "materials": {name: described(material) for name, material in slope.materials.items()},
         "nodes": nodes,
         "confidence": CONFIDENCE,

@@ -92,6 +92,11 @@ class RockfallResult(Result):
         return f"{self.campaign.trials} trials, {self._listed_ends()}"
 
     @property
+    def warnings(self) -> list[str]:
+        """Values of the site that are not usual, a sentence each."""
+        return list(self.slope.warnings)
+
+    @property
     def notes(self) -> list[str]:
         """Ends of the trials, and the meaning of the intervals."""
         effort = f"{self.campaign.trials} trials in {self.wall_time:.2f} s"

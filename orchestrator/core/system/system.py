@@ -404,6 +404,25 @@ def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
     )
 
 
+def aliases(system: SystemSpec, name: str) -> set[str]:
+    """Return the names under which a value can be given.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        With its shared values.
+    name : str
+        ``component.parameter``, or the name of a shared value.
+
+    Returns
+    -------
+    set of str
+        The name itself; of a shared value also its own name and all its targets.
+    """
+    owner = _owner(system, name)
+    return {name} if owner is None else {name, owner, *system.shared[owner].targets}
+
+
 def _owner(system: SystemSpec, name: str) -> str | None:
     """Return the shared value that a name stands for or that its parameter takes."""
     for key, entry in system.shared.items():

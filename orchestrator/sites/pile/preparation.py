@@ -17,6 +17,7 @@ from rockshed.components.common.component import ComponentError, Instance
 from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
+from ...input_files.fields import doubts
 from ...input_files.form import first, formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import setter
@@ -38,10 +39,13 @@ class PreparedPile:
         Where the site was read.
     site : PileSite
         Its data.
+    warnings : tuple of str
+        Values beyond what is usual.
     """
 
     source: SiteSource
     site: PileSite
+    warnings: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -183,7 +187,7 @@ def prepare(site: SiteLike, blows: int | None = None) -> PreparedPile:
     data = formed(PileSite, source.content, where, problems)
     if data is None:
         raise InputRefused(first(problems))
-    pile = PreparedPile(source, data)
+    pile = PreparedPile(source, data, tuple(doubts(data, where)))
     problems += _value_problems(data, where)
     problems += site_problems(data, where, pile.time, pile.step, pile.travel_time)
     if not problems:

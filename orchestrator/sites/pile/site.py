@@ -9,7 +9,22 @@ from pydantic import Field
 
 from rockshed.components.common.units import standard_gravity
 
-from ...input_files.form import Data, NotNegative, Positive
+from ...input_files.fields import (
+    Acceleration,
+    Area,
+    Density,
+    Distance,
+    Duration,
+    Force,
+    Length,
+    Mass,
+    Pressure,
+    Resistance,
+    SoilDamping,
+    Stiffness,
+    field,
+)
+from ...input_files.form import Data
 
 MOST_SEGMENTS = 5000
 """Largest number of segments of the rod."""
@@ -30,8 +45,8 @@ class DropHammer(Data):
     efficiency: part of the energy of the fall with which it strikes.
     """
 
-    mass: Positive
-    drop: Positive
+    mass: Mass = field("mass of the ram", ..., usual=(10.0, 2e5), likely=("t",))
+    drop: Length = field("height of its fall", ..., usual=(0.02, 10.0), likely=("cm", "mm"))
     efficiency: Fraction = 1.0
 
 
@@ -41,17 +56,23 @@ class HammerCushion(Data):
     It returns the square of ``restitution`` of its energy.
     """
 
-    stiffness: Positive
+    stiffness: Stiffness = field(
+        "stiffness", ..., usual=(1e6, 1e12), likely=("kN/m", "kN/mm", "kgf/cm")
+    )
     restitution: Fraction = 1.0
 
 
 class Section(Data):
     """A length (m) of the rod with one area (m2), Young's modulus (Pa) and density (kg/m3)."""
 
-    length: Positive
-    area: Positive
-    modulus: Positive
-    density: Positive
+    length: Length = field("length", ..., usual=(0.05, 200.0), likely=("cm", "mm"))
+    area: Area = field("area", ..., usual=(1e-4, 20.0), likely=("cm2", "mm2"))
+    modulus: Pressure = field(
+        "Young's modulus", ..., usual=(1e9, 5e11), likely=("GPa", "MPa", "kgf/cm2")
+    )
+    density: Density = field(
+        "density", ..., usual=(300.0, 12000.0), likely=("t/m3", "g/cm3", "kN/m3")
+    )
 
 
 class ShaftLayer(Data):
@@ -60,25 +81,36 @@ class ShaftLayer(Data):
     resistance: ultimate one of the whole layer (N); quake (m); damping (s/m).
     """
 
-    top: Annotated[NotNegative, Field(alias="from")]
-    bottom: Annotated[Positive, Field(alias="to")]
-    resistance: NotNegative
-    quake: Positive = QUAKE
-    damping: NotNegative = SHAFT_DAMPING
+    top: Annotated[Distance, Field(alias="from")]
+    bottom: Annotated[Length, Field(alias="to")]
+    resistance: Resistance = field(
+        "ultimate resistance of the layer", ..., usual=(500.0, 1e9), likely=("kN", "MN", "tf")
+    )
+    quake: Length = field("quake", QUAKE, usual=(1e-4, 0.1), likely=("mm", "cm"))
+    damping: SoilDamping = field("damping", SHAFT_DAMPING, usual=(1e-3, 10.0), likely=("s/ft",))
 
 
 class ToeSoil(Data):
     """Soil under the toe: ultimate resistance (N), quake (m), damping (s/m)."""
 
-    resistance: Positive
-    quake: Positive = QUAKE
-    damping: NotNegative = TOE_DAMPING
+    resistance: Force = field(
+        "ultimate resistance", ..., usual=(500.0, 1e9), likely=("kN", "MN", "tf")
+    )
+    quake: Length = field("quake", QUAKE, usual=(1e-4, 0.1), likely=("mm", "cm"))
+    damping: SoilDamping = field("damping", TOE_DAMPING, usual=(1e-3, 10.0), likely=("s/ft",))
 
 
 class BearingGraph(Data):
     """Ultimate resistances (N) of shaft and toe together, to which the soil is scaled."""
 
-    resistances: Annotated[list[Positive], Field(min_length=2, max_length=1000)]
+    resistances: list[Force] = field(
+        "ultimate resistances of shaft and toe together",
+        ...,
+        usual=(500.0, 1e9),
+        likely=("kN", "MN", "tf"),
+        min_length=2,
+        max_length=1000,
+    )
 
 
 class PileSite(Data):
@@ -92,9 +124,9 @@ class PileSite(Data):
     description: str = ""
     blows: Annotated[int, Field(ge=1, le=MOST_BLOWS)] = 1
     segments: Annotated[int, Field(ge=1, le=MOST_SEGMENTS)] = 100
-    time: Positive | None = None
-    gravity: NotNegative = standard_gravity
-    gauge: NotNegative = 0.0
+    time: Duration | None = field("time of a blow", usual=(1e-3, 10.0), likely=("ms",))
+    gravity: Acceleration = field("acceleration of gravity", standard_gravity)
+    gauge: Distance = field("depth of the gauge", 0.0)
     hammer: DropHammer
     cushion: HammerCushion | None = None
     rod: Annotated[list[Section], Field(min_length=1)]

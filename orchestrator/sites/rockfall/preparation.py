@@ -14,6 +14,7 @@ from rockshed.components.common.component import ComponentError, Instance
 from rockshed.components.slope_rockfall.faults import FOLDED
 
 from ...core.errors import InputRefused, Problem
+from ...input_files.fields import doubts
 from ...input_files.form import first, formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import Setting, setter
@@ -45,6 +46,8 @@ class PreparedSlope:
         Those in use, complete.
     instance : Instance
         Of the component, initialised.
+    warnings : tuple of str
+        Values beyond what is usual.
     """
 
     source: SiteSource
@@ -52,6 +55,7 @@ class PreparedSlope:
     nodes: Sequence[Node]
     materials: Mapping[str, Material]
     instance: Instance
+    warnings: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -94,7 +98,7 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
     if problems or instance is None:
         raise InputRefused(first(problems))
     used = {str(node.material): known[str(node.material)] for node in nodes[:-1]}
-    return PreparedSlope(source, data, nodes, used, instance)
+    return PreparedSlope(source, data, nodes, used, instance, tuple(doubts(data, where)))
 
 
 def _check_profile_alone(source: SiteSource, problems: list[Problem]) -> None:

@@ -7,6 +7,17 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from ...input_files.fields import (
+    AngularVelocity,
+    Density,
+    Distance,
+    Energy,
+    Length,
+    Mass,
+    Place,
+    Velocity,
+    field,
+)
 from ...input_files.form import Data, NotNegative, Number, Positive
 
 Distribution = Literal["truncated_normal", "uniform", "lognormal", "triangular"]
@@ -21,9 +32,11 @@ class Rock(Data):
     ``shape`` says what the moment of inertia (kg m2) follows from; radius in m.
     """
 
-    radius: Positive
-    density: Positive | None = None
-    mass: Positive | None = None
+    radius: Length = field("radius", ..., usual=(0.01, 10.0), likely=("cm", "mm"))
+    density: Density | None = field(
+        "density", usual=(1000.0, 9000.0), likely=("t/m3", "kN/m3", "g/m3")
+    )
+    mass: Mass | None = field("mass", usual=(0.01, 2e6), likely=("t",))
     shape: Literal["sphere", "disc", "given"] = "sphere"
     moment_of_inertia: Positive | None = None
 
@@ -34,10 +47,12 @@ class RockStart(Data):
     Without y the rock starts in contact with the slope.
     """
 
-    x: Number
-    y: Number | None = None
-    velocity: tuple[Number, Number] = (0.0, 0.0)
-    angular_velocity: Number = 0.0
+    x: Place
+    y: Place | None = None
+    velocity: tuple[Velocity, Velocity] = field(
+        "velocity", (0.0, 0.0), usual=(1e-3, 150.0), likely=("mm/s", "km/h")
+    )
+    angular_velocity: AngularVelocity = field("angular velocity", 0.0, usual=(1e-3, 200.0))
 
 
 class Profile(Data):
@@ -114,10 +129,10 @@ class Barrier(Data):
     """
 
     name: Annotated[str, Field(min_length=1)]
-    x: Number
-    height: Positive
-    capacity: NotNegative
-    free_border: NotNegative | None = None
+    x: Place
+    height: Length = field("height", ..., usual=(0.1, 60.0), likely=("cm", "mm"))
+    capacity: Energy = field("capacity", ..., usual=(5e3, 5e7), likely=("kJ", "MJ"))
+    free_border: Distance | None = field("free border", usual=(1e-3, 10.0), likely=("cm", "mm"))
 
 
 class SlopeSite(Data):

@@ -40,9 +40,12 @@ def mass_in_words(mass: float) -> str:
 
 def cushion_in_words(cushion: CushionPart) -> str:
     """Return thickness and material of a cushion."""
-    if cushion.thickness < 1.0:
-        return f"{cushion.thickness / cm:.3g} cm of {cushion.material}"
-    return f"{cushion.thickness:.3g} m of {cushion.material}"
+    return f"{length_in_words(cushion.thickness)} of {cushion.material}"
+
+
+def length_in_words(length: float) -> str:
+    """Return a length (m) in m or cm."""
+    return f"{length:.3g} m" if length >= 1.0 else f"{length / cm:.3g} cm"
 
 
 def roof_in_words(roof: RoofPart) -> str:
