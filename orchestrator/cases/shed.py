@@ -11,10 +11,11 @@ from typing import Any
 from rockshed.components.common.units import ms, standard_gravity
 
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
-from ..sites.shed.geometry import ShedLayout
+from ..sites.shed.geometry import ShedLayout, end_stiffness
 from ..sites.shed.preparation import PreparedShed
 from ..sites.shed.site import ShedProject
 from ..sites.shed.words import in_words
+from .on_rods import SIDES, loads_at_rest, on_rods, rod_sizes
 from .registry import Case, ComponentSizes, weight_on_beam
 from .sand_models import SandLayer, Soil, changes, sand_model
 from .sonoda1993 import impact_bonds, impact_connections
@@ -74,10 +75,17 @@ def shed_case(shed: PreparedShed) -> Case:
     return Case(
         shed.name,
         words,
-        models={"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam"},
+        models={
+            "sand": "SandCushion",
+            "rock": "FallingRock",
+            "beam": "RBSMBeam",
+            **dict.fromkeys(_of_supports(found, "rod"), "PileRod"),
+            **dict.fromkeys(_of_supports(found, "ground"), "ImpulsiveGround"),
+        },
         sizes={
             "sand": {"discs": found.discs, "elements": found.elements},
             "beam": {"elements": found.elements},
+            **dict.fromkeys(_of_supports(found, "rod"), rod_sizes(found)),
         },
         couplings={
             "impulse": "sand first, kinematics extrapolated, mean forces, exchange every "
@@ -85,7 +93,7 @@ def shed_case(shed: PreparedShed) -> Case:
         },
         make=partial(_make, found, shed.name, words),
         one_size=("sand.elements", "beam.elements"),
-        derived=weight_on_beam,
+        derived=partial(_derived, found),
         follows={name: f"the project's {fields}" for name, fields in FOLLOWS.items()},
         facts={"project": _project(shed), "design": design(shed.project, found)},
         warnings=shed.warnings,
@@ -102,7 +110,7 @@ def _make(
 ) -> SystemSpec:
     """Return the system; rock, sand and beam in one frame, whose origin is the left support."""
     watched = ("transmitted_force", "rock.force.y", "penetration", "clearance")
-    return SystemSpec(
+    system = SystemSpec(
         name=name,
         description=words,
         components={
@@ -123,6 +131,26 @@ def _make(
         watch=[f"sand.{name}" for name in watched]
         + ["beam.midspan.deflection", "beam.energy.elastic", "beam.energy.strain_estimate"],
     )
+    return system if found.rod is None else on_rods(system, found.rod, fmus, found.exchange_step)
+
+
+def _of_supports(found: ShedLayout, part: str) -> list[str]:
+    """Return the components under the two ends of the roof; none where nothing gives way."""
+    return [f"{part}_{side}" for side in SIDES] if found.rod else []
+
+
+def _derived(found: ShedLayout, system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
+    """Return the weight of the sand, and what supports that give way carry at rest."""
+    values = dict(weight_on_beam(system, sizes))
+    if found.rod is None:
+        return values
+    roof = found.roof
+    deck = found.cushion.effective_width * roof.deck_mass
+    mass = roof.span * (found.girders * roof.density * roof.area + deck)
+    gravity = float(system.shared["gravity"].value)
+    at_head = 0.5 * (mass * gravity + float(values["beam.cushion.weight"]))
+    stiffness = end_stiffness(roof, found.girders, found.element)
+    return values | loads_at_rest(at_head, stiffness, found.rod)
 
 
 def _sand(found: ShedLayout) -> dict[str, Value]:

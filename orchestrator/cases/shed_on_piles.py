@@ -104,7 +104,7 @@ def shed_system(
         components[rod] = ComponentSpec(fmu=fmus[rod], parameters=_rod(segments))
         components[ground] = ComponentSpec(fmu=fmus[ground], parameters=_ground())
         connections += [*support_connections("beam", number, rod), *toe_connections(rod, ground)]
-        bonds[f"beam_{rod}"] = _support_bond("beam", number, rod)
+        bonds[f"beam_{rod}"] = support_bond("beam", number, rod)
         bonds[f"{ground}_{rod}"] = toe_bond(rod, ground)
     grounds = [f"ground_{side}" for side in SIDES]
     rods = [f"rod_{side}" for side in SIDES]
@@ -129,8 +129,21 @@ def shed_system(
     )
 
 
-def _support_bond(beam: str, number: int, rod: str) -> PowerBond:
-    """Return the interface of a support of a beam with the head of a rod."""
+def support_bond(beam: str, number: int, rod: str) -> PowerBond:
+    """Return the interface of a support of a beam with the head of a rod.
+
+    Parameters
+    ----------
+    beam, rod : str
+        Names of the components.
+    number : int
+        Of the support, from 1.
+
+    Returns
+    -------
+    PowerBond
+        The beam computes the force.
+    """
     return PowerBond(
         giver=beam,
         force=[f"support.mean_force.y[{number}]"],

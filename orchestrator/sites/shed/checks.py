@@ -1,15 +1,15 @@
 """Faults of a shed whose parts do not fit together, each with the field of the project."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
-from rockshed.components.common.units import standard_gravity
+from rockshed.components.common.units import kN, standard_gravity
+from rockshed.components.pile_rod.declarations import SIZES as RODS
 from rockshed.components.sand_cushion.declarations import SIZES
 from rockshed.components.sand_cushion.models import SPREAD
 
 from ...core.errors import Problem
 from ...input_files.places import Key, Places
-from .geometry import ShedLayout
+from .geometry import ShedLayout, line_mass
 from .site import ShedProject
 
 _FIT = 1e-9
@@ -40,6 +40,7 @@ def fit_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iter
     yield from _disc_problems(found, where)
     yield from _start_problems(found, where)
     yield from _time_problems(found, where)
+    yield from _rod_problems(found, where)
 
 
 def _at(where: Places, key: Key, text: str, remedy: str) -> Problem:
@@ -120,15 +121,32 @@ def _time_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
         yield _at(where, ("numerics", "stop_time"), text, "raise it")
 
 
-def support_problems(project: ShedProject, folder: Path, where: Places) -> Iterator[Problem]:
+def _rod_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield piles that cannot be computed in steps of this length, or do not bear the roof."""
+    rod = found.rod
+    if rod is None:
+        return
+    most = RODS["segments"].maximum
+    if rod.segments > most:
+        text = f"the pile has {rod.segments:,} segments of an exchange step, and {most:,} are most"
+        yield _at(where, ("numerics", "elements"), text, "reduce them: the exchange step rises")
+    mass = found.roof.span * line_mass(found.cushion, found.roof, found.girders)
+    load = rod.weight + 0.5 * standard_gravity * mass
+    if load >= rod.toe_resistance:
+        text = (
+            f"its toe bears {rod.toe_resistance / kN:.4g} kN, and roof, sand and pile weigh "
+            f"{load / kN:.4g} kN: at rest the toe carries all of it"
+        )
+        yield _at(where, ("supports", "file"), text, "give the toe more resistance")
+
+
+def support_problems(project: ShedProject, where: Places) -> Iterator[Problem]:
     """Yield what is wrong with the supports.
 
     Parameters
     ----------
     project : ShedProject
         The project.
-    folder : Path
-        From which the file of a pile counts.
     where : Places
         Of the values of the project.
 
@@ -137,9 +155,6 @@ def support_problems(project: ShedProject, folder: Path, where: Places) -> Itera
     Problem
     """
     supports = project.supports
-    if supports.kind in ("elastic", "piles"):
-        text = f"{supports.kind} supports are not computed yet"
-        yield _at(where, ("supports", "kind"), text, "take hinged or fixed")
     for kind, key in (("elastic", "stiffness"), ("piles", "file")):
         given = getattr(supports, key) is not None
         if given and supports.kind != kind:

@@ -10,6 +10,15 @@ from rockshed.components.common.units import standard_gravity
 from rockshed.components.sand_cushion.measures import contact_frequency
 from rockshed.components.sand_cushion.models import MODELS, SPREAD
 
+from .foundation import (
+    SPRING_EXCHANGE,
+    STIFF_END,
+    FoundationPart,
+    SupportRod,
+    impedance,
+    pile_rod,
+    spring_rod,
+)
 from .site import Numerics, SandMaterial
 
 DISCS_IN_RADIUS, DISCS_IN_THICKNESS = 9.0, 9.0
@@ -160,6 +169,8 @@ class ShedLayout:
         Times (s).
     seed : int
         Number of the packing.
+    rod : SupportRod or None
+        What stands under each end of the roof; None where nothing gives way.
     """
 
     rock: RockPart
@@ -184,6 +195,7 @@ class ShedLayout:
     output_interval: float
     state_interval: float
     seed: int
+    rod: SupportRod | None = None
 
 
 def discs_in(width: float, height: float, radius: float, solid_fraction: float) -> int:
@@ -222,7 +234,13 @@ def centred(span: float, width: float) -> float:
     return 0.5 * (span - width)
 
 
-def layout(rock: RockPart, cushion: CushionPart, roof: RoofPart, numerics: Numerics) -> ShedLayout:
+def layout(
+    rock: RockPart,
+    cushion: CushionPart,
+    roof: RoofPart,
+    numerics: Numerics,
+    foundation: FoundationPart | None = None,
+) -> ShedLayout:
     """Derive everything that follows from the parts of a shed.
 
     Parameters
@@ -231,6 +249,8 @@ def layout(rock: RockPart, cushion: CushionPart, roof: RoofPart, numerics: Numer
         The parts.
     numerics : Numerics
         Those of the rest that are given.
+    foundation : FoundationPart, optional
+        What the ends of the roof stand on.
 
     Returns
     -------
@@ -239,8 +259,12 @@ def layout(rock: RockPart, cushion: CushionPart, roof: RoofPart, numerics: Numer
     radius = numerics.disc_radius or disc_radius(rock, cushion)
     elements = numerics.elements or beam_elements(roof.span, radius)
     girders = cushion.effective_width / roof.spacing
+    element = element_length(roof.span, elements)
     exchange = numerics.exchange_step or exchange_step(cushion, roof, girders, radius, elements)
-    damping, beam_step = beam_steps(roof, element_length(roof.span, elements))
+    if foundation is not None and numerics.exchange_step is None:
+        exchange = min(exchange, support_exchange(foundation, roof, girders, element))
+    ratio = BEAM_DAMPING_RATIO if foundation is None else 0.0
+    damping, beam_step = beam_steps(roof, element, ratio)
     clearance = numerics.clearance or CLEARANCE * 2.0 * radius * (1.0 + SPREAD)
     start_velocity = math.sqrt(max(rock.velocity_y**2 - 2.0 * standard_gravity * clearance, 0.0))
     approach = (rock.velocity_y - start_velocity) / standard_gravity
@@ -256,7 +280,7 @@ def layout(rock: RockPart, cushion: CushionPart, roof: RoofPart, numerics: Numer
         elements,
         centred(roof.span, cushion.width),
         axis_below_top(roof.span, elements),
-        element_length(roof.span, elements),
+        element,
         clearance,
         rock.place - rock.velocity_x * approach,
         cushion.thickness + clearance + rock.radius,
@@ -269,7 +293,93 @@ def layout(rock: RockPart, cushion: CushionPart, roof: RoofPart, numerics: Numer
         _multiple(interval, exchange),
         _multiple(10.0 * interval, exchange),
         numerics.seed,
+        support_rod(foundation, cushion, roof, girders, element, exchange) if foundation else None,
     )
+
+
+def end_stiffness(roof: RoofPart, girders: float, element: float) -> float:
+    """Return the stiffness of the end of the roof (N/m), 4 EI/R3 of its half-bar.
+
+    Parameters
+    ----------
+    roof : RoofPart
+        One girder.
+    girders : float
+        Number of girders that take part.
+    element : float
+        Length of an element (m).
+    """
+    return 4.0 * girders * roof.elastic_modulus * roof.second_moment / element**3
+
+
+def support_exchange(
+    foundation: FoundationPart, roof: RoofPart, girders: float, element: float
+) -> float:
+    """Return the longest exchange step that supports which give way allow (s).
+
+    Parameters
+    ----------
+    foundation : FoundationPart
+        The supports.
+    roof : RoofPart
+        One girder.
+    girders : float
+        Number of girders that take part.
+    element : float
+        Length of an element (m).
+    """
+    if foundation.pile is None:
+        return SPRING_EXCHANGE
+    limit = girders * impedance(foundation.pile) / end_stiffness(roof, girders, element)
+    return _round_down(limit / STIFF_END)
+
+
+def support_rod(
+    foundation: FoundationPart,
+    cushion: CushionPart,
+    roof: RoofPart,
+    girders: float,
+    element: float,
+    exchange: float,
+) -> SupportRod:
+    """Return what stands under each end of the roof.
+
+    Parameters
+    ----------
+    foundation : FoundationPart
+        The supports.
+    cushion, roof : CushionPart, RoofPart
+        The parts.
+    girders : float
+        Number of girders that take part.
+    element, exchange : float
+        Length of an element (m), exchange step (s).
+
+    Returns
+    -------
+    SupportRod
+    """
+    if foundation.pile is not None:
+        return pile_rod(foundation.pile, girders, exchange)
+    mass = roof.span * line_mass(cushion, roof, girders)
+    stiff = end_stiffness(roof, girders, element)
+    load = 0.5 * standard_gravity * mass
+    return spring_rod(float(foundation.stiffness or 0.0), load, stiff, exchange)
+
+
+def line_mass(cushion: CushionPart, roof: RoofPart, girders: float) -> float:
+    """Return the mass of roof and sand by length (kg/m).
+
+    Parameters
+    ----------
+    cushion, roof : CushionPart, RoofPart
+        The parts.
+    girders : float
+        Number of girders that take part.
+    """
+    sand = cushion.thickness * float(cushion.sand.density or 0.0)
+    deck = cushion.effective_width * (roof.deck_mass + sand)
+    return girders * roof.density * roof.area + deck
 
 
 def solid_fraction(cushion: CushionPart) -> float:
@@ -346,7 +456,7 @@ def exchange_step(
     return _round_down(min(_STEP_SHARE * sand, _CONTACT_SHARE * beam))
 
 
-def beam_steps(roof: RoofPart, element: float) -> tuple[float, float]:
+def beam_steps(roof: RoofPart, element: float, ratio: float) -> tuple[float, float]:
     """Return Rayleigh damping of the stiffness and internal step of the beam.
 
     The chain's highest frequency is the larger of 4/R2 sqrt(EI/mu) and 2/R sqrt(EA/mu); on fixed
@@ -358,6 +468,8 @@ def beam_steps(roof: RoofPart, element: float) -> tuple[float, float]:
         One girder.
     element : float
         Length of an element (m).
+    ratio : float
+        Damping ratio of the fastest mode.
 
     Returns
     -------
@@ -370,7 +482,7 @@ def beam_steps(roof: RoofPart, element: float) -> tuple[float, float]:
         bending / element**2 * math.sqrt(roof.elastic_modulus * roof.second_moment / mass),
         2.0 / element * math.sqrt(roof.elastic_modulus * roof.area / mass),
     )
-    damping = 2.0 * BEAM_DAMPING_RATIO / omega
+    damping = 2.0 * ratio / omega
     rate = damping * omega**2
     stable = 4.0 / (rate + math.sqrt(rate**2 + 4.0 * omega**2))
     return damping, _digits_down(_BEAM_SHARE * stable)
@@ -392,9 +504,7 @@ def stop_time(
     """
     stiffness = float(cushion.sand.modulus or 0.0) * cushion.effective_width
     sinking = _SINKING_PERIODS * math.sqrt(rock.mass / stiffness)
-    load = girders * roof.density * roof.area + cushion.effective_width * (
-        roof.deck_mass + cushion.thickness * float(cushion.sand.density or 0.0)
-    )
+    load = line_mass(cushion, roof, girders)
     bending = girders * roof.elastic_modulus * roof.second_moment
     period = 2.0 * roof.span**2 / math.pi * math.sqrt(load / bending)
     return math.ceil(100.0 * (approach + max(sinking, _BEAM_PERIODS * period))) / 100.0

@@ -1,14 +1,18 @@
 """Rock, cushion and roof of a project with all their values, and what is wrong with them."""
 
 import math
+from pathlib import Path
 
 from rockshed.components.common.units import standard_gravity
 
-from ...core.errors import Problem
+from ...core.errors import InputRefused, Problem
 from ...core.system.names import nearest
+from ...input_files.form import formed, read_toml
 from ...input_files.places import Key, Places
 from ...input_files.quantities import in_si
+from ..pile.site import PileSite
 from .effective_width import ON_A_SLAB, ON_GIRDERS, RULES, Spread
+from .foundation import FoundationPart
 from .geometry import CushionPart, RockPart, RoofPart
 from .materials import DEFAULT_MATERIAL, sands
 from .sections import section
@@ -236,6 +240,43 @@ def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> R
         spacing=1.0,
         supports=_ends(project),
     )
+
+
+def foundation_part(
+    project: ShedProject, folder: Path, where: Places, problems: list[Problem]
+) -> FoundationPart | None:
+    """Return what the ends of the roof stand on.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    folder : Path
+        From which the file of a pile counts.
+    where : Places
+        Of its values.
+    problems : list of Problem
+        What is wrong with a pile is appended.
+
+    Returns
+    -------
+    FoundationPart or None
+        None where nothing gives way, or the pile is refused.
+    """
+    supports = project.supports
+    if supports.kind == "elastic" and supports.stiffness is not None:
+        return FoundationPart(supports.stiffness)
+    if supports.kind != "piles" or supports.file is None:
+        return None
+    try:
+        content, places = read_toml(folder / supports.file)
+    except InputRefused as refusal:
+        remedy = "name a file that `rockshed pile` takes"
+        place = where.of(("supports", "file"))
+        problems += [Problem(place, f"supports.file: {each}", remedy) for each in refusal.problems]
+        return None
+    pile = formed(PileSite, content, places, problems)
+    return None if pile is None else FoundationPart(pile=pile)
 
 
 def cushion_part(

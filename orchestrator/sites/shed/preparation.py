@@ -16,7 +16,7 @@ from ...input_files.form import first, formed
 from ..source import SiteLike, SiteSource, site_source
 from .checks import fit_problems, support_problems
 from .geometry import ShedLayout, layout
-from .parts import cushion_part, rock_part, roof_part
+from .parts import cushion_part, foundation_part, rock_part, roof_part
 from .site import ShedProject
 
 SECTIONS = ("rock", "cushion", "roof")
@@ -50,7 +50,7 @@ class PreparedShed:
     @property
     def name(self) -> str:
         """Name of the project, or of its file."""
-        return self.source.name
+        return self.project.name or (self.source.file.stem if self.source.file else "shed")
 
 
 def is_project(content: Mapping[str, Any]) -> bool:
@@ -123,10 +123,12 @@ def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> Prep
     rock = rock_part(data, where, problems)
     roof = roof_part(data, where, problems)
     cushion = cushion_part(data, rock, where, problems)
-    problems += support_problems(data, source.folder, where)
-    if rock is None or roof is None or cushion is None:
+    before = len(problems)
+    problems += support_problems(data, where)
+    foundation = foundation_part(data, source.folder, where, problems)
+    if rock is None or roof is None or cushion is None or len(problems) > before:
         raise InputRefused(first(problems))
-    found = layout(rock, cushion, roof, data.numerics)
+    found = layout(rock, cushion, roof, data.numerics, foundation)
     problems += fit_problems(data, found, where)
     if problems:
         raise InputRefused(first(problems))

@@ -180,9 +180,13 @@ class Supports(Data):
         "hinged, fixed, elastic (stiffness) or piles (file)", "hinged"
     )
     stiffness: Stiffness | None = field(
-        "of an elastic support, for the girders that take part", usual=(1e5, 1e11), likely=("kN/m",)
+        "of an elastic support, of all girders that take part; it only pushes",
+        usual=(1e5, 1e11),
+        likely=("kN/m", "kN/mm"),
     )
-    file: str | None = field("file of a pile, as `rockshed pile` reads it")
+    file: str | None = field(
+        "file of a pile, as `rockshed pile` reads it; one under each end of each girder"
+    )
 
 
 class Criteria(Data):
