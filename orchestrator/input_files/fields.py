@@ -1,6 +1,7 @@
 """Quantities as fields of input files: kinds with their units, and ranges that are usual."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator, Field
@@ -8,6 +9,7 @@ from pydantic.fields import FieldInfo
 
 from rockshed.components.common.plausible import Plausible
 
+from ..core.errors import Problem
 from .form import Data, NotNegative, Number, Positive
 from .places import Key, Places
 from .quantities import InUnit, doubt
@@ -72,7 +74,7 @@ def field(
     extra: dict[str, Any] = {_USUAL: Plausible(*usual, tuple(likely))} if usual else {}
     if unit:
         extra[_UNIT] = unit
-    return Field(default, description=meaning, json_schema_extra=extra, **rest)  # type: ignore[arg-type]
+    return Field(default, description=meaning, json_schema_extra=extra, **rest)
 
 
 def unit_of(entry: FieldInfo) -> str:
@@ -168,6 +170,29 @@ def doubts(data: Data, where: Places) -> list[str]:
         for key, value, entry in _numbers(data, ())
         if (reason := _doubt_of(value, entry))
     ]
+
+
+def explained(problems: Sequence[Problem], doubted: Sequence[str]) -> list[Problem]:
+    """Return problems with what is doubted at their places, which may be their cause.
+
+    Parameters
+    ----------
+    problems : sequence of Problem
+        Of a file.
+    doubted : sequence of str
+        Of :func:`doubts`, each with its place.
+
+    Returns
+    -------
+    list of Problem
+    """
+    made = []
+    for problem in problems:
+        place = f"{problem.where}: "
+        reasons = [text.removeprefix(place) for text in doubted if text.startswith(place)]
+        remedy = "; ".join(filter(None, [problem.remedy, *reasons]))
+        made.append(replace(problem, remedy=remedy))
+    return made
 
 
 def _doubt_of(value: float, entry: FieldInfo) -> str | None:

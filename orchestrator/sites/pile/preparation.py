@@ -17,7 +17,7 @@ from rockshed.components.common.component import ComponentError, Instance
 from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
-from ...input_files.fields import doubts
+from ...input_files.fields import doubts, explained
 from ...input_files.form import first, formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import setter
@@ -187,13 +187,14 @@ def prepare(site: SiteLike, blows: int | None = None) -> PreparedPile:
     data = formed(PileSite, source.content, where, problems)
     if data is None:
         raise InputRefused(first(problems))
-    pile = PreparedPile(source, data, tuple(doubts(data, where)))
+    doubted = tuple(doubts(data, where))
+    pile = PreparedPile(source, data, doubted)
     problems += _value_problems(data, where)
     problems += site_problems(data, where, pile.time, pile.step, pile.travel_time)
     if not problems:
         problems += _refusals(pile)
     if problems:
-        raise InputRefused(first(problems))
+        raise InputRefused(first(explained(problems, doubted)))
     return pile
 
 

@@ -14,7 +14,7 @@ from rockshed.components.common.component import ComponentError, Instance
 from rockshed.components.slope_rockfall.faults import FOLDED
 
 from ...core.errors import InputRefused, Problem
-from ...input_files.fields import doubts
+from ...input_files.fields import doubts, explained
 from ...input_files.form import first, formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import Setting, setter
@@ -95,10 +95,11 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
     nodes = with_ground(nodes, data.ground, where, known, problems)
     problems += site_problems(data, nodes, where)
     instance = _instance(data, nodes, known, where, problems) if len(nodes) > 1 else None
+    doubted = tuple(doubts(data, where))
     if problems or instance is None:
-        raise InputRefused(first(problems))
+        raise InputRefused(first(explained(problems, doubted)))
     used = {str(node.material): known[str(node.material)] for node in nodes[:-1]}
-    return PreparedSlope(source, data, nodes, used, instance, tuple(doubts(data, where)))
+    return PreparedSlope(source, data, nodes, used, instance, doubted)
 
 
 def _check_profile_alone(source: SiteSource, problems: list[Problem]) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.errors import InputRefused, Problem
 from ...core.system.names import nearest
-from ...input_files.fields import ANY, EACH, doubts, fields
+from ...input_files.fields import ANY, EACH, doubts, explained, fields
 from ...input_files.form import first, formed
 from ..source import SiteLike, SiteSource, site_source
 from .checks import fit_problems, support_problems
@@ -120,6 +120,7 @@ def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> Prep
     data = formed(ShedProject, source.content, where, problems)
     if data is None:
         raise InputRefused(first(problems))
+    doubted = tuple(doubts(data, where))
     rock = rock_part(data, where, problems)
     roof = roof_part(data, where, problems)
     cushion = cushion_part(data, rock, where, problems)
@@ -127,12 +128,12 @@ def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> Prep
     problems += support_problems(data, where)
     foundation = foundation_part(data, source.folder, where, problems)
     if rock is None or roof is None or cushion is None or len(problems) > before:
-        raise InputRefused(first(problems))
+        raise InputRefused(first(explained(problems, doubted)))
     found = layout(rock, cushion, roof, data.numerics, foundation)
     problems += fit_problems(data, found, where)
     if problems:
-        raise InputRefused(first(problems))
-    return PreparedShed(source, data, found, tuple(doubts(data, where)), dict(changes or {}))
+        raise InputRefused(first(explained(problems, doubted)))
+    return PreparedShed(source, data, found, doubted, dict(changes or {}))
 
 
 def _changed(source: SiteSource, changes: Mapping[str, Any]) -> SiteSource:
