@@ -331,6 +331,7 @@ def _shed_on_piles() -> Case:
 
     impact = full_scale.impacts()[shed_on_piles.GIRDERS]
     layer = full_scale.layer(impact)
+    elements = {"elements": impact.elements}
     segments = {"segments": shed_on_piles.PILE.segments}
     return Case(
         shed_on_piles.NAME,
@@ -343,14 +344,11 @@ def _shed_on_piles() -> Case:
             **{f"ground_{side}": "ImpulsiveGround" for side in shed_on_piles.SIDES},
         },
         sizes={
-            "sand": {"discs": impact.discs, "elements": impact.elements},
-            "beam": {"elements": impact.elements},
+            "sand": {"discs": impact.discs, **elements},
+            "beam": elements,
             **{f"rod_{side}": segments for side in shed_on_piles.SIDES},
         },
-        couplings={
-            "impulse": "sand first, rods last, kinematics extrapolated, mean forces, waves at the "
-            "toes, exchange every 0.005 ms"
-        },
+        couplings={"impulse": shed_on_piles.COUPLING},
         make=make,
         one_size=("sand.elements", "beam.elements"),
         derived=derived,

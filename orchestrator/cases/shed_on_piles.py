@@ -20,6 +20,11 @@ from .spt import toe_bond, toe_connections
 NAME = "shed-on-piles"
 GIRDERS = "girders-8"
 SIDES = ("left", "right")
+COUPLING = (
+    "sand first, rods last, kinematics extrapolated, mean forces, waves at the toes, exchange "
+    "every 0.005 ms"
+)
+"""Scheme of exchange in words."""
 EXCHANGE = 5e-6
 """Exchange step (s), a fifth of the limit Z/k of a rod under the end of the girders.
 

@@ -286,16 +286,7 @@ def lab_system(
                 fmu=fmus["beam"], parameters={"span": SPAN, "axis.y": -0.5 * spacing}
             ),
         },
-        shared={
-            "rock_radius": SharedValue(
-                value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]
-            ),
-            "gravity": SharedValue(
-                value=standard_gravity, targets=["rock.gravity", "sand.gravity"]
-            ),
-            "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
-            "beam_radius": SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"]),
-        },
+        shared=_shared(spacing),
         connections=impact_connections(("rock", "beam")),
         bonds=impact_bonds(("rock", "beam")),
         energy_alarm=EnergyAlarm(reference="rock.energy.kinetic"),
@@ -318,6 +309,16 @@ _WATCHED = (
     "beam.energy.elastic",
     "beam.energy.strain_estimate",
 )
+
+
+def _shared(spacing: float) -> dict[str, SharedValue]:
+    """Return the values that several components take; spacing: length of an element (m)."""
+    return {
+        "gravity": SharedValue(value=standard_gravity, targets=["rock.gravity", "sand.gravity"]),
+        "rock_radius": SharedValue(value=BALL_RADIUS, targets=["rock.radius", "sand.rock.radius"]),
+        "rock_mass": SharedValue(value=BALL_MASS, targets=["rock.mass", "sand.rock.mass"]),
+        "beam_radius": SharedValue(value=0.5 * spacing, targets=["sand.beam.radius"]),
+    }
 
 
 def _sand(fmu: str, test: Test, kinematics: str, forces: str) -> ComponentSpec:

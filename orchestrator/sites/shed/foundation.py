@@ -1,4 +1,4 @@
-"""What the supports of a shed stand on: piles of a pile file, or springs, as rods with their soil.
+"""Piles of a pile file, or springs, under the supports of a shed: rods with their soil.
 
 A pile stands under each end of each girder; those of the girders that take part act together. An
 elastic support is a short stiff rod on a spring that yields nowhere and only pushes.

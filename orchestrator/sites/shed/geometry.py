@@ -260,41 +260,46 @@ def layout(
     elements = numerics.elements or beam_elements(roof.span, radius)
     girders = cushion.effective_width / roof.spacing
     element = element_length(roof.span, elements)
-    exchange = numerics.exchange_step or exchange_step(cushion, roof, girders, radius, elements)
-    if foundation is not None and numerics.exchange_step is None:
-        exchange = min(exchange, support_exchange(foundation, roof, girders, element))
+    exchange = numerics.exchange_step or min(
+        exchange_step(cushion, roof, girders, radius, elements),
+        support_exchange(foundation, roof, girders, element),
+    )
     ratio = BEAM_DAMPING_RATIO if foundation is None else 0.0
     damping, beam_step = beam_steps(roof, element, ratio)
     clearance = numerics.clearance or CLEARANCE * 2.0 * radius * (1.0 + SPREAD)
-    start_velocity = math.sqrt(max(rock.velocity_y**2 - 2.0 * standard_gravity * clearance, 0.0))
-    approach = (rock.velocity_y - start_velocity) / standard_gravity
+    approach = (rock.velocity_y - speed_at_start(rock, clearance)) / standard_gravity
     stop = numerics.stop_time or stop_time(rock, cushion, roof, girders, approach)
     interval = numerics.output_interval or _round_down(stop / _ROWS)
     return ShedLayout(
-        rock,
-        cushion,
-        roof,
-        girders,
-        radius,
+        *(rock, cushion, roof, girders, radius),
         discs_in(cushion.width, cushion.thickness, radius, solid_fraction(cushion)),
         elements,
         centred(roof.span, cushion.width),
         axis_below_top(roof.span, elements),
-        element,
-        clearance,
+        *(element, clearance),
         rock.place - rock.velocity_x * approach,
         cushion.thickness + clearance + rock.radius,
-        -start_velocity,
-        exchange,
-        exchange / SAND_STEPS,
-        min(beam_step, exchange),
-        damping,
+        -speed_at_start(rock, clearance),
+        *(exchange, exchange / SAND_STEPS, min(beam_step, exchange), damping),
         stop,
         _multiple(interval, exchange),
         _multiple(10.0 * interval, exchange),
         numerics.seed,
-        support_rod(foundation, cushion, roof, girders, element, exchange) if foundation else None,
+        _rod(foundation, line_mass(cushion, roof, girders), roof, girders, element, exchange),
     )
+
+
+def speed_at_start(rock: RockPart, clearance: float) -> float:
+    """Return the speed downwards at the start, above the surface (m/s); 0 if it is too high.
+
+    Parameters
+    ----------
+    rock : RockPart
+        As it strikes.
+    clearance : float
+        Distance from the surface (m).
+    """
+    return math.sqrt(max(rock.velocity_y**2 - 2.0 * standard_gravity * clearance, 0.0))
 
 
 def end_stiffness(roof: RoofPart, girders: float, element: float) -> float:
@@ -313,14 +318,14 @@ def end_stiffness(roof: RoofPart, girders: float, element: float) -> float:
 
 
 def support_exchange(
-    foundation: FoundationPart, roof: RoofPart, girders: float, element: float
+    foundation: FoundationPart | None, roof: RoofPart, girders: float, element: float
 ) -> float:
     """Return the longest exchange step that supports which give way allow (s).
 
     Parameters
     ----------
-    foundation : FoundationPart
-        The supports.
+    foundation : FoundationPart or None
+        The supports; rigid ones allow any.
     roof : RoofPart
         One girder.
     girders : float
@@ -328,42 +333,29 @@ def support_exchange(
     element : float
         Length of an element (m).
     """
+    if foundation is None:
+        return math.inf
     if foundation.pile is None:
         return SPRING_EXCHANGE
     limit = girders * impedance(foundation.pile) / end_stiffness(roof, girders, element)
     return _round_down(limit / STIFF_END)
 
 
-def support_rod(
-    foundation: FoundationPart,
-    cushion: CushionPart,
+def _rod(
+    foundation: FoundationPart | None,
+    mass: float,
     roof: RoofPart,
     girders: float,
     element: float,
     exchange: float,
-) -> SupportRod:
-    """Return what stands under each end of the roof.
-
-    Parameters
-    ----------
-    foundation : FoundationPart
-        The supports.
-    cushion, roof : CushionPart, RoofPart
-        The parts.
-    girders : float
-        Number of girders that take part.
-    element, exchange : float
-        Length of an element (m), exchange step (s).
-
-    Returns
-    -------
-    SupportRod
-    """
+) -> SupportRod | None:
+    """Return the rod under each end of the roof, whose mass by length with the sand is given."""
+    if foundation is None:
+        return None
     if foundation.pile is not None:
         return pile_rod(foundation.pile, girders, exchange)
-    mass = roof.span * line_mass(cushion, roof, girders)
+    load = 0.5 * standard_gravity * mass * roof.span
     stiff = end_stiffness(roof, girders, element)
-    load = 0.5 * standard_gravity * mass
     return spring_rod(float(foundation.stiffness or 0.0), load, stiff, exchange)
 
 
