@@ -21,6 +21,11 @@ class Reference:
     note: str = ""
 
 
+PAPER, EXPERIMENT = "paper", "experiment"
+"""Sources that a paper with tests has: its own analysis, and its measurements."""
+_OWN = (PAPER, EXPERIMENT)
+
+
 @dataclass(frozen=True)
 class Known:
     """The references of one metric, by who found them.
@@ -31,17 +36,30 @@ class Known:
         Computed in the analysis of the paper.
     experiment : Reference or None
         Measured.
-    handbook : Reference or None
-        From the formula of a design handbook.
+    others : mapping of str to Reference
+        By anybody else, by the name of the source.
     """
 
     paper: Reference | None = None
     experiment: Reference | None = None
-    handbook: Reference | None = None
+    others: Mapping[str, Reference] = field(default_factory=dict)
 
     def by(self) -> dict[str, Reference]:
         """Return the references that there are, by who found them."""
-        return {who: reference for who, reference in vars(self).items() if reference}
+        own = {PAPER: self.paper, EXPERIMENT: self.experiment, **self.others}
+        return {who: reference for who, reference in own.items() if reference}
+
+    @classmethod
+    def of(cls, references: Mapping[str, Reference]) -> "Known":
+        """Return references by who found them.
+
+        Parameters
+        ----------
+        references : mapping of str to Reference
+            As :meth:`by` gives them.
+        """
+        others = {who: found for who, found in references.items() if who not in _OWN}
+        return cls(references.get(PAPER), references.get(EXPERIMENT), others)
 
 
 @dataclass(frozen=True)
@@ -82,7 +100,7 @@ class References:
             Equal to those that were written.
         """
         known = {
-            name: Known(**{who: Reference(**reference) for who, reference in entry.items()})
+            name: Known.of({who: Reference(**reference) for who, reference in entry.items()})
             for name, entry in data.get("known", {}).items()
         }
         return cls(known, tuple(data.get("remarks", ())))

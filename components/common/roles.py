@@ -68,6 +68,10 @@ class Role(StrEnum):
 
     DRIVEN = "motion.driven"
     """Parameter: ``driven`` or true where a machine moves the body."""
+    BODY_MASS = "body.mass"
+    """Parameter: mass (kg) of a body that strikes."""
+    BODY_RADIUS = "body.radius"
+    """Parameter: radius (m) of a body that strikes."""
     GRAVITY = "gravity"
     """Parameter: acceleration of gravity (m/s2)."""
     GRAIN_RADIUS = "grain.radius"

@@ -23,6 +23,7 @@ LAYOUT = Layout(
             minimum=1e-6,
             source=_SONODA,
             plausible=Plausible(1e-3, 1e6, ("t",)),
+            role=Role.BODY_MASS,
         ),
         param(
             "radius",
@@ -32,6 +33,7 @@ LAYOUT = Layout(
             minimum=1e-6,
             source=_SONODA,
             plausible=Plausible(1e-3, 10.0, ("cm", "mm")),
+            role=Role.BODY_RADIUS,
         ),
         choice(
             "shape",

@@ -147,8 +147,23 @@ _START = ("position0.x", "position0.y")
 LAYOUT = Layout(
     variables=(
         # the rock
-        param("mass", "mass of the rock; the default has 2600 kg/m3", _MASS, "kg", minimum=1e-6),
-        param("radius", "radius of the rock", _RADIUS, "m", minimum=1e-6, source=_TABLE_1),
+        param(
+            "mass",
+            "mass of the rock; the default has 2600 kg/m3",
+            _MASS,
+            "kg",
+            minimum=1e-6,
+            role=Role.BODY_MASS,
+        ),
+        param(
+            "radius",
+            "radius of the rock",
+            _RADIUS,
+            "m",
+            minimum=1e-6,
+            source=_TABLE_1,
+            role=Role.BODY_RADIUS,
+        ),
         choice(
             "shape",
             "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the "

@@ -14,7 +14,6 @@ from rockshed.components.common.units import cm, cm2, cm4, kgf, standard_gravity
 
 from ..core.system.schedule import Scheme
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
-from ..formulas.handbook import handbook_force
 from ..references import Known, Reference, References
 from .sand_models import FULL_SCALE_SOIL, SandLayer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows
@@ -393,7 +392,7 @@ _SETTLED_RATIO = "settled transmitted force / settled force on the rock"
 
 
 def known_of(impact: Impact) -> dict[str, Known]:
-    """Return what paper and handbook give to compare with an impact.
+    """Return what the paper gives to compare with an impact.
 
     The energy of table 6 was measured by the strain at midspan, gauges at zero before the test: eq.
     (7). The paper's analysis sums up the springs: eqs (5), (6).
@@ -409,14 +408,7 @@ def known_of(impact: Impact) -> dict[str, Known]:
         By the name of the metric.
     """
     if not impact.span:
-        force = Reference(
-            handbook_force(ROCK_MASS, DROP),
-            "the handbook's formula with lambda = 1000 kN/m2, whatever the sand",
-        )
-        return {
-            "settled maximum of the force on the rock": Known(handbook=force),
-            _SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice")),
-        }
+        return {_SETTLED_RATIO: Known(Reference(2.0, "sec. 4 (3): about twice"))}
     row = next(row for row in printed_rows("table6") if float(row["span_m"]) == impact.span)
     measured, computed = (
         Reference(0.01 * float(row[f"{who}_percent"])) for who in ("experiment", "paper_analysis")

@@ -257,6 +257,8 @@ def _show_results(done: Run, pictures: list[Path], screen: Screen) -> None:
         screen.show("", done.table(), "")
         for line in done.notes:
             screen.say(line)
+        if len(formulas := done.formulas()):
+            screen.show(formulas, "")
     drawn = f", {len(pictures)} pictures in {pictures[0].parent}" if pictures else ""
     screen.say(f"results in {done.folder}{drawn}")
 
@@ -268,6 +270,7 @@ def _as_data(done: Run, pictures: list[Path]) -> dict[str, Any]:
         "error": done.error,
         "warnings": done.warnings,
         "caption": done.caption,
+        "formulas": done.provenance.get("formulas", []),
         "metrics": [metric.as_entry() for metric in done.metrics.values()],
         "pictures": [str(file) for file in pictures],
     }

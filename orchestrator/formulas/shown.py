@@ -13,7 +13,9 @@ _WORDS = {True: "yes", False: "no", None: "not known"}
 
 
 def table_of(
-    estimates: Iterable[FormulaValue], computed: Mapping[str, float] | None = None, title: str = ""
+    estimates: Iterable[FormulaValue],
+    computed: Mapping[str, Mapping[str, float]] | None = None,
+    title: str = "",
 ) -> Table:
     """Return a table of estimates, with computed values beside them where there are any.
 
@@ -21,8 +23,9 @@ def table_of(
     ----------
     estimates : iterable of FormulaValue
         From :func:`rockshed.formulas.estimates`.
-    computed : mapping of str to float, optional
-        Values of a run by quantity (SI units): their deviation from each estimate is shown.
+    computed : mapping of str to mapping, optional
+        Values of a run by quantity (SI units), under the title of a column that has their deviation
+        from each estimate.
     title : str
         Of the table.
 
@@ -33,13 +36,12 @@ def table_of(
     """
     listed = list(estimates)
     beside = computed or {}
-    deviations = ["computed"] if beside else []
-    columns = ("quantity", "formula", "value", "unit", *deviations, "in its range", "verified")
-    made = Table(columns, right=("value", *deviations), title=title)
+    columns = ("quantity", "formula", "value", "unit", *beside, "in its range", "verified")
+    made = Table(columns, right=("value", *beside), title=title)
     for estimate in listed:
         unit, decimals = _SCALES[estimate.unit]
         shown = f"{estimate.value / SCREEN_UNITS[unit]:,.{decimals}f}"
-        against = [_deviation(estimate, beside)] if beside else []
+        against = [_deviation(estimate, of) for of in beside.values()]
         range_and_proof = (_WORDS[estimate.within_range], _WORDS[estimate.verified])
         made.add(estimate.quantity, estimate.name, shown, unit, *against, *range_and_proof)
     made.notes = notes_of(listed)

@@ -1,14 +1,13 @@
 """The table at the end of a run: metrics with the values of the paper and of the experiment."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 from rockshed.components.common.units import SCREEN_UNITS
 
 from ..core.results.metric import Beside, Metric
 from ..core.results.reading import StoredRun
-from ..references import Known, References
+from ..references import EXPERIMENT, PAPER, Known, References
 from ..tables import Table
 from . import names
 from .caption import caption as caption
@@ -95,18 +94,19 @@ _STILL = (
 class ComparedRow:
     """A metric as it is shown.
 
-    Text per column, deviations (computed / reference - 1) as numbers.
+    Attributes
+    ----------
+    label, unit, computed : str
+        Texts of the first columns.
+    beside : mapping of str to tuple of str and float or None
+        By who found it: the reference as text, and the deviation, computed / reference - 1; None
+        where it stands in another row.
     """
 
     label: str
     unit: str
     computed: str
-    paper: str = ""
-    paper_deviation: float | None = None
-    experiment: str = ""
-    experiment_deviation: float | None = None
-    handbook: str = ""
-    handbook_deviation: float | None = None
+    beside: Mapping[str, tuple[str, float | None]] = field(default_factory=dict)
 
 
 def known_of(run: StoredRun) -> Mapping[str, Known]:
@@ -200,14 +200,16 @@ def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[Compa
     """Yield one row for each unit; the deviations stand in the first."""
     for number, scale in enumerate(scales):
         first = number == 0
-        beside: dict[str, Any] = {}
-        for who, found in metric.references.items():
-            beside[who] = ("≈ " if found.note else "") + _written(found.value, scale)
-            beside[f"{who}_deviation"] = found.deviation if first else None
+        beside = {
+            who: (
+                ("≈ " if found.note else "") + _written(found.value, scale),
+                found.deviation if first else None,
+            )
+            for who, found in metric.references.items()
+        }
         unit = "" if scale.unit == "1" else scale.unit
-        yield ComparedRow(
-            label if first else "", unit, _written(float(metric.value), scale), **beside
-        )
+        computed = _written(float(metric.value), scale)
+        yield ComparedRow(label if first else "", unit, computed, beside)
 
 
 def _written(value: float, scale: Scale) -> str:
@@ -280,20 +282,15 @@ def table(run: StoredRun, known: Mapping[str, Known]) -> Table:
         Quantity, unit, computed value, references and deviations.
     """
     listed = rows(run, known)
-    columns = [
-        ("paper", "paper", [row.paper for row in listed]),
-        ("", "paper", [_percent(row.paper_deviation) for row in listed]),
-        ("experiment", "experiment", [row.experiment for row in listed]),
-        ("", "experiment", [_percent(row.experiment_deviation) for row in listed]),
-        ("handbook", "handbook", [row.handbook for row in listed]),
-        ("", "handbook", [_percent(row.handbook_deviation) for row in listed]),
-    ]
-    present = {whose for _, whose, texts in columns if any(texts)}
-    shown = [(title, texts) for title, whose, texts in columns if whose in present]
-    titles = ["computed", *(title for title, _ in shown)]
+    named = dict.fromkeys(who for row in listed for who in row.beside)
+    sources = [*(who for who in (PAPER, EXPERIMENT) if who in named), *named]
+    sources = list(dict.fromkeys(sources))
+    titles = ["computed", *(title for who in sources for title in (who, ""))]
     made = Table(("quantity", "unit", *titles), right=titles)
-    for number, row in enumerate(listed):
-        made.add(row.label, row.unit, row.computed, *(texts[number] for _, texts in shown))
+    for row in listed:
+        cells = [row.beside.get(who, ("", None)) for who in sources]
+        shown = (text for value, deviation in cells for text in (value, _percent(deviation)))
+        made.add(row.label, row.unit, row.computed, *shown)
     return made
 
 

@@ -16,7 +16,6 @@ KnownMetrics = Mapping[str, Known]
 _FOUND_BY = {
     "experiment": ("{what} measured, {about}{value:.2f} {unit}", "--"),
     "paper": ("{what} in the paper's analysis, {about}{value:.2f} {unit}", ":"),
-    "handbook": ("{what} by the handbook's formula, {value:.0f} {unit}", "-."),
 }
 
 
@@ -52,7 +51,7 @@ def levels(known: Known | None, unit: str, what: str) -> Iterator[ReferenceLevel
         Name of the metric in words.
     """
     for who, reference in ({} if known is None else known.by()).items():
-        words, dashes = _FOUND_BY[who]
+        words, dashes = _FOUND_BY.get(who, (f"{{what}} by {who}, {{value:.4g}} {{unit}}", "-."))
         value = reference.value / SCREEN_UNITS[unit]
         about = "≈ " if reference.note else ""
         text = words.format(what=what, about=about, value=value, unit=unit)

@@ -11,6 +11,7 @@ from ..core.results import reading
 from ..core.results.own_files import add_files
 from ..core.system.names import select
 from ..metrics import comparison
+from ..metrics.practice import formula_table
 from ..tables import Table
 from .building import Note, silent
 
@@ -51,6 +52,17 @@ class Run(reading.StoredRun):
             Quantity, unit, computed value, references and deviations.
         """
         return comparison.table(self, comparison.known_of(self))
+
+    def formulas(self) -> Table:
+        """Return the formulas of practice for the impact, beside peak force and penetration.
+
+        Returns
+        -------
+        Table
+            Estimates with the deviation of the run from each; no row where it is no impact of a
+            rock on a cushion. Its notes have parameters, ranges and sources.
+        """
+        return formula_table(self)
 
     def plot(self, *names: str) -> "Figure":
         """Draw variables over time, a panel for each unit.

@@ -10,10 +10,11 @@ from rockshed.components.common.component import Component
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
-from ..core.results.reading import add_metrics, set_warnings
+from ..core.results.reading import add_facts, add_metrics
 from ..core.run import simulate as simulate_spec
 from ..core.system.plan import Plan
 from ..metrics import comparison
+from ..metrics.practice import formula_values, with_formulas
 from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .first_compilation import tell_first_compilation
@@ -125,7 +126,7 @@ def _carry_out(
 
 
 def measured(folder: Path) -> Run:
-    """Add the metrics and warnings that follow from the results to those of the run.
+    """Add metrics, warnings and formulas that follow from the results to those of the run.
 
     Parameters
     ----------
@@ -138,13 +139,14 @@ def measured(folder: Path) -> Run:
         With all of them; they are written down too, unless the disk is full.
     """
     done = read_run(folder)
-    metrics = comparison.figures(done, comparison.known_of(done))
-    warnings = done.warnings
+    formulas = formula_values(done)
+    metrics = with_formulas(comparison.figures(done, comparison.known_of(done)), formulas)
+    found = {"warnings": done.warnings, "formulas": [entry.as_data() for entry in formulas]}
     with suppress(OSError):
         add_metrics(done.folder, metrics)
-        set_warnings(done.folder, warnings)
+        add_facts(done.folder, found)
     everything = Metrics([*done.metrics.values(), *metrics])
-    provenance = {**done.provenance, "warnings": warnings}
+    provenance = {**done.provenance, **found}
     return Run(**{**vars(done), "metrics": everything, "provenance": provenance})
 
 

@@ -220,7 +220,7 @@ def test_the_load_cell_that_a_run_was_asked_for_stands_beside_the_measurement():
     )
     known = sonoda1993.known_of(sonoda1993.tests()[4])
     row = next(row for row in comparison.rows(run, known) if "load cell" in row.label)
-    assert row.experiment == "5.09"
+    assert row.beside["experiment"][0] == "5.09"
 
 
 @pytest.mark.parametrize(
@@ -320,16 +320,18 @@ def test_models_of_the_sand_have_their_names():
 def test_deviations_stand_beside_the_references():
     known = {names.PEAK_TRANSMITTED: Known(Reference(2500.0, "a guess"), Reference(1640.0))}
     row = comparison.rows(made_up(), known)[0]
-    assert (row.computed, row.paper, row.experiment) == ("2.05", "≈ 2.50", "1.64")
-    assert row.paper_deviation == pytest.approx(-0.18, abs=1e-3)
-    assert row.experiment_deviation == pytest.approx(0.25, abs=1e-3)
+    assert row.computed == "2.05"
+    assert row.beside == {
+        "paper": ("≈ 2.50", pytest.approx(-0.18, abs=1e-3)),
+        "experiment": ("1.64", pytest.approx(0.25, abs=1e-3)),
+    }
     assert comparison.notes(made_up(), known) == ["≈ paper: a guess"]
 
 
 def test_a_run_that_ends_too_soon_is_not_compared():
     known = {names.PEAK_TRANSMITTED: Known(experiment=Reference(1640.0))}
     short = made_up(length=0.008)
-    assert comparison.rows(short, known)[0].experiment == ""
+    assert comparison.rows(short, known)[0].beside == {}
     assert "nothing is compared" in comparison.notes(short, known)[0]
 
 

@@ -50,7 +50,7 @@ class Metric:
     unit : str
         FMI unit, ``1`` where there is none.
     references : mapping of str to Beside
-        What others found, by who found it: paper, experiment, handbook.
+        What others found, by who found it: paper, experiment, or the name of a formula.
     """
 
     name: str

@@ -290,19 +290,19 @@ def _numbers(column: Any) -> NDArray[np.float64]:
     return np.concatenate([np.empty(0), *map(np.from_dlpack, column.chunks)])
 
 
-def set_warnings(folder: Path, texts: Sequence[str]) -> None:
-    """Write the warnings of a finished run down, in the place of those of its components alone.
+def add_facts(folder: Path, found: Mapping[str, Any]) -> None:
+    """Write down what the results of a finished run have shown.
 
     Parameters
     ----------
     folder : Path
         Folder of the run.
-    texts : sequence of str
-        All warnings, the weightiest first.
+    found : mapping of str to Any
+        Entries of ``run.json``; ``warnings`` come in the place of those of its components alone.
     """
     path = folder / RUN
     facts = json.loads(path.read_text(encoding="utf-8"))
-    write_json(path, {**facts, "warnings": list(texts)})
+    write_json(path, {**facts, **found})
 
 
 def add_metrics(folder: Path, metrics: Sequence[Metric]) -> None:

@@ -98,15 +98,8 @@ class _Reference(_Shape):
     note: _Name = ""
 
 
-class _Known(_Shape):
-    model_config = ConfigDict(extra="forbid")
-    paper: _Reference | None = None
-    experiment: _Reference | None = None
-    handbook: _Reference | None = None
-
-
 class _References(_Shape):
-    known: dict[str, _Known] = {}
+    known: dict[str, dict[_Name, _Reference]] = {}
     remarks: list[_Name] = []
 
 
