@@ -39,6 +39,8 @@ class Role(StrEnum):
 
     TRANSMITTED = "force.transmitted"
     """Force (N) of a cushion on what carries it, downwards."""
+    ON_STRUCTURE = "force.on_structure"
+    """Forces (N) of a cushion on the elements of what carries it, upwards, an array along it."""
     BOX_INERTIA = "force.box_inertia"
     """Force (N), downwards, that accelerates what stands between cushion and structure: a load cell
     under it shows the transmitted force less this."""
@@ -53,6 +55,8 @@ class Role(StrEnum):
     presses into it."""
     STRUCTURE = "height.structure"
     """Heights (m) of the axis of a structure, an array along it."""
+    ALONG = "place.along"
+    """Places (m) of the elements of a structure, an array along it."""
     DEFLECTION = "deflection"
     """Deflection (m) of a structure, downwards."""
     BENDING_MOMENT = "moment.bending"
@@ -74,6 +78,8 @@ class Role(StrEnum):
     """Parameter: radius (m) of a body that strikes."""
     GRAVITY = "gravity"
     """Parameter: acceleration of gravity (m/s2)."""
+    EFFECTIVE_WIDTH = "width.effective"
+    """Parameter: width (m) of a cushion out of the plane."""
     GRAIN_RADIUS = "grain.radius"
     """Parameter: radius (m) of the grains or discs of a cushion."""
     CUSHION_WEIGHT = "weight.cushion"

@@ -202,7 +202,14 @@ LAYOUT = Layout(
             size="support_count",
         ),
         inp("support.velocity.y", "velocity of the support, upwards", "m/s", size="support_count"),
-        _per_element("position.x", "position of the disc's centre, to the right", "m", *_GEOMETRY),
+        out(
+            "position.x",
+            "position of the disc's centre, to the right",
+            "m",
+            size="elements",
+            initial_dependencies=_GEOMETRY,
+            role=Role.ALONG,
+        ),
         out(
             "position.y",
             "position of the disc's centre, upwards",

@@ -228,6 +228,7 @@ LAYOUT = Layout(
             source="Sonoda et al. 1993, sec. 3 (2)",
             formerly=("depth",),
             plausible=Plausible(1e-3, 50.0, ("cm", "mm")),
+            role=Role.EFFECTIVE_WIDTH,
         ),
         param(
             "density",
@@ -507,7 +508,13 @@ LAYOUT = Layout(
             "N.m",
         ),
         out("beam.force.x", "contact force on a beam disc, to the right", "N", size="elements"),
-        out("beam.force.y", "contact force on a beam disc, upwards", "N", size="elements"),
+        out(
+            "beam.force.y",
+            "contact force on a beam disc, upwards",
+            "N",
+            size="elements",
+            role=Role.ON_STRUCTURE,
+        ),
         out(
             "beam.torque",
             "torque of the contact forces on a beam disc about its centre",

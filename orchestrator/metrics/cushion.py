@@ -226,6 +226,9 @@ def _way(run: StoredRun, cushion: str) -> Iterator[Metric]:
     clearance = column(run, cushion, Role.CLEARANCE)
     if clearance is not None:
         yield Metric(names.CLEARANCE, least(run, clearance), "m")
+    thickness = thickness_at_start(run, cushion)
+    if thickness and thickness > 0.0:
+        yield Metric(names.PENETRATION_SHARE, depth / thickness)
 
 
 def thickness_at_start(run: StoredRun, cushion: str) -> float | None:

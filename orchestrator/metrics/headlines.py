@@ -11,6 +11,8 @@ from ..core.results.reading import StoredRun
 from . import names
 from .cushion import of_cushions
 from .energy import largest, machine_work, of_structures, of_system, system_residual
+from .pressure import of_pressures
+from .pulse import of_pulses
 from .reported import reported
 
 
@@ -31,7 +33,8 @@ def headlines(run: StoredRun) -> list[Metric]:
         return []
     declared = [entry.metric for entry in reported(run)]
     cushions, machine = list(of_cushions(run)), list(_of_machine(run))
-    return [*cushions, *machine, *of_structures(run), *declared, *of_system(run)]
+    loads = [*of_pulses(run), *of_pressures(run)]
+    return [*cushions, *loads, *machine, *of_structures(run), *declared, *of_system(run)]
 
 
 def headline(run: StoredRun, name: str) -> float | None:

@@ -15,6 +15,7 @@ from ..metrics.comparison import known_of
 from ..metrics.contents import ForeignStateError, reader_of
 from ..metrics.cushion import cushions
 from ..metrics.energy import driven
+from ..metrics.pressure import roof_pressure
 from ..metrics.roles import members
 from .declared import declared_pictures
 from .references import KnownMetrics
@@ -156,8 +157,18 @@ def _of_cushion(run: StoredRun, cushion: str, known: KnownMetrics) -> list[RunPi
         *overview,
         *grains,
         RunPicture("forces", partial(curves.forces, run, cushion, known), forces),
+        *_pressure(run, cushion),
         RunPicture("penetration", partial(curves.penetration, run, cushion, known), depth),
     ]
+
+
+def _pressure(run: StoredRun, cushion: str) -> list[RunPicture]:
+    """Return the picture of the pressure; none where no structure carries the cushion."""
+    if roof_pressure(run, cushion) is None:
+        return []
+    from . import pressure  # matplotlib is imported when something is drawn
+
+    return [RunPicture("pressure", partial(pressure.pressure, run, cushion), [])]
 
 
 def _declared(run: StoredRun, component: str, *roles: Role) -> list[str]:

@@ -198,6 +198,23 @@ class ShedLayout:
     rod: SupportRod | None = None
 
 
+def girders_in(cushion: CushionPart, roof: RoofPart) -> float:
+    """Return the number of girders in the effective width.
+
+    Parameters
+    ----------
+    cushion, roof : CushionPart, RoofPart
+        The parts.
+
+    Returns
+    -------
+    float
+        Of girders 1 or more: a strip narrower than a bay lies on one girder, and all of it bends.
+    """
+    number = cushion.effective_width / roof.spacing
+    return max(1.0, number) if roof.kind == "girders" else number
+
+
 def discs_in(width: float, height: float, radius: float, solid_fraction: float) -> int:
     """Return the number of discs of many sizes that fill a layer.
 
@@ -258,7 +275,7 @@ def layout(
     """
     radius = numerics.disc_radius or disc_radius(rock, cushion)
     elements = numerics.elements or beam_elements(roof.span, radius)
-    girders = cushion.effective_width / roof.spacing
+    girders = girders_in(cushion, roof)
     element = element_length(roof.span, elements)
     exchange = numerics.exchange_step or min(
         exchange_step(cushion, roof, girders, radius, elements),
