@@ -9,10 +9,11 @@ import typer
 from ..core.errors import Problem, RunFailed
 from ..core.supervisor import announce
 from ..core.system.clock import seconds_in
+from ..metrics.width_band import width_band_table
 from ..runs.building import is_cold
 from ..runs.request import AUTO, Request
 from ..runs.run import Run
-from ..runs.simulation import simulate
+from ..runs.simulation import simulate, with_facts
 from ..runs.system import System
 from .analysis import in_options, options_named
 from .assignments import sizes_of, values_of
@@ -98,6 +99,14 @@ _Runtime = Annotated[
         "date.",
     ),
 ]
+_Band = Annotated[
+    bool,
+    typer.Option(
+        "--band",
+        help="Run a project also with the smallest and the largest effective width of all rules, "
+        "in two more processes.",
+    ),
+]
 _InProcess = Annotated[
     bool, typer.Option("--in-process", help="Components without FMUs, in this process.")
 ]
@@ -120,6 +129,7 @@ def command(
     load_cell: _LoadCell = None,
     runtime: _Runtime = AUTO,
     in_process: _InProcess = False,
+    band: _Band = False,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -146,7 +156,18 @@ def command(
     with opened(quiet, as_json) as screen:
         with stdout_for_results():
             done = _simulate(request, problems, output_dir, allow_unstable, screen)
+            if band and done.status == "complete":
+                done = _with_band(done, request, screen)
         show_run(done, screen, not no_figures)
+
+
+def _with_band(done: Run, request: Request, screen: Screen) -> Run:
+    """Return a run of a project with the band of the effective width."""
+    from ..analyses.shed.band import width_band  # processes are started for it alone
+
+    with screen.counting("other effective widths") as counted:
+        found = width_band(done, request, note=screen.note, counted=counted)
+    return with_facts(done, {"band": found})
 
 
 def _chosen(**options: Any) -> dict[str, Any]:
@@ -257,8 +278,9 @@ def _show_results(done: Run, pictures: list[Path], screen: Screen) -> None:
         screen.show("", done.table(), "")
         for line in done.notes:
             screen.say(line)
-        if len(formulas := done.formulas()):
-            screen.show(formulas, "")
+        for table in (done.formulas(), width_band_table(done)):
+            if len(table):
+                screen.show(table, "")
     drawn = f", {len(pictures)} pictures in {pictures[0].parent}" if pictures else ""
     screen.say(f"results in {done.folder}{drawn}")
 
@@ -271,6 +293,7 @@ def _as_data(done: Run, pictures: list[Path]) -> dict[str, Any]:
         "warnings": done.warnings,
         "caption": done.caption,
         "formulas": done.provenance.get("formulas", []),
+        "band": done.provenance.get("band", {}),
         "metrics": [metric.as_entry() for metric in done.metrics.values()],
         "pictures": [str(file) for file in pictures],
     }

@@ -97,12 +97,15 @@ class Task:
         Seed of the sample; None if the lattice is undisturbed.
     allow_unstable : bool
         Whether a step may be longer than the stable one.
+    columns : tuple of str
+        Variables that are recorded.
     """
 
     request: Request
     model: str = ""
     seed: int | None = None
     allow_unstable: bool = False
+    columns: tuple[str, ...] = COLUMNS
 
     @property
     def settings(self) -> list[str]:
@@ -242,18 +245,26 @@ def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome) -> None:
 def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
     system = prepare(task.request, note, fmus_of=fmus_of).system
-    return _Order(task.key, slim(system), task.allow_unstable)
+    return _Order(task.key, slim(system, task.columns), task.allow_unstable)
 
 
-def slim(system: SystemSpec) -> SystemSpec:
-    """Return a system that records the variables of :data:`COLUMNS` and no states."""
+def slim(system: SystemSpec, recorded: tuple[str, ...] = COLUMNS) -> SystemSpec:
+    """Return a system that records some variables and no states.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        The system.
+    recorded : tuple of str
+        Variables, of components that it may not have.
+    """
     components = {
         name: spec.model_copy(update={"record_states": False})
         for name, spec in system.components.items()
     }
     changes = {
         "components": components,
-        "record": [column for column in COLUMNS if column.partition(".")[0] in components],
+        "record": [column for column in recorded if column.partition(".")[0] in components],
         "state_interval": None,
     }
     return system.model_copy(update=changes)

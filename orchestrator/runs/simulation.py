@@ -1,8 +1,10 @@
 """A run from a system to its results, metrics and references included."""
 
 import weakref
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import Component
@@ -148,6 +150,26 @@ def measured(folder: Path) -> Run:
     everything = Metrics([*done.metrics.values(), *metrics])
     provenance = {**done.provenance, **found}
     return Run(**{**vars(done), "metrics": everything, "provenance": provenance})
+
+
+def with_facts(run: Run, found: Mapping[str, Any]) -> Run:
+    """Add to a finished run what was found about it later.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    found : mapping of str to Any
+        Entries of ``run.json``, which is written unless the disk is full.
+
+    Returns
+    -------
+    Run
+        With these entries in its provenance.
+    """
+    with suppress(OSError):
+        add_facts(run.folder, found)
+    return Run(**{**vars(run), "provenance": {**run.provenance, **found}})
 
 
 def _kept(run: Run, temporary: TemporaryFolder | None) -> Run:
