@@ -85,6 +85,7 @@ def test_it_has_its_table_and_pictures(run, tmp_path):
         "overview",
         "sand",
         "forces",
+        "pressure",
         "penetration",
         "beam",
         "moment",

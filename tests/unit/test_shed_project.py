@@ -103,7 +103,7 @@ def test_the_example_is_the_shed_of_the_trial_in_at_most_thirty_lines():
 
 def test_a_template_can_be_run_as_it_is_and_never_replaces_a_file(tmp_path):
     file = write_template(tmp_path / "new")
-    assert prepare(file).layout.girders == 1.0
+    assert prepare(file).layout.cushion.rule == "rock and cushion"
     with pytest.raises(InputRefused, match="is there already, and stays"):
         write_template(tmp_path / "new")
 
@@ -206,11 +206,17 @@ def test_rock_cushion_and_roof_have_the_numbers_of_a_hand_calculation():
     found = prepare(changed(rock={"density": 2600.0})).layout
     assert found.rock.radius == pytest.approx((3 * 2500 / 2600 / (4 * math.pi)) ** (1 / 3))
     assert found.rock.speed == pytest.approx(math.sqrt(2 * standard_gravity * 25))
-    assert found.girders == 1.0
+    assert found.girders == pytest.approx((2 * found.rock.radius + 1.2) / 1.5)
     assert found.box_left == 0.0
     assert found.elements % 2 == 1
     at_surface = found.start_velocity_y**2 + 2 * standard_gravity * found.clearance
     assert at_surface == pytest.approx(found.rock.speed**2)
+
+
+def test_a_strip_narrower_than_a_bay_lies_on_one_whole_girder():
+    narrow = prepare(changed(roof={"spacing": 4.0})).layout
+    assert narrow.cushion.effective_width == pytest.approx(2 * narrow.rock.radius + 1.2)
+    assert narrow.girders == 1.0
 
 
 def test_a_block_is_computed_as_the_sphere_of_equal_mass_and_density():
