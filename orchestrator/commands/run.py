@@ -11,6 +11,7 @@ from ..core.supervisor import announce
 from ..core.system.clock import seconds_in
 from ..metrics.width_band import width_band_table
 from ..runs.building import is_cold
+from ..runs.chosen import is_project_file
 from ..runs.request import AUTO, Request
 from ..runs.run import Run
 from ..runs.simulation import simulate, with_facts
@@ -141,6 +142,8 @@ def command(
     problems: list[Problem] = []
     values = values_of("--set", set_ or [], problems)
     sizes = sizes_of(size or [], problems)
+    if band and not is_project_file(target):
+        problems.append(Problem("--band", "is for projects: other systems have no width to choose"))
     options = _chosen(
         stop_time=stop_time,
         exchange_step=exchange_step,

@@ -84,6 +84,8 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
     names.BEAM_SHARE: ("peak beam energy (5), (6) / E0", (Scale("%", 2),)),
     names.BEAM_SHARE_FROM_STRAIN: ("peak beam energy (7) / E0", (Scale("%", 2),)),
+    names.DISSIPATED_SHARE: ("dissipated at the end / E0", (Scale("%", 1),)),
+    names.REBOUND_SHARE: ("kinetic energy of the rock at the end / E0", (Scale("%", 1),)),
     names.RESIDUAL_SHARE: ("energy residual / E0", (Scale("%", 3, "+"),)),
 }
 """Label and units of each row, by the name of the metric, in the order in which a designer asks for

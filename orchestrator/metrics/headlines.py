@@ -14,6 +14,7 @@ from .energy import largest, machine_work, of_structures, of_system, system_resi
 from .pressure import of_pressures
 from .pulse import of_pulses
 from .reported import reported
+from .shares import of_energies
 
 
 def headlines(run: StoredRun) -> list[Metric]:
@@ -34,7 +35,15 @@ def headlines(run: StoredRun) -> list[Metric]:
     declared = [entry.metric for entry in reported(run)]
     cushions, machine = list(of_cushions(run)), list(_of_machine(run))
     loads = [*of_pulses(run), *of_pressures(run)]
-    return [*cushions, *loads, *machine, *of_structures(run), *declared, *of_system(run)]
+    return [
+        *cushions,
+        *loads,
+        *machine,
+        *of_structures(run),
+        *declared,
+        *of_system(run),
+        *of_energies(run),
+    ]
 
 
 def headline(run: StoredRun, name: str) -> float | None:

@@ -132,5 +132,13 @@ def test_references_of_any_source_are_read_again():
     assert References.from_data(json.loads(json.dumps(told.as_data()))).known == told.known
 
 
+def test_the_energy_at_the_end_is_told_in_shares_of_the_impact_energy():
+    run = made_up()
+    kinetic = run.series["rock.energy.kinetic"]
+    found = Metrics(headlines(run))
+    share = found["kinetic_energy_of_the_rock_at_the_end_impact_energy"].value
+    assert share == pytest.approx(kinetic[-1] / kinetic[0])
+
+
 def test_roles_of_the_roof_are_declared():
     assert {Role.ON_STRUCTURE, Role.ALONG, Role.EFFECTIVE_WIDTH, Role.BODY_MASS} <= set(Role)

@@ -70,7 +70,9 @@ def _design(run: Run) -> tuple[Spread, float]:
     except KeyError as missing:
         text = "has no band of the effective width: it is no run of a project"
         remedy = "`rockshed init` writes a project"
-        raise InputRefused([Problem(run.folder.name, text, remedy)]) from missing
+        raise InputRefused(
+            [Problem(str(run.provenance.get("name", "run")), text, remedy)]
+        ) from missing
 
 
 def _task(request: Request, width: float) -> Task:
