@@ -139,11 +139,8 @@ def command(
 
     FMUs of a case that are missing are built.
     """
-    problems: list[Problem] = []
-    values = values_of("--set", set_ or [], problems)
-    sizes = sizes_of(size or [], problems)
-    if band and not is_project_file(target):
-        problems.append(Problem("--band", "is for projects: other systems have no width to choose"))
+    problems = _without_band(band, target)
+    values, sizes = values_of("--set", set_ or [], problems), sizes_of(size or [], problems)
     options = _chosen(
         stop_time=stop_time,
         exchange_step=exchange_step,
@@ -159,13 +156,21 @@ def command(
     with opened(quiet, as_json) as screen:
         with stdout_for_results():
             done = _simulate(request, problems, output_dir, allow_unstable, screen)
-            if band and done.status == "complete":
-                done = _with_band(done, request, screen)
+            done = _with_band(done, request, screen) if band else done
         show_run(done, screen, not no_figures)
 
 
+def _without_band(band: bool, target: str) -> list[Problem]:
+    """Return what is wrong with a band that was asked for."""
+    if not band or is_project_file(target):
+        return []
+    return [Problem("--band", "is for projects: other systems have no width to choose")]
+
+
 def _with_band(done: Run, request: Request, screen: Screen) -> Run:
-    """Return a run of a project with the band of the effective width."""
+    """Return a complete run of a project with the band of the effective width."""
+    if done.status != "complete":
+        return done
     from ..analyses.shed.band import width_band  # processes are started for it alone
 
     with screen.counting("other effective widths") as counted:

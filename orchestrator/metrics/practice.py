@@ -11,6 +11,7 @@ from rockshed.components.common.roles import Role
 from ..core.results.metric import Beside, Metric
 from ..core.results.reading import StoredRun
 from ..formulas import FORCE, PENETRATION, FormulaValue, RockImpact, estimates, table_of
+from ..references import Known, Reference
 from ..tables import Table
 from . import names
 from .cushion import cushions, thickness_at_start
@@ -121,6 +122,22 @@ def _compared(metric: Metric, values: Iterable[FormulaValue]) -> Metric:
         for entry in values
     }
     return replace(metric, references={**metric.references, **found}) if found else metric
+
+
+def with_handbook(run: StoredRun, known: Known | None) -> Known:
+    """Return references of the force on the rock with that of the handbook's formula.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    known : Known or None
+        References that there are.
+    """
+    own = {} if known is None else known.by()
+    forces = (value for value in formula_values(run) if value.quantity == FORCE)
+    first = next(({f"the {entry.name}": Reference(entry.value)} for entry in forces), {})
+    return Known.of({**own, **first})
 
 
 def formula_table(run: StoredRun) -> Table:

@@ -8,14 +8,13 @@ from rockshed.components.common.roles import Role
 from rockshed.components.common.units import cm, kgf, kN, ms
 
 from ..core.results.reading import StoredRun
-from ..formulas import FORCE
 from ..metrics import names
 from ..metrics.cushion import both_forces, curve_of, cut_off, settled, thickness_at_start
 from ..metrics.load_curve import DEPTH
-from ..metrics.practice import formula_values
+from ..metrics.practice import with_handbook
 from ..metrics.roles import column
 from ..metrics.values import extreme
-from ..references import Known, Reference
+from ..references import Known
 from .references import KnownMetrics, draw_references
 from .style import (
     GREY,
@@ -48,18 +47,10 @@ def forces(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> Non
         axes = made.subplots()
         force_axes(run, cushion, known, axes)
         _settled_forces(run, cushion, axes)
-        on_rock = _with_handbook(run, known.get(names.SETTLED_ROCK, Known()))
+        on_rock = with_handbook(run, known.get(names.SETTLED_ROCK))
         draw_references(axes, on_rock, "kN", "force on the rock")
         highest = [1.2 * reference.value / kN for reference in on_rock.by().values()]
         axes.set_ylim(top=max([axes.get_ylim()[1], *highest]))
-
-
-def _with_handbook(run: StoredRun, known: Known) -> Known:
-    """Return references of the force on the rock with that of the handbook's formula."""
-    forces = (value for value in formula_values(run) if value.quantity == FORCE)
-    return next(
-        (Known.of({**known.by(), f"the {e.name}": Reference(e.value)}) for e in forces), known
-    )
 
 
 def force_axes(run: StoredRun, cushion: str, known: KnownMetrics, axes: Axes) -> None:

@@ -15,6 +15,7 @@ from ..metrics.comparison import known_of
 from ..metrics.cushion import both_forces, curve_of, cushions, cut_off, settled, thickness_at_start
 from ..metrics.energy import driven
 from ..metrics.load_curve import DEPTH
+from ..metrics.practice import with_handbook
 from ..metrics.roles import column
 from ..pictures.declared import (
     DeclaredPanel,
@@ -91,11 +92,11 @@ def _forces(run: StoredRun, cushion: str, known: KnownMetrics) -> Iterator[Chart
             curves.append(ChartCurve(text, time, slow / kN, colour, "dash"))
     if not curves:
         return
-    for metric, what in (
-        (names.PEAK_TRANSMITTED, "peak transmitted force"),
-        (names.SETTLED_ROCK, "force on the rock"),
+    for found, what in (
+        (known.get(names.PEAK_TRANSMITTED), "peak transmitted force"),
+        (with_handbook(run, known.get(names.SETTLED_ROCK)), "force on the rock"),
     ):
-        curves += _levels(run, levels(known.get(metric), "kN", what))
+        curves += _levels(run, levels(found, "kN", what))
     yield Chart(_TIME, "force (kN)", curves)
 
 

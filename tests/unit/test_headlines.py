@@ -280,7 +280,7 @@ def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
         file.write_bytes(b"")
 
     made = [
-        pictures._Picture(name, draw, ["time"]) for name, draw in (("one", fails), ("two", works))
+        pictures.RunPicture(name, draw, ["time"]) for name, draw in (("one", fails), ("two", works))
     ]
     monkeypatch.setattr(pictures, "_pictures", lambda run: made)
     said = []
