@@ -156,8 +156,7 @@ def command(
     with opened(quiet, as_json) as screen:
         with stdout_for_results():
             done = _simulate(request, problems, output_dir, allow_unstable, screen)
-            done = _with_band(done, request, screen) if band else done
-        show_run(done, screen, not no_figures)
+        show_run(_with_band(done, request, screen) if band else done, screen, not no_figures)
 
 
 def _without_band(band: bool, target: str) -> list[Problem]:

@@ -282,7 +282,7 @@ def test_a_picture_that_fails_leaves_the_others(tmp_path, monkeypatch):
     made = [
         pictures.RunPicture(name, draw, ["time"]) for name, draw in (("one", fails), ("two", works))
     ]
-    monkeypatch.setattr(pictures, "_pictures", lambda run: made)
+    monkeypatch.setattr(pictures, "pictures_of", lambda run: made)
     said = []
     assert pictures.draw_all(made_up(), tmp_path, warn=said.append) == [tmp_path / "two.png"]
     assert said == ["no picture one: drawing it failed (TypeError: no colours)"]
