@@ -33,6 +33,7 @@ SHOWN = {"orchestrator/__init__.py": "api/index.md"}
 CONTENTS = {
     "Use": (
         "getting-started",
+        "designer",
         "python",
         "command-line",
         "systems",

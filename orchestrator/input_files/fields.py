@@ -196,10 +196,20 @@ def explained(problems: Sequence[Problem], doubted: Sequence[str]) -> list[Probl
 
 
 def _doubt_of(value: float, entry: FieldInfo) -> str | None:
+    usual = usual_of(entry)
+    return doubt(value, unit_of(entry) or "1", usual) if usual else None
+
+
+def usual_of(entry: FieldInfo) -> Plausible | None:
+    """Return the range of a field beyond which a value is doubted; None if there is none.
+
+    Parameters
+    ----------
+    entry : FieldInfo
+        Of a form.
+    """
     usual = _extra(entry).get(_USUAL)
-    if not isinstance(usual, Plausible):
-        return None
-    return doubt(value, unit_of(entry) or "1", usual)
+    return usual if isinstance(usual, Plausible) else None
 
 
 def _name(key: Key) -> str:
