@@ -17,6 +17,7 @@ from ..core.results.reading import StoredRun
 from ..metrics.energy import structures
 from ..metrics.roles import column, elements, members
 from ..pictures.sand import DEFLECTION_SCALES, Frame, frames
+from ..tables import digits
 from .form import Film
 
 _FRAMES = 120
@@ -210,6 +211,6 @@ def _words(run: StoredRun, cushion: str, shown: Sequence[Frame]) -> list[str]:
             at = float(run.series[depth][row])
             parts.append(f"rock {abs(at) / cm:.1f} cm {'deep' if at > 0.0 else 'above'}")
         if force is not None:
-            parts.append(f"{float(run.series[force][row]) / kN:.3g} kN transmitted")
+            parts.append(f"{digits(float(run.series[force][row]) / kN)} kN transmitted")
         texts.append(", ".join(parts))
     return texts

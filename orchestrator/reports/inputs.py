@@ -11,8 +11,19 @@ from ..core.results.reading import StoredRun
 from ..tables import Table, digits
 from .facts import table_of, tables_of
 
-_LONGEST = 60
+_LONGEST = 300
 """Letters of a value in a table, at most."""
+_UNITS = {
+    **dict.fromkeys(("mass", "deck_mass"), "kg"),
+    **dict.fromkeys(("radius", "drop_height", "thickness", "width", "effective_width"), "m"),
+    **dict.fromkeys(("height", "spacing", "span", "place", "disc_radius", "clearance"), "m"),
+    **dict.fromkeys(("speed", "velocity_x", "velocity_y"), "m/s"),
+    **dict.fromkeys(("modulus", "elastic_modulus", "cohesion", "yield_stress"), "Pa"),
+    **dict.fromkeys(("section_modulus", "plastic_modulus"), "m3"),
+    **dict.fromkeys(("stop_time", "exchange_step", "output_interval", "state_interval"), "s"),
+    **{"density": "kg/m3", "area": "m2", "second_moment": "m4", "friction_angle": "rad"},
+}
+"""Units of the numbers of a design and of a project, by name."""
 _LARGE = 1e7
 """Numbers from here on are written with an exponent."""
 
@@ -144,7 +155,7 @@ def project_tables(run: StoredRun) -> Iterator[Table]:
     design = table_of(run.provenance, "design")
     for part, entries in design.items():
         if isinstance(entries, Mapping):
-            yield _plain(f"{part} (SI units)", entries)
+            yield _plain(part, entries)
     made = Table(("criterion", "limit", "unit"), right=("limit",), title="criteria")
     for entry in tables_of(design, "criteria"):
         limit = value_text(entry.get("limit", ""))
@@ -162,7 +173,7 @@ def derived(run: StoredRun) -> Table | None:
         The run.
     """
     entries = table_of(run.provenance, "project", "derived")
-    return _plain("SI units", dict(_flat(entries, ""))) if entries else None
+    return _plain("", dict(_flat(entries, ""))) if entries else None
 
 
 def _flat(entries: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
@@ -175,8 +186,9 @@ def _flat(entries: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
 
 
 def _plain(title: str, entries: Mapping[str, Any]) -> Table:
-    made = Table(("quantity", "value"), right=("value",), title=title)
+    made = Table(("quantity", "value", "unit"), title=title)
     for name, value in _flat(entries, ""):
         if value is not None:
-            made.add(str(name).replace("_", " "), value_text(value))
+            unit = "" if isinstance(value, str) else _UNITS.get(name.rpartition(".")[2], "")
+            made.add(str(name).replace("_", " "), value_text(value), unit)
     return made

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..core.results.reading import StoredRun
-from ..tables import Table
+from ..tables import Table, digits
 from .facts import number_of, table_of
 from .inputs import value_text
 
@@ -17,10 +17,10 @@ def fmus(run: StoredRun) -> Table:
     run : StoredRun
         The run.
     """
-    made = Table(("component", "model", "made by", "SHA-256 of the FMU"))
+    made = Table(("component", "model", "SHA-256 of the FMU"))
     for name, facts in run.provenance["components"].items():
         digest = str(facts.get("sha256", "none: it ran in the process, without an FMU"))
-        made.add(name, str(facts.get("model", "")), str(facts.get("generation_tool", "")), digest)
+        made.add(name, str(facts.get("model", "")), digest)
     return made
 
 
@@ -41,11 +41,14 @@ def circumstances(run: StoredRun) -> Table:
     for title, key in (("machine", "platform"), ("started", "started"), ("ended", "ended")):
         if facts.get(key):
             made.add(title, str(facts[key]))
+    tools = [told.get("generation_tool") for told in facts["components"].values()]
+    for tool in dict.fromkeys(filter(None, tools)):
+        made.add("FMUs made by", str(tool))
     if "runtime" in facts:
         made.add("FMUs", f"{facts['runtime']} ({facts.get('runtime_reason', '')})")
     spent = table_of(facts, "wall_time")
     for name in spent:
-        made.add(f"{name} took", f"{number_of(spent, name) or 0.0:.3g} s")
+        made.add(f"{name} took", f"{digits(number_of(spent, name) or 0.0)} s")
     return made
 
 

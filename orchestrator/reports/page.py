@@ -158,7 +158,7 @@ def _layout(chart: Chart) -> dict[str, Any]:
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
         "hovermode": "x unified",
-        "margin": {"l": 30, "r": 16, "t": 36, "b": 44},
+        "margin": {"l": 30, "r": 16, "t": 36, "b": 52},
         "showlegend": False,
         "xaxis": {**axis, "title": {"text": _plain(chart.x_label)}, "hoverformat": ".4~g"},
         "yaxis": {

@@ -28,7 +28,8 @@ def options(name):
     """Return the options of a command."""
     group = typer.main.get_command(app)
     command = group.get_command(None, name)
-    return {option for parameter in command.params for option in parameter.opts} | {"--help"}
+    named = {name for p in command.params for name in (*p.opts, *p.secondary_opts)}
+    return named | {"--help"}
 
 
 def texts(page):
