@@ -1,9 +1,10 @@
 """The report of an analysis: of a campaign of rockfall, or of blows on a pile."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+import tomli_w
 
 from ..analyses.frame import Drawing, Result
 from ..core.results.own_files import read_data
@@ -43,7 +44,8 @@ def report_of_result(result: Result, folder: Path, repeat: str = "") -> Document
     ]
     if repeat:
         chapters.append(Chapter("How to repeat it", listing=repeat))
-    return Document(f"{result.name}: {result.kind}", [result.summary], "", chapters)
+    title = " of ".join(dict.fromkeys((result.kind, result.name)))
+    return Document(title, [result.summary], "", chapters)
 
 
 def _illustrations(result: Result) -> list[Illustration]:
@@ -59,8 +61,18 @@ def _drawer(drawing: Drawing) -> Drawer:
 
 
 def _inputs(facts: Mapping[str, Any]) -> str:
+    """Return what an analysis was made of, as a file of inputs has it."""
     told = {key: value for key, value in facts.items() if key not in _NO_INPUT}
-    return json.dumps(told, indent=1, ensure_ascii=False, default=str)
+    return tomli_w.dumps(_without_nothing(told))
+
+
+def _without_nothing(entry: Any) -> Any:
+    """Return tables and lists without entries that are not given, which TOML does not have."""
+    if isinstance(entry, Mapping):
+        return {k: _without_nothing(value) for k, value in entry.items() if value is not None}
+    if isinstance(entry, list):
+        return [_without_nothing(value) for value in entry if value is not None]
+    return entry
 
 
 def _origin(facts: Mapping[str, Any]) -> Table:
