@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from . import names
 from .cushion import cushions, thickness_at_start
 from .energy import driven
 from .headlines import headlines
-from .roles import column, owners, parameter
+from .roles import column, owners, positive
 
 _COLUMNS = {
     "computed": {FORCE: names.PEAK_ROCK, PENETRATION: names.PENETRATION},
@@ -45,15 +44,15 @@ def impact_of(run: StoredRun) -> RockImpact | None:
     bodies, struck = owners(run, Role.STRIKING), cushions(run)
     if driven(run) or len(bodies) != 1 or len(struck) != 1 or not run.time.size:
         return None
-    mass, radius = (parameter(run, bodies[0], role) for role in (Role.BODY_MASS, Role.BODY_RADIUS))
+    mass, radius = (positive(run, bodies[0], role) for role in (Role.BODY_MASS, Role.BODY_RADIUS))
     energy = _energy_at_contact(run, bodies[0], struck[0])
     if not mass or not radius or not energy:
         return None
     thickness = thickness_at_start(run, struck[0])
     return RockImpact(
-        float(mass),
-        float(radius),
-        float(np.sqrt(2.0 * energy / float(mass))),
+        mass,
+        radius,
+        float(np.sqrt(2.0 * energy / mass)),
         thickness if thickness and thickness > 0.0 else None,
         **_soil(run),
     )
@@ -71,10 +70,12 @@ def _energy_at_contact(run: StoredRun, body: str, cushion: str) -> float | None:
 
 def _soil(run: StoredRun) -> dict[str, float]:
     """Return what the design of a run knows of its cushion as formulas of practice see it."""
-    known: Mapping[str, Any] = run.provenance.get("design", {}).get("cushion", {})
-    return {
-        name: float(known[name]) for name in ("lame", "modulus", "friction_angle") if name in known
-    }
+    design = run.provenance.get("design")
+    known = design.get("cushion") if isinstance(design, Mapping) else None
+    if not isinstance(known, Mapping):
+        return {}
+    told = {name: known.get(name) for name in ("lame", "modulus", "friction_angle")}
+    return {name: float(value) for name, value in told.items() if isinstance(value, int | float)}
 
 
 def formula_values(run: StoredRun) -> list[FormulaValue]:

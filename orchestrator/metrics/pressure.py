@@ -15,7 +15,7 @@ from . import names
 from .cushion import cushions, cut_off, thickness_at_start
 from .energy import driven
 from .filtering import low_pass
-from .roles import all_samples, column, owners, parameter
+from .roles import all_samples, column, owners, positive
 from .values import Samples, of_each
 
 HALF, MOST = 0.5, 0.9
@@ -90,7 +90,7 @@ def roof_pressure(run: StoredRun, cushion: str) -> RoofPressure | None:
     RoofPressure or None
         None without a structure, or where its forces were not recorded.
     """
-    width = parameter(run, cushion, Role.EFFECTIVE_WIDTH)
+    width = positive(run, cushion, Role.EFFECTIVE_WIDTH)
     below = owners(run, Role.ALONG)
     if not width or len(below) != 1:
         return None
@@ -103,7 +103,7 @@ def roof_pressure(run: StoredRun, cushion: str) -> RoofPressure | None:
     shown = [_slow(run.series["time"], force, fastest) for force in -forces]
     depth = column(run, cushion, Role.PENETRATION)
     turning = len(forces[0]) - 1 if depth is None else int(run.series[depth].argmax())
-    return RoofPressure(places[:, 0], np.array(shown) / (length * float(width)), length, turning)
+    return RoofPressure(places[:, 0], np.array(shown) / (length * width), length, turning)
 
 
 def _slow(time: Samples, force: Samples, fastest: float | None) -> Samples:
@@ -147,5 +147,4 @@ def striking_radius(run: StoredRun) -> float | None:
         The run.
     """
     bodies = owners(run, Role.STRIKING)
-    radius = parameter(run, bodies[0], Role.BODY_RADIUS) if len(bodies) == 1 else None
-    return float(radius) if radius else None
+    return positive(run, bodies[0], Role.BODY_RADIUS) if len(bodies) == 1 else None

@@ -184,3 +184,25 @@ def parameter(run: StoredRun, component: str, role: Role) -> Any:
     values = parameters(run, component)
     named = [m.variable for m in members(run, role) if m.component == component]
     return next((values[name] for name in named if name in values), None)
+
+
+def positive(run: StoredRun, component: str, role: Role) -> float | None:
+    """Return the value of a component's parameter with a role, where it is a positive number.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component : str
+        Name of the component in the system.
+    role : Role
+        The role that is asked for.
+
+    Returns
+    -------
+    float or None
+        In SI units; None also where a damaged file has something else.
+    """
+    value = parameter(run, component, role)
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) if is_number and value > 0.0 else None

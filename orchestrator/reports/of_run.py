@@ -9,7 +9,9 @@ from ..core.results.reading import StoredRun
 from ..metrics import contents
 from ..metrics.caption import models
 from ..metrics.contents import ForeignStateError
+from ..metrics.practice import formula_table
 from ..metrics.roles import parameters as values_of
+from ..metrics.width_band import width_band_table
 from ..pictures import RunPicture, pictures_of
 from ..runs.run import Run
 from ..tables import Table, digits
@@ -53,6 +55,7 @@ def report_of_run(
         *_warnings(run),
         *_results(run),
         *_formulas(run),
+        *_effective_width(run),
         *_illustrations(run),
         *_inputs(run),
         _assumptions(run),
@@ -146,7 +149,17 @@ def _formulas(run: StoredRun) -> Iterator[Chapter]:
             *_in_screen_unit(number_of(told, "value") or 0.0, str(told.get("unit", "1"))),
             *(str(told.get("source", "")), "; ".join(filter(None, doubts))),
         )
-    yield Chapter("Formulas of practice", tables=[made])
+    beside = formula_table(run)
+    deviations = [Table(beside.columns, beside.rows, beside.right, "deviation of this run")]
+    yield Chapter("Formulas of practice", tables=[*(deviations if len(beside) else []), made])
+
+
+def _effective_width(run: StoredRun) -> Iterator[Chapter]:
+    """Yield the band of the effective width, where it was computed."""
+    band = width_band_table(run)
+    if len(band):
+        text = "The same project with the smallest and the largest effective width of all rules."
+        yield Chapter("Effective width", [text], [band])
 
 
 def _in_screen_unit(value: float, unit: str) -> tuple[str, str]:

@@ -114,6 +114,22 @@ def test_a_design_tells_the_formulas_what_the_cushion_is_made_of():
     assert impact_of(replace(run, provenance=facts)).modulus == 10e6
 
 
+@pytest.mark.parametrize("design", ["none", {"cushion": 3}, {"cushion": {"modulus": "stiff"}}])
+def test_a_damaged_design_leaves_the_assumed_cushion(design):
+    run = with_roof()
+    facts = {**run.provenance, "design": design}
+    assert impact_of(replace(run, provenance=facts)) == impact_of(run)
+
+
+def test_a_mass_that_is_no_positive_number_gives_no_formulas():
+    run = with_roof()
+    for wrong in ("heavy", -4.0, True):
+        components = json.loads(json.dumps(run.provenance["components"]))
+        components["rock"]["parameters"]["mass"] = {"value": wrong}
+        facts = {**run.provenance, "components": components}
+        assert formula_values(replace(run, provenance=facts)) == []
+
+
 def test_formulas_are_references_of_the_peak_force():
     run = with_roof()
     metrics = Metrics(with_formulas(headlines(run), formula_values(run)))

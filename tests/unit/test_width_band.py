@@ -8,6 +8,7 @@ from rockshed.analyses.shed import band as analysis
 from rockshed.core.errors import InputRefused
 from rockshed.metrics import names
 from rockshed.metrics.width_band import width_band_table
+from rockshed.reports.of_run import _effective_width
 from rockshed.runs.batch import COLUMNS, COMPLETE, FAILED, Outcome, Task, slim
 from rockshed.runs.request import Request
 from rockshed.runs.run import Run
@@ -75,7 +76,10 @@ def test_the_band_is_a_table_of_the_headlines():
         "2.00 m (this run)": "1,500",
         "3.00 m": "1,500",
     }
+    (chapter,) = _effective_width(run)
+    assert len(chapter.tables[0]) == 1
     assert len(width_band_table(made_up())) == 0
+    assert list(_effective_width(made_up())) == []
 
 
 def test_a_run_without_a_design_has_no_band():

@@ -103,6 +103,11 @@ class _References(_Shape):
     remarks: list[_Name] = []
 
 
+class _Width(_Shape):
+    width: _Positive
+    metrics: dict[_Name, float] = {}
+
+
 class _Run(_Shape):
     status: _Name
     name: _Name = ""
@@ -113,6 +118,7 @@ class _Run(_Shape):
     differences: dict[str, Any] = {}
     references: _References = _References()
     load_cell: _Positive | None = None
+    band: dict[_Name, _Width] = {}
 
 
 def check(provenance: Mapping[str, Any]) -> None:
