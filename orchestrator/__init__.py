@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .analyses.pile.run import pile
     from .analyses.rockfall.run import rockfall
     from .components.common.component import ComponentError
-    from .core.errors import InputRefused, Problem, RunFailed, UnknownName
+    from .core.errors import InputRefused, Problem, RunDoubted, RunFailed, UnknownName
     from .reports.writing import report
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
@@ -36,6 +36,7 @@ _HOMES = {
     "InputRefused": "core.errors",
     "Problem": "core.errors",
     "Run": "runs.run",
+    "RunDoubted": "core.errors",
     "RunFailed": "core.errors",
     "Subsystem": "runs.subsystem",
     "System": "runs.system",
@@ -63,6 +64,7 @@ __all__ = [
     "InputRefused",
     "Problem",
     "Run",
+    "RunDoubted",
     "RunFailed",
     "Subsystem",
     "System",

@@ -70,6 +70,9 @@ class Role(StrEnum):
     LOADED_POSITION = "position.loaded"
     """Way (m) of the point on which the load at rest acts, in the direction of that load."""
 
+    STRIKING_PLACE = "position.striking"
+    """Horizontal position (m) of the centre of a body that strikes."""
+
     DRIVEN = "motion.driven"
     """Parameter: ``driven`` or true where a machine moves the body."""
     BODY_MASS = "body.mass"
@@ -82,6 +85,10 @@ class Role(StrEnum):
     """Parameter: width (m) of a cushion out of the plane."""
     GRAIN_RADIUS = "grain.radius"
     """Parameter: radius (m) of the grains or discs of a cushion."""
+    BOX_LEFT = "box.left"
+    """Parameter: x (m) of the left side of the box that a cushion lies in."""
+    BOX_WIDTH = "box.width"
+    """Parameter: width (m) of that box."""
     CUSHION_WEIGHT = "weight.cushion"
     """Parameter: weight (N) of the cushion under which a structure is bent at the start."""
     LOAD_AT_REST = "load.at_rest"

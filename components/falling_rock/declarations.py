@@ -96,6 +96,7 @@ LAYOUT = Layout(
             "position of the centre, to the right",
             "m",
             initial_dependencies=("position0.x",),
+            role=Role.STRIKING_PLACE,
         ),
         out(
             "position.y",

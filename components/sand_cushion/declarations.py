@@ -173,7 +173,13 @@ def _beam_x(number: int, sizes: Sizes) -> float:
 LAYOUT = Layout(
     variables=(
         # the cushion
-        param("box.left", "x of the left side wall's inner face", 41.5 * cm, "m"),
+        param(
+            "box.left",
+            "x of the left side wall's inner face",
+            41.5 * cm,
+            "m",
+            role=Role.BOX_LEFT,
+        ),
         param(
             "box.width",
             "distance of the side walls",
@@ -182,6 +188,7 @@ LAYOUT = Layout(
             minimum=1e-6,
             source="Sonoda et al. 1993, fig. 2",
             plausible=Plausible(1e-2, 200.0, ("cm", "mm")),
+            role=Role.BOX_WIDTH,
         ),
         param(
             "box.wall_height",

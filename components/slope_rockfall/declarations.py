@@ -384,7 +384,12 @@ LAYOUT = Layout(
             "N.m",
         ),
         # outputs
-        out("position.x", "position of the centre, to the right", "m"),
+        out(
+            "position.x",
+            "position of the centre, to the right",
+            "m",
+            role=Role.STRIKING_PLACE,
+        ),
         out("position.y", "position of the centre, upwards", "m"),
         out("angle", "angle, counter-clockwise", "rad"),
         out("velocity.x", "velocity, to the right", "m/s"),

@@ -8,6 +8,8 @@ kept in ``docs/results``. Then every text between ``<!-- table: PAPER/NAME -->``
 import sys
 from pathlib import Path
 
+from rockshed.core.errors import InputRefused
+
 from .filling import PAGES, ROOT, filled
 from .kept import NotKeptError, take
 
@@ -23,7 +25,7 @@ def main(folders: list[str]) -> int:
             if new != text:
                 (ROOT / page).write_text(new, encoding="utf-8")
                 print(f"filled: {page}")
-    except NotKeptError as reason:
+    except (NotKeptError, InputRefused) as reason:
         print(reason, file=sys.stderr)
         return 2
     return 0

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from rockshed.core.results.reading import undamaged
 from rockshed.papers.kernel_stamps import stamps
 from rockshed.papers.reproduction import DATA, PAPERS, studies
 
@@ -92,25 +93,49 @@ def take(folder: Path) -> Path:
     ------
     NotKeptError
         The reproduction is none of all studies with all seeds, or has not ended.
+    InputRefused
+        Its file is damaged.
     """
-    content = json.loads((folder / DATA).read_text(encoding="utf-8"))
-    paper = next(name for name, title in PAPERS.items() if title == content["paper"])
+    paper, text = finished(folder)
+    file = file_of(paper)
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    kept.cache_clear()
+    return file
+
+
+def finished(folder: Path) -> tuple[str, str]:
+    """Return the paper of a finished reproduction, and what is kept of it.
+
+    Parameters
+    ----------
+    folder : Path
+        Of ``rockshed reproduce``.
+
+    Raises
+    ------
+    NotKeptError
+        The reproduction is none of all studies with all seeds, or has not ended.
+    InputRefused
+        Its file is damaged.
+    """
+    with undamaged(folder / DATA):
+        content = json.loads((folder / DATA).read_text(encoding="utf-8"))
+        paper = {title: name for name, title in PAPERS.items()}[content["paper"]]
+        text = as_text(content)
+        there = [study["name"] for study in content["studies"]]
+        statuses = [run["status"] for run in content["runs"]]
     if content["quick"]:
         raise NotKeptError(f"{folder}: is a quick reproduction; tables need all seeds")
-    there = [study["name"] for study in content["studies"]]
     if missing := [study.name for study in studies(paper) if study.name not in there]:
         raise NotKeptError(
             f"{folder}: lacks {', '.join(missing)}; tables are those of one reproduction"
         )
-    if any(run["status"] == "interrupted" for run in content["runs"]):
+    if "interrupted" in statuses:
         raise NotKeptError(
             f"{folder}: was interrupted; start the same reproduction again to finish it"
         )
-    file = file_of(paper)
-    file.parent.mkdir(exist_ok=True)
-    file.write_text(as_text(content), encoding="utf-8")
-    kept.cache_clear()
-    return file
+    return paper, text
 
 
 def outdated(paper: str, content: Mapping[str, Any]) -> list[str]:

@@ -1,7 +1,7 @@
 """The ready-made cases by name: their components, sizes, couplings and references."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache, partial
@@ -52,6 +52,9 @@ class Case:
     references : callable
         ``references(changed)`` returns what others found, for a run with other values or sizes by
         ``component.name``.
+    model : str or None
+        Model of the sand that fits the case best, where none is asked for; None for the case as
+        it is.
     other_names : tuple of str
         Further names of the case.
     follows : mapping of str to str
@@ -76,6 +79,7 @@ class Case:
     derived: Callable[[SystemSpec, ComponentSizes], Mapping[str, Value]] = lambda system, sizes: {}
     layer: SandLayer | None = None
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
+    model: str | None = None
     other_names: tuple[str, ...] = ()
     follows: Mapping[str, str] = field(default_factory=dict)
     described: Callable[[SystemSpec, SystemSpec, ComponentSizes], str] = _as_it_is
@@ -216,6 +220,31 @@ def differences(
         if number != own.get(owner, {}).get(size)
     }
     return values | others
+
+
+def told_once(
+    chosen: Case, base: SystemSpec, differing: Mapping[str, Value], asked: Collection[str]
+) -> dict[str, Value]:
+    """Return differences in which a value that several components take stands once.
+
+    Parameters
+    ----------
+    chosen : Case
+        The case that is run.
+    base : SystemSpec
+        The system of the case.
+    differing : mapping of str to Value
+        From :func:`differences`.
+    asked : collection of str
+        Names that were given; the first of them stands for the others.
+    """
+    groups = [{key, *entry.targets} for key, entry in base.shared.items()]
+    left_out: set[str] = set()
+    for group in [*groups, {*chosen.one_size}]:
+        names = [name for name in differing if name in group]
+        first = [*(name for name in asked if name in names), *names][:1]
+        left_out |= {*names} - {*first}
+    return {name: value for name, value in differing.items() if name not in left_out}
 
 
 def references(chosen: Case, differing: Mapping[str, Value]) -> References:
@@ -443,6 +472,7 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         references=partial(full_scale.references, impact),
         layer=layer,
         described=partial(described, layer),
+        model=full_scale.GIRDERS_MODEL if impact.span else None,
     )
 
 

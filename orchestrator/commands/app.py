@@ -89,8 +89,8 @@ app = typer.Typer(
     help="Rockfall protection as FMI co-simulation: falling rock, sand cushion and beam as FMUs.",
     epilog="`rockshed run lab-impact` is where to begin; `rockshed COMMAND --help` tells the "
     "options. Exit codes: 0 done, 1 the run failed (what was computed is kept), 2 refused (nothing "
-    "was computed or left behind), 3 a check failed, 130 interrupted with Ctrl-C (what was "
-    "computed is kept).",
+    "was computed or left behind), 3 a check failed or a strict run has warnings, 130 interrupted "
+    "with Ctrl-C (what was computed is kept).",
     **_STYLE,
 )
 

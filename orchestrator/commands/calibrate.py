@@ -10,13 +10,14 @@ import typer
 from ..analyses.calibration.files import DATA
 from ..analyses.calibration.measurement import Measurement, of_text, table_4
 from ..analyses.calibration.result import CalibrationResult
-from ..analyses.calibration.run import MeasurementLike, calibrate, measurements_of
+from ..analyses.calibration.run import COMPUTED, MeasurementLike, calibrate, measurements_of
 from ..core.errors import InputRefused, Problem, RunFailed
+from ..runs.building import is_cold
 from .analysis import options_named, stages
 from .assignments import values_of
 from .options import Assignments, Json, Quiet, Workers
 from .results_place import Origin, free_folder
-from .screen import RUN_FAILED, Screen, opened
+from .screen import COLD_START, RUN_FAILED, Screen, opened
 
 PAPER = "sonoda1993"
 """Name of the six tests of table 4, in the place of a file."""
@@ -74,6 +75,8 @@ def command(
         if problems:
             raise InputRefused(problems)
         measurement = measurement_from(target, stiffness)
+        if is_cold(COMPUTED):
+            screen.note(COLD_START)
         try:
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = calibrate(

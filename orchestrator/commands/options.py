@@ -45,7 +45,7 @@ ModelName = Annotated[
     typer.Option(
         "--model",
         metavar="calibrated|literal|one-law",
-        help="Model of the sand of a case; default calibrated.",
+        help="Model of the sand of a case; default calibrated, on girders one-law.",
     ),
 ]
 Target = Annotated[

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.errors import Problem, RunFailed
+from ..core.errors import Problem, RunFailed, counted
 from ..core.supervisor import announce
 from ..core.system.clock import seconds_in
 from ..metrics.width_band import width_band_table
@@ -30,7 +30,7 @@ from .options import (
     Target,
 )
 from .results_place import results_folder
-from .screen import COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
+from .screen import CHECK_FAILED, COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
 from .streams import stdout_for_results, tell_leftovers
 
 _OF_CASES = ("values", "sizes", "coupling", "model", "load_cell", "runtime", "in_process")
@@ -84,6 +84,9 @@ _Tolerance = Annotated[
 _AllowUnstable = Annotated[
     bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")
 ]
+_Strict = Annotated[
+    bool, typer.Option("--strict", help="End with exit code 3 if the run has any warning.")
+]
 _LoadCell = Annotated[
     float | None,
     typer.Option(
@@ -131,6 +134,7 @@ def command(
     runtime: _Runtime = AUTO,
     in_process: _InProcess = False,
     band: _Band = False,
+    strict: _Strict = False,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,

@@ -70,6 +70,23 @@ class RunFailed(Exception):  # noqa: N818
         super().__init__(f"{component} at t = {time:.9g} s: {what}")
 
 
+class RunDoubted(Exception):  # noqa: N818
+    """A complete run has warnings, and none was allowed (``strict``). Its results are kept.
+
+    Attributes
+    ----------
+    run : Any
+        With all results.
+    """
+
+    def __init__(self, run: Any) -> None:
+        self.run = run
+        super().__init__(
+            f"the run has {counted(len(run.warnings), 'warning')}, and none is allowed (strict):\n"
+            + "\n".join(run.warnings)
+        )
+
+
 class UnknownName(KeyError):  # noqa: N818
     """There is nothing of this name. The message names those that come nearest."""
 

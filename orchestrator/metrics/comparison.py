@@ -37,6 +37,11 @@ class Scale:
     sign: str = ""
 
 
+_SETTLED = (
+    (names.SETTLED_TRANSMITTED, names.PEAK_TRANSMITTED),
+    (names.SETTLED_ROCK, names.PEAK_ROCK),
+)
+"""Metrics of filtered forces, and of the same forces as they are."""
 _FORCE = (Scale("kN", 2), Scale("kgf", 0))
 _ENERGY = (Scale("J", 2), Scale("kgf cm", 1))
 _TIME = (Scale("ms", 2),)
@@ -261,7 +266,7 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
         Why something is not compared, weights that are left out, where references that are only
         about right (≈) come from, and what the end of the run has cut off.
     """
-    remarks = list(_references(run).remarks)
+    remarks = [*_references(run).remarks, *_overshooting(run)]
     remarks += [
         f"{name}: its gravity is 0, so moment and reactions are those beyond its own weight"
         for name in weightless(run)
@@ -276,6 +281,18 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     ]
     still = [_STILL] if still_in_contact(run) else []
     return remarks + list(dict.fromkeys(origins)) + still
+
+
+def _overshooting(run: StoredRun) -> list[str]:
+    """Say why a settled maximum lies above the peak, where one does."""
+    values = {metric.name: metric.value for metric in headlines(run)}
+    return [
+        f"{settled}: is above the peak because the filter, which leaves out what is faster than "
+        f"{float(values[names.SETTLED_CUT_OFF]):.3g} Hz, overshoots where a force rises quickly; "
+        "the peak is the larger force that acts"
+        for settled, peak in _SETTLED
+        if settled in values and float(values[settled]) > float(values[peak])
+    ]
 
 
 def table(run: StoredRun, known: Mapping[str, Known]) -> Table:

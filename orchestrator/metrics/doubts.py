@@ -3,6 +3,8 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import kN, mm, ms
 
@@ -12,7 +14,7 @@ from . import contents, names
 from .cushion import cushions, thickness_at_start
 from .energy import driven, structures
 from .headlines import headlines
-from .roles import column, members, owners, parameter, parameters
+from .roles import column, members, owners, parameter, parameters, recorded
 
 _RESIDUAL_LIMIT = 0.01
 """Part of the impact energy that may be missing in the balance."""
@@ -22,6 +24,9 @@ _WEIGHT_LIMIT = 0.1
 """Random packs differ from their mean weight, and walls carry some of it."""
 _THINNEST = 3.0
 """Diameters of a grain that a layer needs under the body to be a cushion."""
+
+_NO_DEFLECTION = 1e-9
+"""Change (m) of a deflection up to which nothing has loaded a structure."""
 
 
 def warnings(run: StoredRun) -> list[str]:
@@ -68,6 +73,7 @@ def meaningless(run: StoredRun) -> list[str]:
     return [
         *([] if driven(run) else _different_gravity(run)),
         *(text for cushion in cushions(run) for text in _of_cushion(run, cushion)),
+        *(text for structure in structures(run) for text in _unloaded(run, structure)),
     ]
 
 
@@ -91,6 +97,7 @@ def _of_cushion(run: StoredRun, cushion: str) -> Iterator[str]:
     if not driven(run):
         yield from _untouched(run, cushion)
         yield from _gone_through(run, cushion)
+        yield from _gone_sideways(run, cushion)
 
 
 def _thickness(run: StoredRun, cushion: str) -> float:
@@ -151,6 +158,39 @@ def _gone_through(run: StoredRun, cushion: str) -> Iterator[str]:
             f"the rock has gone through the {cushion} and what carries it, by "
             f"{(depth - thickness) / mm:.4g} mm: the impact is beyond this model, and what came "
             "after means nothing"
+        )
+
+
+def _gone_sideways(run: StoredRun, cushion: str) -> Iterator[str]:
+    """Doubt an impact after which the body is no longer above the box of the cushion."""
+    left, width = (parameter(run, cushion, role) for role in (Role.BOX_LEFT, Role.BOX_WIDTH))
+    force = column(run, cushion, Role.ON_BODY)
+    places = [member.column for member in recorded(run, Role.STRIKING_PLACE)]
+    if left is None or width is None or force is None or len(places) != 1:
+        return
+    beside = np.abs(run.series[places[0]] - (left + 0.5 * width)) > 0.5 * width
+    touched = np.logical_or.accumulate(run.series[force] != 0.0)
+    rows = np.flatnonzero(beside & touched)
+    if rows.size:
+        when = f"{float(run.series['time'][rows[0]]) / ms:.4g} ms"
+        yield (
+            f"the rock leaves the {cushion} sideways: at {when} its centre is beyond the box, "
+            f"which reaches from x = {left:g} m to {left + width:g} m; what came after is no "
+            "impact on a cushion: move the rock, or widen the box"
+        )
+
+
+def _unloaded(run: StoredRun, structure: str) -> Iterator[str]:
+    """Doubt a structure that an impact leaves as it was."""
+    name = column(run, structure, Role.DEFLECTION)
+    if name is None or run.status != "complete" or not owners(run, Role.STRIKING):
+        return
+    deflection = run.series[name]
+    if np.ptp(deflection) <= _NO_DEFLECTION:
+        stays = f"{float(deflection[0]) / mm:.4g} mm"
+        yield (
+            f"the {structure} is never loaded: its deflection stays {stays} from the start to the "
+            "end; check what rests on it, its connections and the stop time"
         )
 
 

@@ -27,13 +27,14 @@ def line_through_origin(x: Sequence[float], y: Sequence[float]) -> tuple[float, 
     slope : float
         Slope of the line through the origin.
     r2 : float
-        Part of the variance of y that it explains.
+        Part of the variance of y that it explains; 0 where all y are the same, for there is none.
     """
     known = np.asarray(x, float)
     values = np.asarray(y, float)
     slope = float(known @ values / (known @ known))
     rest = np.sum((values - slope * known) ** 2)
-    return slope, float(1.0 - rest / np.sum((values - values.mean()) ** 2))
+    variance = np.sum((values - values.mean()) ** 2)
+    return slope, float(1.0 - rest / variance) if variance > 0.0 else 0.0
 
 
 def exponent_error(x: Sequence[float], y: Sequence[float]) -> float:

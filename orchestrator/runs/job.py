@@ -19,6 +19,7 @@ from ..cases.registry import (
     differences,
     model_changes,
     references,
+    told_once,
 )
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
@@ -294,6 +295,7 @@ def _from_case(
     base = chosen.make(files, sizes, coupling)
     given = {**request.values, **request.options}
     differing = differences(chosen, base, given, sizes, own_sizes(chosen, model.sizes))
+    differing = told_once(chosen, base, differing, [*request.values, *request.sizes])
     facts["differences"] = differing
     facts["references"] = references(chosen, differing).as_data()
     return Job(chosen.name, _with_model(base, model), sources, facts, chosen.models)

@@ -1,11 +1,14 @@
 """Runs that have ended, kept until all of a batch have: what is killed in between goes on there.
 
 A file for each run, named by everything that its result follows from: system, FMUs and program. It
-has numbers and JSON, is written whole, and one that is damaged is as if it were not there.
+has numbers and JSON, is written whole, and one that is damaged is as if it were not there. Other
+files in the folder are the user's, and stay.
 """
 
 import hashlib
 import json
+import math
+import re
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -22,6 +25,9 @@ from .outcome import Outcome
 
 FINISHED = ".finished-runs"
 """Folder, among the results of a batch, of its runs that have ended, until all have."""
+_NAME = re.compile(r"run-[0-9a-f]{32}\.npz")
+"""Name of a file of this module, which ends in the beginning of a digest."""
+_TEXTS, _TABLES = ("status", "error"), ("metrics", "options", "fmus")
 _PROGRAM = ("core", "metrics", "runs")
 """Rooms of the package from which the outcome of a run follows, besides the FMUs."""
 _DAMAGED = (
@@ -30,6 +36,7 @@ _DAMAGED = (
     LookupError,
     TypeError,
     EOFError,
+    MemoryError,  # of an array that says that it is huge
     RuntimeError,  # a flag says that a member is encrypted, or packed in a way that is not known
     zipfile.BadZipFile,
     zlib.error,
@@ -83,7 +90,8 @@ class KeptRuns:
     def clear(self) -> None:
         """Remove all outcomes, and the folder if it holds nothing else."""
         for file in self.folder.glob("run-*.npz"):
-            file.unlink(missing_ok=True)
+            if _NAME.fullmatch(file.name) and file.is_file() and not file.is_symlink():
+                file.unlink(missing_ok=True)
         with suppress(OSError):
             self.folder.rmdir()
 
@@ -138,4 +146,32 @@ def _read(file: Path, key: str) -> Outcome:
         columns = facts["columns"]
         series = {name: stored[f"column-{i}"] for i, name in enumerate(columns)}
     rest = {name: value for name, value in facts.items() if name not in ("columns", "key")}
-    return Outcome(key, series=series, **rest)
+    outcome = Outcome(key, series=series, **rest)
+    if not (_is_formed(outcome) and _is_of_rows(series)):
+        raise ValueError("it has values of another kind")
+    return outcome
+
+
+def _is_formed(outcome: Outcome) -> bool:
+    """Tell whether the facts of an outcome are of their types, and its numbers finite."""
+    numbers = [*outcome.metrics.values(), outcome.wall_time]
+    return (
+        all(isinstance(getattr(outcome, name), str) for name in _TEXTS)
+        and all(isinstance(getattr(outcome, name), dict) for name in _TABLES)
+        and all(isinstance(value, str) for value in outcome.fmus.values())
+        and all(type(value) in (int, float) and math.isfinite(value) for value in numbers)
+        and outcome.failed_at is None  # what is kept is complete
+    )
+
+
+def _is_of_rows(series: Mapping[str, Any]) -> bool:
+    """Tell whether all columns are finite numbers, one for each row."""
+    import numpy as np
+
+    kinds = {(column.dtype, column.shape) for column in series.values()}
+    return (
+        all(isinstance(name, str) for name in series)
+        and all(dtype == np.float64 and len(shape) == 1 for dtype, shape in kinds)
+        and len(kinds) <= 1
+        and all(np.isfinite(column).all() for column in series.values())
+    )

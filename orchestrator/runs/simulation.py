@@ -9,7 +9,7 @@ from typing import Any
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import Component
 
-from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.errors import InputRefused, Problem, RunDoubted, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.metric import Metrics
 from ..core.results.reading import add_facts, add_metrics
@@ -33,6 +33,7 @@ def simulate(
     progress: Progress | None = None,
     allow_unstable: bool = False,
     note: Note = silent,
+    strict: bool = False,
 ) -> Run:
     """Run a system. Ctrl-C ends the run and keeps what was computed.
 
@@ -52,6 +53,8 @@ def simulate(
         Run also with steps above the stable ones.
     note : callable, optional
         Called with a line before the run if its results will be large.
+    strict : bool
+        Take a complete run with any warning for an error.
 
     Returns
     -------
@@ -64,6 +67,9 @@ def simulate(
         The system does not fit its FMUs, or the folder cannot be had; nothing has been computed.
     RunFailed
         The run began and could not go on; its attribute ``run`` has the results until then.
+    RunDoubted
+        With ``strict``, the run is complete and has warnings; its attribute ``run`` has the
+        results.
 
     Examples
     --------
@@ -90,7 +96,10 @@ def simulate(
         if temporary:
             temporary.cleanup()
         raise
-    return _kept(measured(place), temporary)
+    done = _kept(measured(place), temporary)
+    if strict and done.status == "complete" and done.warnings:
+        raise RunDoubted(done)
+    return done
 
 
 def _system(system: System | str) -> System:

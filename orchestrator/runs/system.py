@@ -8,6 +8,8 @@ from typing import Any
 
 from rockshed.components.common.component import Component, ComponentError
 
+from ..cases.registry import case as case_of
+from ..cases.registry import is_case
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.system import (
@@ -98,6 +100,7 @@ class System:
         InputRefused
             Everything that is wrong with the request.
         """
+        request = _with_model(request)
         return cls(prepare(request, note, problems), request)
 
     @classmethod
@@ -498,6 +501,13 @@ def _in_process(name: str, made: Component, sizes: Mapping[str, int] | None) -> 
         raise InputRefused(problems) from error
 
 
+def _with_model(request: Request) -> Request:
+    """Return a request with the model of the sand that its case is best run with."""
+    if request.model is not None or not is_case(request.target):
+        return request
+    return replace(request, model=case_of(request.target).model)
+
+
 def _ends(bond: str, names: str | Sequence[str]) -> tuple[str, list[str]]:
     """Return the component that outputs belong to, and their names without it.
 
@@ -531,7 +541,8 @@ def case(
     name : str
         Name of a case, as ``rockshed list`` shows them.
     model : str, optional
-        Model of the sand: ``calibrated``, ``literal`` or ``one-law``.
+        Model of the sand: ``calibrated``, ``literal`` or ``one-law``. By default that of the case:
+        ``one-law`` on girders, else ``calibrated``.
     coupling : str, optional
         Scheme of exchange, by default the first of the case.
     values : mapping of str to Value, optional

@@ -1,5 +1,6 @@
 """Results, states and archives that are damaged, or made to do harm: they are read, or refused in words."""
 
+import json
 import os
 import random
 import shutil
@@ -12,18 +13,31 @@ import numpy as np
 import pytest
 
 import rockshed
+from docs.tables.kept import NotKeptError, finished
 from rockshed import pictures
+from rockshed.analyses.calibration import files as calibration
+from rockshed.analyses.calibration.fit import fit
+from rockshed.analyses.calibration.measurement import of_stiffness
+from rockshed.analyses.calibration.search import Calibration
+from rockshed.analyses.frame import shared_folder, whole_folder
 from rockshed.analyses.saved import saved_result
 from rockshed.core.errors import InputRefused
 from rockshed.core.fmu.fmu_slave import FmuFile
 from rockshed.core.loop.journal import FILE, LEGEND, last_entry
+from rockshed.core.results.own_files import refuse_foreign
 from rockshed.core.results.run_folder import RunFolder
+from rockshed.core.system.system import system_from
 from rockshed.files import write_json
 from rockshed.fmus.build import Fmi, Runtime, build
 from rockshed.metrics.contents import ForeignStateError, decoded
 from rockshed.metrics.headlines import headlines
+from rockshed.papers.reproduction import DATA, PAGE
 from rockshed.runs.inspection import describe_fmu, describe_system
 from rockshed.runs.job import Request, prepare
+from rockshed.runs.kept import FINISHED, KeptRuns
+from rockshed.runs.outcome import Outcome
+from tests.docs.test_tables import reproduction
+from tests.unit.test_calibration import pushes
 from tests.unit.test_hostile_inputs import EXAMPLES, mutated
 
 DESCRIPTION = "modelDescription.xml"
@@ -32,6 +46,8 @@ LONGEST = 20.0
 MANY = int(os.environ.get("ROCKSHED_DAMAGES", "400"))
 """Damages of each kind of the long test."""
 TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
+MINE = "notes.txt"
+"""File of the user's beside results."""
 SYSTEM = """
 name = "one"
 exchange_step = 0.01
@@ -119,6 +135,38 @@ def journal_read(folder: Path) -> None:
     assert last_entry(folder, "SIGSEGV")
 
 
+def written_again(folder: Path) -> None:
+    """As `rockshed calibrate` and `rockshed run` write over what is there."""
+    with suppress(InputRefused), shared_folder(folder, calibration.NAMES) as place:
+        (place / calibration.DATA).write_text("{}")
+    assert (folder / MINE).read_text() == MINE
+    with suppress(InputRefused), whole_folder(folder) as place:
+        (place / "run.json").write_text("{}")
+    assert (folder / MINE).read_text() == MINE
+
+
+def reproduction_read(folder: Path) -> None:
+    """As `rockshed reproduce` and the tables of the documentation take it."""
+    with suppress(InputRefused):
+        refuse_foreign(folder, (DATA, PAGE), "take another folder")
+    with suppress(NotKeptError):
+        finished(folder)
+    assert (folder / MINE).read_text() == MINE
+
+
+def kept_run_read(folder: Path) -> None:
+    runs = KeptRuns(folder / FINISHED)
+    found = runs.find("task", a_system(), False)
+    if found is not None:
+        assert found.status + found.error + "".join(found.fmus.values()) is not None
+        assert np.isfinite([*found.metrics.values(), found.wall_time]).all()
+        assert all(np.isfinite(column).all() for column in found.series.values())
+        assert len({column.shape for column in found.series.values()}) <= 1
+        assert dict(found.options) is not None
+    runs.clear()
+    assert {file.name for file in runs.folder.iterdir()} == {MINE, "run-of-mine.npz"}
+
+
 # --- what is made once
 
 
@@ -167,6 +215,36 @@ def a_journal(place: Path) -> None:
     np.array([1, 0]).tofile(place / FILE)
 
 
+def a_calibration(place: Path) -> None:
+    place.mkdir()
+    made = Calibration("locked", {}, [fit(of_stiffness(57e3, "k"), pushes())], pushes())
+    calibration.write_files([made], ["a remark"], place)
+    (place / MINE).write_text(MINE)
+
+
+def a_reproduction(place: Path) -> None:
+    reproduction(place)
+    (place / PAGE).write_text("a page")
+    (place / MINE).write_text(MINE)
+
+
+def a_system():
+    """A system whose FMU is any file: it is not run."""
+    components = {"sand": {"fmu": __file__}}
+    return system_from(
+        {"name": "kept", "components": components, "exchange_step": 1.0, "stop_time": 1.0}
+    )
+
+
+def a_kept_run(place: Path) -> None:
+    series = {name: np.linspace(0.0, 1.0, 50) for name in ("time", "sand.force")}
+    kinds = {"metrics": {"peak": 2.0}, "options": {"packing": "square"}, "fmus": {"sand": "0f"}}
+    outcome = Outcome("task", "complete", series=series, **kinds, wall_time=3.0)
+    KeptRuns(place / FINISHED).keep(a_system(), False, outcome)
+    for name in (MINE, "run-of-mine.npz"):
+        (place / FINISHED / name).write_text(MINE)
+
+
 # --- what is damaged: a file of what was made, or a member of an archive
 
 
@@ -187,7 +265,47 @@ def member(folder: Path, name: str, chance: random.Random) -> None:
             archive.writestr(entry, data)
 
 
+def request(folder: Path, name: str, chance: random.Random) -> None:
+    """Damage the request that a run keeps, and leave the rest."""
+    content = json.loads((folder / name).read_text())
+    asked = content["request"] | {"values": {"sand.modulus": 3e6}, "sizes": {"sand.discs": 360}}
+    while True:
+        with suppress(ValueError, RecursionError):
+            content["request"] = json.loads(mutated(json.dumps(asked).encode(), chance))
+            break
+    write_json(folder / name, content)
+
+
+def inside(folder: Path, name: str, chance: random.Random) -> None:
+    """Damage the facts in a kept run, in an archive that is whole."""
+    (file,) = (path for path in (folder / FINISHED).glob("run-*.npz") if len(path.name) > 30)
+    with np.load(file) as stored:
+        arrays = dict(stored)
+    if name == "facts":
+        facts = mutated(arrays["facts"].tobytes(), chance)
+        arrays["facts"] = np.frombuffer(facts, np.uint8)
+    else:
+        others = (
+            np.zeros(50, complex),
+            np.zeros((2, 3)),
+            np.array(["a"] * 50),
+            np.full(50, np.nan),
+        )
+        arrays[f"column-{chance.randrange(2)}"] = chance.choice(others)
+    np.savez(file, **arrays)
+
+
+def kept_whole(folder: Path, name: str, chance: random.Random) -> None:
+    (file,) = (path for path in (folder / FINISHED).glob("run-*.npz") if len(path.name) > 30)
+    file.write_bytes(damaged(file.read_bytes(), chance))
+
+
 KINDS = {
+    "request of a run": (a_run, run_read, request, ("run.json",)),
+    "calibration": (a_calibration, written_again, whole, (calibration.DATA,)),
+    "reproduction": (a_reproduction, reproduction_read, whole, (DATA,)),
+    "kept run": (a_kept_run, kept_run_read, kept_whole, ("",)),
+    "content of a kept run": (a_kept_run, kept_run_read, inside, ("facts", "columns")),
     "run": (a_run, run_read, whole, ("run.json", "summary.json", "columns.csv")),
     "binary files of a run": (a_run, run_read, whole, ("timeseries.parquet", "states.h5")),
     "killed run": (a_killed_run, run_read, whole, ("timeseries.arrows", "states.arrows")),

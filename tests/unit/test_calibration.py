@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import rockshed.commands.calibrate
 from rockshed.analyses.calibration import search as calibration
 from rockshed.analyses.calibration.fit import Push, Unreachable, fit
 from rockshed.analyses.calibration.measurement import Measurement, of_stiffness
@@ -13,7 +14,7 @@ from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.metrics.load_curve import LoadCurve
-from rockshed.runs import batch
+from rockshed.runs import batch, first_compilation
 from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome
 from rockshed.runs.kept import FINISHED
 
@@ -185,6 +186,14 @@ def test_what_the_calibration_chooses_cannot_be_set():
     ]
 
 
+def test_the_first_compilation_of_kernels_is_told(sand, monkeypatch, caplog):
+    monkeypatch.setattr(first_compilation, "has_kernels", lambda folder: False)
+    monkeypatch.setattr(first_compilation, "_told", set())
+    sand()
+    calibrate(38e3, seeds=2)
+    assert "compiling kernels of FallingRock, SandCushion, once on this machine" in caplog.text
+
+
 # ------------------------------------------------------------------ the command
 
 
@@ -215,6 +224,12 @@ def test_bad_input_is_refused(command, arguments, words):
     result = command(*arguments)
     assert result.exit_code == 2
     assert words in " ".join(result.stderr.split())
+
+
+def test_the_command_says_that_kernels_are_compiled(command, sand, monkeypatch):
+    monkeypatch.setattr(rockshed.commands.calibrate, "is_cold", lambda names: True)
+    sand()
+    assert "compiling kernels, first run only" in command("--stiffness", "38 kN/m").stderr
 
 
 def test_exit_codes_of_what_goes_wrong_later(command, sand):

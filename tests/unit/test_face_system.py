@@ -42,7 +42,7 @@ def test_values_that_follow_from_others_are_adapted():
     "name", ["lab-impact", "lab-impact-13", "static-test", "rigid-base-pit", "girders-10"]
 )
 def test_a_rock_starts_as_far_above_sand_of_finer_discs_as_above_the_sand_of_the_case(name):
-    case = rockshed.case(name, in_process=True)
+    case = rockshed.case(name, model="calibrated", in_process=True)
     radius = value(case, "sand", "disc.radius") if "disc.radius" in of_sand(case) else 0.005
     discs = case.job.facts["sizes"]["sand"]["discs"]
     finer = case.with_sizes({"sand.discs": 4 * discs})
@@ -224,3 +224,11 @@ def test_a_system_shows_itself_in_a_line_and_is_described_in_tables():
     assert "order sand, rock, beam; exchange every 1e-05 s" in described
     assert "rock_mass" in described
     assert "<table>" in system.describe()._repr_html_()
+
+
+def test_girders_begin_with_the_model_of_the_sand_that_fits_them():
+    sand = of_sand(rockshed.case("girders-10", in_process=True))
+    assert (sand["packing"], sand["unloading_ratio"]) == ("prepared", 3.0)
+    asked = of_sand(rockshed.case("girders-10", model="calibrated", in_process=True))
+    assert "packing" not in asked
+    assert rockshed.case("lab-impact", in_process=True).job.facts.get("model") is None

@@ -448,6 +448,21 @@ def test_changed_values_and_sizes_are_named():
     assert "changed: rock.mass = 8, sand.discs = 740" in comparison.caption(run)
 
 
+@pytest.mark.parametrize("asked", ["rock.mass", "sand.rock.mass", "rock_mass"])
+def test_a_value_that_several_take_is_named_once_as_it_was_given(asked):
+    facts = prepare(Request("girders-10", {asked: 2500.0}, in_process=True)).facts
+    assert facts["differences"] == {asked: 2500.0}
+    both = {asked: 2500.0, "sand.rock.mass": 2500.0}
+    facts = prepare(Request("girders-10", both, in_process=True)).facts
+    assert facts["differences"] == {asked: 2500.0}
+
+
+def test_a_size_that_several_share_is_named_once_as_it_was_given():
+    facts = prepare(Request("girders-10", sizes={"beam.elements": 24}, in_process=True)).facts
+    assert facts["differences"] == {"beam.elements": 24}
+    assert facts["references"]["remarks"] == ["not compared: beam.elements differs from the test"]
+
+
 def test_a_load_cell_under_a_box_does_not_see_what_accelerates_the_box():
     """A quarter of what varies in the force moves the box: the peak over the level at rest is less by it."""
     run = made_up()

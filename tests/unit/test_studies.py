@@ -30,6 +30,7 @@ from rockshed.papers.statistics import (
     constant,
     in_proportion,
     leave_one_out,
+    line_through_origin,
     mean_absolute_error,
     mean_of_equals,
     power_law,
@@ -208,6 +209,7 @@ class AnyMetric(dict):
         return self[name]
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_every_study_makes_its_rows_from_what_a_batch_records():
     time = np.linspace(0.0, 0.03, 301)
     recorded = (*batch.COLUMNS, *(f"coupling.sand_{it}.energy" for it in ("rock", "beam")))
@@ -271,6 +273,11 @@ def test_a_power_law_is_found_again_and_predicts_what_was_left_out():
     assert mean_absolute_error(leave_one_out(list(x), list(y), by_power_law), y) == pytest.approx(
         0.0, abs=1e-12
     )
+
+
+def test_a_line_explains_nothing_of_what_does_not_vary():
+    assert line_through_origin([1.0, 2.0, 4.0], [3.0, 6.0, 12.0]) == pytest.approx((3.0, 1.0))
+    assert line_through_origin([1.0, 2.0], [2.0, 2.0]) == (pytest.approx(1.2), 0.0)
 
 
 def test_a_value_is_predicted_without_itself():

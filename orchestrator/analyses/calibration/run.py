@@ -5,9 +5,12 @@ from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 
+from rockshed.components.catalogue import component
+
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...runs.building import Note, silent
+from ...runs.first_compilation import tell_first_compilation
 from ...runs.kept import FINISHED, KeptRuns
 from ..frame import StageProgress, counter, no_progress
 from .curve_file import read_curve
@@ -15,6 +18,8 @@ from .measurement import Measurement, is_spring_constant, of_stiffness, of_text
 from .result import CalibrationResult
 from .search import ROTATIONS, SOUGHT, Means, by_misfit, calibration_of
 
+COMPUTED = ("FallingRock", "SandCushion")
+"""Components of the static test, by their names in the catalogue."""
 BEST = "fit"
 """Name of the choice of the rotation model that has the curve."""
 
@@ -89,6 +94,7 @@ def calibrate(
     means = Means(workers, note, counter(show, "static tests"), kept)
     with ExitStack() as opened:
         place = opened.enter_context(CalibrationResult.opened(folder)) if folder else None
+        tell_first_compilation(map(component, COMPUTED))
         calibrations, refused = by_misfit(
             {
                 model: partial(calibration_of, measurements, model, changes, seeds, means)

@@ -147,10 +147,10 @@ def of_model(model: str, outcomes: Outcomes) -> Prediction | None:
     Returns
     -------
     Prediction or None
-        None if a test has no result.
+        None if a test has no result, or no force: nothing is in proportion to zero.
     """
     forces = [_forces(model, number, outcomes) for number in sonoda1993.tests()]
-    if not all(forces):
+    if not all(values and mean(values) > 0.0 for values in forces):
         return None
     x = {n: mean(values) for n, values in zip(sonoda1993.tests(), forces, strict=True)}
     where = {

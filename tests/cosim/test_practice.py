@@ -1,0 +1,39 @@
+"""What an engineer's first day meets, and no other test shows: ends at once, and what a kill leaves."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from typer.testing import CliRunner
+
+from rockshed.commands.app import app
+from rockshed.core.results.run_folder import RunFolder, running_folder
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends a signal")
+@pytest.mark.parametrize("after", [0.05, 0.15, 0.4])
+def test_ctrl_c_right_after_the_start_ends_in_words(tmp_path, after):
+    command = [sys.executable, "-P", "-m", "rockshed", "run", "lab-impact", "--in-process"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    time.sleep(after)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=120)
+    begun = "rockshed" in told  # else Python itself had not begun yet, and says so at length
+    assert not (begun and "Traceback" in told), told
+    assert process.returncode in (1, 130, -signal.SIGINT)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_was_killed_before_its_first_row_is_called_that(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with RunFolder(tmp_path / "run") as results:
+        results.begin([], {"name": "x", "status": "running", "components": {}, "system": {}})
+        kept = running_folder(tmp_path / "run").rename(tmp_path / "kept")
+    kept.rename(running_folder(tmp_path / "run"))
+    shown = CliRunner().invoke(app, ["plot", "run"], env={"COLUMNS": "300"})
+    said = " ".join(shown.stderr.split())
+    assert shown.exit_code == 2, shown.output
+    assert "no folder of a run" not in said
+    assert "killed" in said

@@ -1,0 +1,92 @@
+"""Doubts about a run and its title, from made-up results that are known to be doubtful."""
+
+import numpy as np
+import pytest
+
+import rockshed
+from rockshed.metrics import comparison
+from rockshed.metrics.caption import title
+from rockshed.metrics.doubts import meaningless
+from tests.unit.test_headlines import made_up
+
+
+def boxed(**columns):
+    """A run whose box of sand reaches from x = 0 to 0.4 m; the rock touches the sand from the start on."""
+    run = made_up(**columns)
+    sand = run.provenance["components"]["sand"]["parameters"]
+    sand.update({"box.left": {"value": 0.0}, "box.width": {"value": 0.4}})
+    return run
+
+
+WAY = np.linspace(0.0, 1.0, 401)
+
+
+def test_a_rock_that_leaves_the_box_sideways_after_it_has_struck_is_told_with_the_time():
+    (said,) = meaningless(boxed(**{"rock.position.x": 0.2 + 0.4 * WAY}))
+    assert "the rock leaves the sand sideways: at 10.05 ms" in said
+    assert "from x = 0 m to 0.4 m" in said
+
+
+def test_a_rock_that_comes_from_beside_the_box_is_not_doubted():
+    late = np.where(WAY > 0.6, 1e3, 0.0)  # it strikes when it is above the box
+    columns = {"sand.rock.force.y": late, "rock.position.x": -0.3 + 0.6 * WAY}
+    assert meaningless(boxed(**columns)) == []
+
+
+def test_a_beam_that_an_impact_leaves_as_it_was_is_told():
+    (said,) = meaningless(made_up(**{"beam.midspan.deflection": np.full(401, 2e-3)}))
+    assert "the beam is never loaded: its deflection stays 2 mm from the start to the end" in said
+    assert meaningless(made_up(**{"beam.midspan.deflection": 2e-3 + 1e-6 * WAY})) == []
+
+
+# ------------------------------------------------------------------ strict
+
+
+def idle_beam():
+    system = rockshed.System.new("idle", exchange_step=1e-4, stop_time=1e-3)
+    return system.add("beam", "RBSMBeam")
+
+
+def test_a_run_with_warnings_is_an_error_if_it_has_to_be_strict(tmp_path):
+    with pytest.raises(
+        rockshed.RunDoubted, match=r"1 warning.*strict.*\n.*nothing drives"
+    ) as doubted:
+        rockshed.simulate(idle_beam(), tmp_path / "run", strict=True)
+    assert doubted.value.run.status == "complete"
+    assert rockshed.read_run(tmp_path / "run").warnings == doubted.value.run.warnings
+
+
+def test_a_run_without_warnings_is_none(tmp_path):
+    system = idle_beam().with_values({"beam.force.y[12]": -1000.0})
+    assert rockshed.simulate(system, strict=True).warnings == []
+
+
+# ------------------------------------------------------------------ the title
+
+
+def titled(**differences):
+    run = made_up(**{"sand.clearance": 0.1 - 0.06 * WAY})
+    run.provenance["system"]["description"] = "a ball of 4 kg from 10 m"
+    named = {name.replace("__", "."): value for name, value in differences.items()}
+    run.provenance["differences"] = named
+    return title(run)
+
+
+def test_a_case_as_it_is_has_its_description_for_a_title():
+    assert titled() == "made-up: a ball of 4 kg from 10 m"
+    numerics = titled(sand__seed=2, exchange_step=1e-5, rock__internal_step=1e-6)
+    assert numerics == "made-up: a ball of 4 kg from 10 m"
+
+
+def test_a_case_with_other_values_has_a_title_of_these_values():
+    said = "made-up with other values: an impact of 0.1 kJ on 10 cm of sand"
+    assert titled(rock__mass=8.0) == said
+    assert titled(rock_mass=8.0) == said
+
+
+def test_a_settled_force_above_the_peak_is_explained():
+    late = np.where(np.linspace(0.0, 0.02, 401) > 0.01, 1e3, 0.0)  # a step: the filter overshoots
+    stepped = made_up(**{"sand.rock.force.y": late})
+    said = [text for text in comparison.notes(stepped, {}) if "above the peak" in text]
+    assert len(said) == 1
+    assert said[0].startswith("settled maximum of the force on the rock: is above the peak")
