@@ -1,5 +1,6 @@
 """What an engineer's first day meets, and no other test shows: ends at once, and what a kill leaves."""
 
+import json
 import signal
 import subprocess
 import sys
@@ -9,7 +10,41 @@ import pytest
 from typer.testing import CliRunner
 
 from rockshed.commands.app import app
+from rockshed.commands.results_place import results_folder
 from rockshed.core.results.run_folder import RunFolder, running_folder
+from rockshed.files import naming
+
+
+class Told:
+    """A screen that keeps what it is told."""
+
+    def __init__(self):
+        self.texts = []
+
+    def warn(self, text):
+        self.texts.append(text)
+
+
+def test_results_of_another_system_file_of_the_same_name_stay(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("results/system", "a", "b"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "results/system/run.json").write_text(json.dumps({"system_file": "a/system.toml"}))
+    screen = Told()
+    again = results_folder("system", "a/system.toml", {"system_file": "a/system.toml"}, screen)
+    assert (str(again), screen.texts) == ("results/system", [])
+    other = results_folder("system", "b/system.toml", {"system_file": "b/system.toml"}, screen)
+    assert str(other) == "results/system-2"
+    assert screen.texts == [
+        "results/system holds other results, which stay; these go into results/system-2"
+    ]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="has a device that is always full")
+def test_a_full_disk_is_told_with_the_file_that_was_written(tmp_path):
+    refused = pytest.raises(OSError, match=r"No space left on device: '.*rows.csv'")
+    with refused, naming(tmp_path / "rows.csv"), open("/dev/full", "w") as full:
+        full.write("1,2,3" * 10_000)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends a signal")
