@@ -153,14 +153,13 @@ def command(
         master=master,
         tolerance=tolerance,
     )
-    request = Request(
-        target, values, sizes, coupling, options, in_process, load_cell, model, runtime
-    )
+    asked = Request(target, values, sizes, coupling, options, in_process, load_cell, model, runtime)
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
         with stdout_for_results():
-            done = _simulate(request, problems, output_dir, allow_unstable, screen)
-        show_run(_with_band(done, request, screen) if band else done, screen, not no_figures)
+            done = _simulate(asked, problems, output_dir, allow_unstable, screen)
+        done = _with_band(done, asked, screen) if band else done
+        show_run(done, screen, not no_figures, strict)
 
 
 def _without_band(band: bool, target: str) -> list[Problem]:
@@ -234,7 +233,7 @@ def _folder(system: System, screen: Screen) -> Path:
     return results_folder(system.name, place, {which: facts[which]}, screen)
 
 
-def show_run(done: Run, screen: Screen, with_figures: bool) -> None:
+def show_run(done: Run, screen: Screen, with_figures: bool, strict: bool = False) -> None:
     """Draw and show a run; one that is not complete gives its exit code.
 
     Why a run failed is said before drawing, which takes its time and may be interrupted.
@@ -247,11 +246,13 @@ def show_run(done: Run, screen: Screen, with_figures: bool) -> None:
         Of the command.
     with_figures : bool
         Whether pictures are drawn.
+    strict : bool
+        Whether a run may have no warnings.
 
     Raises
     ------
     typer.Exit
-        The run is not complete, or drawing was interrupted.
+        The run is not complete, drawing was interrupted, or a strict run has warnings.
     """
     if done.status == "failed":
         screen.fail(str(done.error))
@@ -274,6 +275,9 @@ def show_run(done: Run, screen: Screen, with_figures: bool) -> None:
         raise typer.Exit(RUN_FAILED)
     if done.status == "interrupted" or not drawn:
         raise typer.Exit(INTERRUPTED)
+    if strict and done.warnings:
+        screen.fail(f"strict: the run has {counted(len(done.warnings), 'warning')}")
+        raise typer.Exit(CHECK_FAILED)
 
 
 def _show_results(done: Run, pictures: list[Path], screen: Screen) -> None:
