@@ -4,16 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from rockshed.components.common.roles import Role
-from rockshed.components.common.units import cm, kJ, ms
+from rockshed.components.common.units import ms
 
 from ..core.results.reading import StoredRun
 from . import contents
-from .cushion import cushions, thickness_at_start
-from .energy import impact_energy
 from .roles import parameter, parameters
-
-_NUMERICS = ("internal_step", "seed")
-"""Parameters of components that say how something is computed."""
 
 
 def caption(run: StoredRun) -> list[str]:
@@ -33,46 +28,10 @@ def caption(run: StoredRun) -> list[str]:
     differences = facts.get("differences", {})
     changed = ", ".join(f"{name} = {value}" for name, value in differences.items())
     return [
-        title(run),
+        f"{facts['name']}: {facts['system']['description']}".removesuffix(": "),
         *filter(None, [changed and f"changed: {changed}", *models(run)]),
         scheme(run),
     ]
-
-
-def title(run: StoredRun) -> str:
-    """Return the name of a run with what was run, from the values of this run.
-
-    The description of a case tells its own values. A run with others is told by its own impact.
-
-    Parameters
-    ----------
-    run : StoredRun
-        The run.
-    """
-    facts = run.provenance
-    described = f"{facts['name']}: {facts['system']['description']}".removesuffix(": ")
-    if not any(_is_physical(run, name) for name in facts.get("differences", {})):
-        return described
-    return ": ".join(filter(None, [f"{facts['name']} with other values", _impact(run)]))
-
-
-def _is_physical(run: StoredRun, name: str) -> bool:
-    """Tell whether a difference is one of what is computed, and not of how."""
-    is_key = name in run.provenance["system"]
-    return not is_key and name.rpartition(".")[2] not in _NUMERICS
-
-
-def _impact(run: StoredRun) -> str:
-    """Describe an impact by its energy and the cushions; empty for a run that is none."""
-    energy = impact_energy(run) if run.time.size else None
-    if not energy:
-        return ""
-    layers = [
-        f"{thickness / cm:.4g} cm of {cushion}"
-        for cushion in cushions(run)
-        if (thickness := thickness_at_start(run, cushion)) is not None
-    ]
-    return f"an impact of {energy / kJ:.4g} kJ" + "".join(f" on {layer}" for layer in layers)
 
 
 def models(run: StoredRun) -> list[str]:

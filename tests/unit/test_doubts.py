@@ -1,11 +1,10 @@
-"""Doubts about a run and its title, from made-up results that are known to be doubtful."""
+"""Doubts about a run, from made-up results that are known to be doubtful."""
 
 import numpy as np
 import pytest
 
 import rockshed
 from rockshed.metrics import comparison
-from rockshed.metrics.caption import title
 from rockshed.metrics.doubts import meaningless
 from tests.unit.test_headlines import made_up
 
@@ -61,27 +60,7 @@ def test_a_run_without_warnings_is_none(tmp_path):
     assert rockshed.simulate(system, strict=True).warnings == []
 
 
-# ------------------------------------------------------------------ the title
-
-
-def titled(**differences):
-    run = made_up(**{"sand.clearance": 0.1 - 0.06 * WAY})
-    run.provenance["system"]["description"] = "a ball of 4 kg from 10 m"
-    named = {name.replace("__", "."): value for name, value in differences.items()}
-    run.provenance["differences"] = named
-    return title(run)
-
-
-def test_a_case_as_it_is_has_its_description_for_a_title():
-    assert titled() == "made-up: a ball of 4 kg from 10 m"
-    numerics = titled(sand__seed=2, exchange_step=1e-5, rock__internal_step=1e-6)
-    assert numerics == "made-up: a ball of 4 kg from 10 m"
-
-
-def test_a_case_with_other_values_has_a_title_of_these_values():
-    said = "made-up with other values: an impact of 0.1 kJ on 10 cm of sand"
-    assert titled(rock__mass=8.0) == said
-    assert titled(rock_mass=8.0) == said
+# ------------------------------------------------------------------ the table
 
 
 def test_a_settled_force_above_the_peak_is_explained():
