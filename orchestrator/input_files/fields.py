@@ -217,7 +217,7 @@ def _name(key: Key) -> str:
 
 
 def _numbers(data: BaseModel, key: Key) -> Iterator[tuple[Key, float, FieldInfo]]:
-    """Yield key, value and field of every number of a form that is given."""
+    """Yield key, value and field of every number of a form that is given and has a usual range."""
     for name, entry in type(data).model_fields.items():
         if name not in data.model_fields_set:
             continue
@@ -233,5 +233,5 @@ def _within(value: Any, key: Key, entry: FieldInfo) -> Iterator[tuple[Key, float
     elif isinstance(value, list | tuple):
         for number, inner in enumerate(value):
             yield from _within(inner, (*key, number), entry)
-    elif isinstance(value, float | int) and not isinstance(value, bool):
+    elif usual_of(entry) and isinstance(value, float | int) and not isinstance(value, bool):
         yield key, float(value), entry
