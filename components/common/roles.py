@@ -47,7 +47,11 @@ class Role(StrEnum):
     ON_BODY = "force.on_body"
     """Force (N) of a cushion on the body that strikes it, upwards."""
     PENETRATION = "penetration"
-    """Depth (m) of the striking body's lowest point under the cushion's surface at the start."""
+    """Depth (m) of the striking body's lowest point under the mean level of the cushion's surface
+    at the start; 0 until it first touches, and above."""
+    ABOVE_SURFACE = "height.above_surface"
+    """Height (m) of the striking body's lowest point above the mean level of the cushion's surface
+    at the start; negative below it."""
     SURFACE = "height.surface"
     """Height (m) of the cushion's surface under the striking body at the start."""
     CLEARANCE = "clearance"

@@ -249,6 +249,40 @@ def surface_height(lever, bodies):
     return (1.0 - lever.share) * left + lever.share * right
 
 
+@kernel
+def mean_level(left, right, rows, first, last):
+    """Return the mean height of the surface between two places.
+
+    The first and the last line go on beyond the outermost tops.
+
+    Parameters
+    ----------
+    left, right : float
+        Places, left < right (m).
+    rows : ndarray of float64
+        Rows of all bodies.
+    first, last : int
+        Numbers of the outermost beam discs.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
+    _, level = top_of(first, rows)
+    area = 0.0
+    for b in range(first, last):
+        begin_x, begin_y = top_of(b, rows)
+        end_x, end_y = top_of(b + 1, rows)
+        begin = left if b == first else max(left, begin_x)
+        end = right if b == last - 1 else min(right, end_x)
+        middle = 0.5 * (begin + end)
+        height = begin_y + (middle - begin_x) / (end_x - begin_x) * (end_y - begin_y)
+        if end > begin:
+            area += (end - begin) * (height - level)
+    return level + area / (right - left)
+
+
 @inlined
 def surface_velocity(lever, bodies):
     """Return the velocity (m/s) of the surface at a place, to the right and upwards.

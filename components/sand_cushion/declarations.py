@@ -111,12 +111,13 @@ Sum = namedtuple(
     "Sum",
     "elastic normal_dashpot tangential_dashpot sliding rolling plastic capillary rock beam "
     "transmitted "
-    "travelled beam_key unready",
+    "travelled beam_key unready touched",
 )
-SUM = Sum(*range(13))
-"""Places of the sums that go on from step to step in ``sums``: energies and works (J), transmitted
-force (N), way of the fastest disc since the list was made (m), key of the beam's place, and the
-status of the start, which is not OK until rock and beam are where they may be."""
+SUM = Sum(*range(14))
+"""Places of the sums that go on from step to step in ``sums``: energies and works (J),
+transmitted force (N), way of the fastest disc since the list was made (m), key of the beam's
+place, the status of the start, which is not OK until rock and beam are where they may be, and
+whether the rock has touched anything (1 or 0)."""
 
 
 def _bodies(sizes: Sizes) -> int:
@@ -538,8 +539,8 @@ LAYOUT = Layout(
         ),
         out(
             "penetration",
-            "depth of the rock's lowest point under the sand's surface at the start; negative "
-            "above it",
+            "depth of the rock's lowest point under surface_level; 0 until the rock first touches, "
+            "and above it",
             "m",
             role=Role.PENETRATION,
         ),
@@ -549,6 +550,18 @@ LAYOUT = Layout(
             "is beside it, in the last internal step; negative where it presses into it",
             "m",
             role=Role.CLEARANCE,
+        ),
+        out(
+            "rock.above_surface",
+            "height of the rock's lowest point above surface_level; negative below it",
+            "m",
+            role=Role.ABOVE_SURFACE,
+        ),
+        out(
+            "surface_level",
+            "mean height of the sand's surface between the walls at the start: of the highest disc "
+            "in each column as wide as the largest",
+            "m",
         ),
         out(
             "surface_height",

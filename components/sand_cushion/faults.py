@@ -35,8 +35,8 @@ FAULTS = {
         "internal_step or the exchange step"
     ),
     ROCK_INSIDE: (
-        "the rock starts inside the sand: its lowest point lies {penetration} m under the "
-        "surface at {surface_height} m; raise the rock's position0.y by at least that much"
+        "the rock starts inside the sand, which reaches up to {surface_height} m under it: raise "
+        "the rock's position0.y, at {rock.position.y} m, to that and its radius of {rock.radius} m"
     ),
     ROCK_BESIDE: (
         "the rock starts in or behind a side wall: with its radius of {rock.radius} m at x = "

@@ -21,6 +21,7 @@ from .faults import (
 )
 from .forces import contact_forces, forget_forces
 from .motion import collect_forces, set_boundaries
+from .packing import columns_of
 from .start import INSTANT, advance, beam_fault, beam_key, initialise
 
 __all__ = ["evaluate", "initialise", "step"]
@@ -58,6 +59,39 @@ def surface_under_rock(w, x, k):
         if abs(bodies.x[i] - w[V.rock_position_x]) < w[V.rock_radius]:
             near = max(near, top)
     return near if near > -math.inf else anywhere
+
+
+@kernel
+def surface_level(w, x, k):
+    """Return the mean height of the surface between the walls, from the highest disc in columns.
+
+    The columns are as wide as the largest disc, so that full rows of a lattice have one disc in
+    each: its level is its top. Columns without a disc do not count.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance; the loads of the discs are 0 and stay it.
+
+    Returns
+    -------
+    float
+        Height (m).
+    """
+    bodies = bodies_of(x, k)
+    largest = 2.0 * w[V.disc_radius] * (1.0 + w[V.disc_spread])
+    columns = min(bodies.rock, columns_of(w[V.box_width], largest))
+    tops, counted = bodies.force_x, bodies.force_y
+    for i in range(bodies.rock):
+        place = math.floor((bodies.x[i] - w[V.box_left]) / w[V.box_width] * columns)
+        column, top = min(columns - 1, max(0, place)), bodies.y[i] + bodies.radius[i]
+        tops[column] = max(tops[column], top) if counted[column] else top
+        counted[column] = 1.0
+    level, number = 0.0, 0.0
+    for column in range(columns):
+        level, number = level + tops[column], number + counted[column]
+    forget_forces(x, k)
+    return level / number
 
 
 @kernel
@@ -173,7 +207,10 @@ def begin(w, x, k):
             return status
     set_boundaries(0.0, w, x, k)
     w[V.surface_height] = surface_under_rock(w, x, k)
-    w[V.penetration] = penetration(0.0, w)
+    w[V.surface_level] = surface_level(w, x, k)
+    sums[SUM.touched] = 0.0
+    w[V.rock_above_surface] = w[V.rock_position_y] - w[V.rock_radius] - w[V.surface_level]
+    w[V.penetration] = 0.0
     w[V.clearance] = clearance(w, x, k)
     status = rock_fault(w, x, k)
     if status != OK:
@@ -184,6 +221,7 @@ def begin(w, x, k):
     start_balance(w, x, k)
     collect_forces(1.0, True, w, x, k)
     forget_forces(x, k)
+    publish_way(0.0, w, sums)
     return OK
 
 
@@ -316,8 +354,31 @@ def publish_energies(kinetic, potential, w, sums):
 
 
 @kernel
-def penetration(ahead, w):
-    """Return the depth (m) of the rock's lowest point under the surface at the start.
+def penetration(above, touching, sums):
+    """Return the depth of the rock's lowest point, 0 until the rock first touches.
+
+    Parameters
+    ----------
+    above : float
+        Height (m) of the rock's lowest point above the mean level of the surface at the start.
+    touching : bool
+        Whether a force acts on the rock.
+    sums : ndarray of float64
+        Running sums, :data:`SUM`.
+
+    Returns
+    -------
+    float
+        Depth (m), 0 above the level.
+    """
+    if touching:
+        sums[SUM.touched] = 1.0
+    return max(0.0, -above) if sums[SUM.touched] != 0.0 else 0.0
+
+
+@kernel
+def publish_way(ahead, w, sums):
+    """Write where the rock's lowest point is, beside the surface at the start.
 
     The rock goes on for the time ``ahead`` (s) from where the inputs have it.
 
@@ -327,14 +388,14 @@ def penetration(ahead, w):
         Time after that of the variables (s).
     w : ndarray of float64
         Variables of the instance.
-
-    Returns
-    -------
-    float
-        Depth (m).
+    sums : ndarray of float64
+        Running sums, :data:`SUM`.
     """
-    y = w[V.rock_position_y] + w[V.rock_velocity_y] * ahead
-    return w[V.surface_height] - (y - w[V.rock_radius])
+    lowest = w[V.rock_position_y] + w[V.rock_velocity_y] * ahead - w[V.rock_radius]
+    above = lowest - w[V.surface_level]
+    touching = w[V.rock_force_x] != 0.0 or w[V.rock_force_y] != 0.0
+    w[V.rock_above_surface] = above
+    w[V.penetration] = penetration(above, touching, sums)
 
 
 @kernel
@@ -405,7 +466,8 @@ def step(t, h, w, x, k):
             collect_forces(1.0 / n, s == 0, w, x, k)
     if not mean:
         collect_forces(1.0, True, w, x, k)
-    publish_energies(kinetic, potential, w, view(x, k, A.sums))
-    w[V.penetration] = penetration(h if linear else 0.0, w)
+    sums = view(x, k, A.sums)
+    publish_energies(kinetic, potential, w, sums)
+    publish_way(h if linear else 0.0, w, sums)
     w[V.clearance] = clearance(w, x, k)
     return OK if math.isfinite(w[V.energy_residual]) else DIVERGED

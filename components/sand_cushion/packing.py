@@ -4,9 +4,10 @@ import math
 
 from ..common.counter_random import uniform
 from ..common.kernels import kernel
+from .beam_surface import mean_level
 from .bodies import bodies_of
 from .contact_search import base_top
-from .declarations import BEAM_DISCS, HEXAGONAL, LAYER, LAYOUT, RANDOM
+from .declarations import BEAM_DISCS, BEAM_SURFACE, HEXAGONAL, LAYER, LAYOUT, RANDOM
 
 V = LAYOUT.scalar
 
@@ -83,7 +84,9 @@ def columns_of(width, diameter):
 
 @kernel
 def mean_base(w, x, k):
-    """Return the mean height (m) of the base; between beam discs it lies deeper than their tops.
+    """Return the mean height (m) of the base between the side walls.
+
+    A bent surface lies lower there than its highest top; beam discs lie deeper between their tops.
 
     Parameters
     ----------
@@ -95,6 +98,10 @@ def mean_base(w, x, k):
     float
         Height (m).
     """
+    if w[V.base] == BEAM_SURFACE:
+        bodies, left = bodies_of(x, k), w[V.box_left]
+        first, last = bodies.rock + 1, bodies.end - 1
+        return mean_level(left, left + w[V.box_width], bodies.rows, first, last)
     valleys = 0.0
     if w[V.base] == BEAM_DISCS:
         valleys = (1.0 - 0.25 * math.pi) * w[V.beam_radius]

@@ -22,6 +22,7 @@ from rockshed.components.rbsm_beam import COMPONENT as BEAM
 from rockshed.components.rbsm_beam import kernel as beam_kernel
 from rockshed.components.rbsm_beam.declarations import LAYOUT as BEAM_LAYOUT
 from rockshed.components.sand_cushion import COMPONENT as SAND
+from rockshed.components.sand_cushion import kernel as sand_kernel
 from rockshed.components.sand_cushion import start as sand_start
 from rockshed.components.sand_cushion.bodies import bodies_of
 from rockshed.components.sand_cushion.declarations import LAYOUT as SAND_LAYOUT
@@ -133,7 +134,8 @@ def _run(dt, beam_steps, beam_step, inertia, rw, sw, sx, sk, bw, bx, bk, history
         rock_torque = bodies.turn[rock] * sw[SV.rock_radius]
         rock_x, rock_y, rock_angle = rw[RV.position_x], rw[RV.position_y], rw[RV.angle]
         history[s, 0], history[s, 1] = sums[SUM.transmitted], rock_fy
-        history[s, 2] = sw[SV.surface_height] - (rock_y - sw[SV.rock_radius])
+        above = rock_y - sw[SV.rock_radius] - sw[SV.surface_level]
+        history[s, 2] = sand_kernel.penetration(above, rock_fx != 0.0 or rock_fy != 0.0, sums)
         rock_kernel.move(Load(rock_fx, rock_fy, rock_torque), inertia, dt, rw)
         history[s, 4] = (
             rock_fx * (rw[RV.position_x] - rock_x)

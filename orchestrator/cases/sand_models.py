@@ -215,7 +215,7 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
         return Changes(values)
     state = soil or layer.soil
     largest = 2.0 * layer.disc_radius * (1.0 + SPREAD)
-    clearance = 1.5 * largest
+    clearance = _CLEARANCE * largest
     gained = 2.0 * standard_gravity * clearance if layer.falling else 0.0
     values |= {
         "sand.cohesion": state.cohesion,
@@ -236,5 +236,9 @@ def changes(model: SandModel, layer: SandLayer, soil: Soil | None = None) -> Cha
     )
 
 
-_SETTLING = 15.0
-"""Longest time of settling after the preparation, in sqrt(r/g)."""
+_SETTLING = 60.0
+"""Longest time of settling after the preparation, in sqrt(r/g): single discs come to rest late, a
+layer at rest ends it earlier."""
+_CLEARANCE = 2.5
+"""Height over the layer at which the rock starts, in largest diameters: single discs of a random
+surface stand out by nearly two."""

@@ -232,7 +232,7 @@ def _way(run: StoredRun, cushion: str) -> Iterator[Metric]:
 
 
 def thickness_at_start(run: StoredRun, cushion: str) -> float | None:
-    """Return the height of a cushion's surface over its base at the start, where the body is.
+    """Return the height of a cushion's surface over its base, where the body is at the start.
 
     Parameters
     ----------
@@ -244,13 +244,13 @@ def thickness_at_start(run: StoredRun, cushion: str) -> float | None:
     Returns
     -------
     float or None
-        In m: the depth to which the body may sink until it touches the base. None where it was not
-        recorded.
+        In m, of the mean level of the surface: the depth to which the body may sink until it
+        touches the base. None where it was not recorded.
     """
-    depth, clearance = (column(run, cushion, role) for role in (Role.PENETRATION, Role.CLEARANCE))
-    if depth is None or clearance is None:
+    above, clearance = (column(run, cushion, role) for role in (Role.ABOVE_SURFACE, Role.CLEARANCE))
+    if above is None or clearance is None:
         return None
-    return float(run.series[depth][0] + run.series[clearance][0])
+    return float(run.series[clearance][0] - run.series[above][0])
 
 
 def still_in_contact(run: StoredRun) -> bool:

@@ -129,14 +129,14 @@ def _untouched(run: StoredRun, cushion: str) -> Iterator[str]:
 
 def _on_its_way(run: StoredRun, cushion: str) -> str:
     """Say where a body was when the run ended, and where it was going."""
-    name = column(run, cushion, Role.PENETRATION)
+    name = column(run, cushion, Role.ABOVE_SURFACE)
     if name is None or run.series["time"].size < 2:
         return "check its place and velocity, and the stop time"
-    time, depth = run.series["time"], run.series[name]
-    distance = -float(depth[-1])
-    sinking = float(depth[-1] - depth[-2]) / float(time[-1] - time[-2])
+    time, above = run.series["time"], run.series[name]
+    distance = float(above[-1])
+    sinking = float(above[-2] - above[-1]) / float(time[-1] - time[-2])
     if distance <= 0.0:
-        return "it ends beside the highest point of the surface; check its place and velocity"
+        return "it ends below the level of the surface; check its place and velocity"
     if sinking <= 0.0:
         return f"it ends {distance / mm:.4g} mm above the surface and moves away from it"
     arrives = distance / sinking

@@ -395,10 +395,10 @@ def _axis_of_structure(view: _View, frame: Frame, axes: Axes) -> None:
 
 
 def _words(view: _View, frame: Frame) -> str:
-    """Return the depth of the rock and the transmitted force at the time of the frame."""
+    """Return the place of the rock and the transmitted force at the time of the frame."""
     run = view.run
     row = int(abs(run.series["time"] - frame.time).argmin())
-    depth = run.series[str(column(run, view.cushion, Role.PENETRATION))][row]
+    above = run.series[str(column(run, view.cushion, Role.ABOVE_SURFACE))][row]
     force = run.series[str(column(run, view.cushion, Role.TRANSMITTED))][row]
-    place = f"{abs(depth) / cm:.1f} cm {'deep' if depth > 0.0 else 'above'}"
+    place = f"{abs(above) / cm:.1f} cm {'above' if above >= 0.0 else 'deep'}"
     return f"rock {place}, {force / kN:.{2 if abs(force) < 10.0 * kN else 0}f} kN transmitted"

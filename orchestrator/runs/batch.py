@@ -40,6 +40,7 @@ COLUMNS = (
     "sand.rock.force.y",
     "sand.penetration",
     "sand.surface_height",
+    "sand.surface_level",
     "sand.stable_step",
     "beam.midspan.deflection",
     "beam.energy.elastic",

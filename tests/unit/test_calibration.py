@@ -116,6 +116,7 @@ def sand(monkeypatch):
                 "sand.penetration": made.curve.depth,
                 "sand.rock.force.y": made.curve.load,
                 "sand.surface_height": np.array([0.1]),
+                "sand.surface_level": np.array([0.1]),
                 "sand.stable_step": np.array([1e-4]),
             }
             return Outcome(
@@ -324,6 +325,7 @@ def test_a_calibration_that_was_interrupted_goes_on_where_it_was(monkeypatch, tm
             "sand.penetration": curve.depth,
             "sand.rock.force.y": curve.load,
             "sand.surface_height": np.array([0.1]),
+            "sand.surface_level": np.array([0.1]),
             "sand.stable_step": np.array([1e-4]),
         }
         return Outcome(order.key, COMPLETE, series=series, options={"packing": "square"})

@@ -89,7 +89,8 @@ def test_held_motion_freezes_the_rock_within_a_step():
     run(held, 1e-3)
     run(linear, 1e-3)
     assert linear["rock.force.y"] > 10.0 > held["rock.force.y"]
-    assert linear["penetration"] - held["penetration"] == pytest.approx(4e-3, rel=1e-9)
+    way = held["rock.above_surface"] - linear["rock.above_surface"]
+    assert way == pytest.approx(4e-3, rel=1e-9)
 
 
 def test_schemes_agree_to_the_bit_with_one_internal_step_per_exchange():
@@ -115,15 +116,31 @@ def test_a_step_that_is_no_multiple_is_divided_into_equal_parts():
     np.testing.assert_array_equal(rows(divided), rows(single))
 
 
-def test_penetration_counts_from_the_surface_at_the_start():
+def test_penetration_counts_from_the_mean_level_of_the_surface_at_the_start():
     sand = struck()
-    assert sand["penetration"] == pytest.approx(
-        sand["surface_height"] - (sand["rock.position.y"] - 0.02), rel=1e-12
-    )
+    lowest = sand["rock.position.y"] - 0.02
+    assert sand["rock.above_surface"] == pytest.approx(lowest - sand["surface_level"], abs=1e-12)
     sand["rock.position.y"] -= 0.01
-    before = sand["penetration"]
     sand.step(0.0, 1e-5)
-    assert sand["penetration"] == pytest.approx(before + 0.01, rel=1e-9)
+    assert sand["rock.force.y"] > 0.0
+    assert sand["penetration"] == pytest.approx(sand["surface_level"] - lowest + 0.01, rel=1e-9)
+    assert sand["penetration"] == -sand["rock.above_surface"]
+
+
+def test_penetration_is_zero_until_the_rock_first_touches_and_above_the_level():
+    """A column of three discs left of the rock, one disc right of it: a rock between them comes
+    under the mean level without a touch."""
+    sand = cushion({**SMALL_BOX, "base": "floor", "rock.radius": 0.02}, discs=4)
+    rows(sand)[:, :2] = [[0.005, 0.005], [0.005, 0.015], [0.005, 0.025], [0.055, 0.005]]
+    sand["rock.position.x"], sand["rock.position.y"] = 0.055, 0.0301
+    sand.evaluate()
+    assert sand["surface_level"] == pytest.approx(0.02, abs=1e-5)
+    for lowest, touches in ((0.0101, False), (0.0099, True), (0.0101, True), (0.03, True)):
+        sand["rock.position.y"] = 0.02 + lowest
+        sand.step(0.0, 1e-6)
+        assert sand["rock.above_surface"] == pytest.approx(lowest - sand["surface_level"])
+        depth = max(0.0, sand["surface_level"] - lowest) if touches else 0.0
+        assert sand["penetration"] == pytest.approx(depth, abs=1e-12)
 
 
 def test_same_parameters_same_bits():

@@ -80,6 +80,61 @@ def test_surface_height_is_that_under_the_rock():
     ] == pytest.approx(0.01, rel=1e-3)
 
 
+@pytest.mark.parametrize(("packing", "discs"), [("square", 60), ("hexagonal", 48)])
+def test_the_level_of_a_lattice_with_a_full_row_on_top_is_its_top(packing, discs):
+    sand = cushion({**BOX, "packing": packing, "gravity": 0.0}, discs=discs)
+    assert sand["surface_level"] == pytest.approx(sand["surface_height"], rel=1e-12)
+
+
+def test_the_level_of_the_surface_is_the_mean_of_the_highest_discs_in_its_columns():
+    """Six of the ten columns of a square lattice have a disc more."""
+    sand = cushion({**BOX, "gravity": 0.0}, discs=16)
+    assert sand["surface_level"] == pytest.approx(0.016, rel=1e-12)
+
+
+def bent_beam(lift, turn):
+    """Beam discs under a box of 0.2 m whose tops lie on lift(x), with the angles turn(x)."""
+    count, spacing = 12, 0.02
+    x = -0.02 + (np.arange(count) + 0.5) * spacing
+    angle = turn(x)
+    return {
+        "base": "beam_surface",
+        "box.left": 0.0,
+        "box.width": 0.2,
+        "beam.radius": 0.5 * spacing,
+        "beam.position.x": x + 0.5 * spacing * angle,
+        "beam.position.y": np.array([lift(place) for place in x]) - 0.5 * spacing,
+        "beam.angle": angle,
+    }
+
+
+def level_of(beam, left=0.0, width=0.2):
+    """Mean level of a beam's surface under a box, from the height of the layer and its discs."""
+    given = {**beam, "box.left": left, "box.width": width}
+    sand = cushion({**BOX, **given, "gravity": 0.0, "rotation": "free"}, discs=20, elements=12)
+    centre = (masses(sand) @ rows(sand)[:, 1]) / masses(sand).sum()
+    return centre - 0.5 * sand["layer.height"]
+
+
+@pytest.mark.parametrize(("left", "width"), [(0.0, 0.2), (0.013, 0.111), (-0.02, 0.24)])
+@pytest.mark.parametrize("slope", [0.0, 0.1, -0.1])
+def test_the_mean_level_of_a_tilted_beam_is_that_at_the_middle_of_the_box(slope, left, width):
+    beam = bent_beam(lambda x: 0.01 + slope * x, lambda x: 0.0 * x)
+    level = 0.01 + slope * (left + 0.5 * width)
+    assert level_of(beam, left, width) == pytest.approx(level, abs=1e-12)
+
+
+@pytest.mark.parametrize(("left", "width"), [(0.0, 0.2), (0.013, 0.111)])
+def test_the_mean_level_of_a_bent_beam_is_that_of_its_chords(left, width):
+    """Chords of the length a lie over the parabola c x^2 by c a^2 / 6 on average."""
+    bend = 0.5
+    beam = bent_beam(lambda x: bend * (x - 0.1) ** 2, lambda x: 0.05 * np.sin(40.0 * x))
+    right = left + width
+    parabola = bend * ((right - 0.1) ** 3 - (left - 0.1) ** 3) / (3.0 * width)
+    chords = bend * 0.02**2 / 6.0
+    assert level_of(beam, left, width) == pytest.approx(parabola + chords, abs=0.2 * chords)
+
+
 PREPARED = {
     "packing": "prepared",
     "disc.spread": 0.25,

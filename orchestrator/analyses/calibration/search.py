@@ -202,7 +202,7 @@ class _TestRig:
     values : mapping of str to Value
         Changes in the case.
     surface : float
-        Highest surface of the sand (m).
+        Highest surface of the sand under the rock (m).
     depth : float
         Way of the rock from there (m).
     root : float
@@ -241,10 +241,13 @@ def _rig(values: Mapping[str, Value], deepest: float, means: Means) -> _TestRig:
     probe = Task(Request(NAME, changes, options={"stop_time": 1e-3}), allow_unstable=True)
     outcome = _ended(means.here(probe))
     margin = _MARGIN if outcome.options["packing"] == "random" else 0.0
+    highest, level = (
+        float(outcome.series[f"sand.surface_{name}"][0]) for name in ("height", "level")
+    )
     return _TestRig(
         values,
-        float(outcome.series["sand.surface_height"][0]) + margin,
-        deepest + 2.0 * margin + 0.15 * cm,
+        highest + margin,
+        deepest + highest - level + 2.0 * margin + 0.15 * cm,
         float(outcome.series["sand.stable_step"][0]) * math.sqrt(_PROBE_MODULUS),
     )
 

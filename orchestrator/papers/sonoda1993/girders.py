@@ -31,7 +31,7 @@ SPANS = {impact.span: impact for impact in impacts().values() if impact.span}
 """Impacts by their span (m)."""
 EXCESS = (1.3, 1.5)
 """Transmitted force over that on the rock in figs 23 and 24, whose maxima differ by 30 to 50 %."""
-STOP = 0.15
+STOP = 0.16
 """End of the runs (s): energy and forces have had their peaks."""
 
 

@@ -36,7 +36,7 @@ ONE_LAW = "one-law"
 """The model with one contact law for all tests."""
 ALL_MODELS = (*MODELS, ONE_LAW)
 SEEDS = range(1, 11)
-STOP = 0.03
+STOP = 0.034
 """End of the runs (s): force and penetration have had their peaks."""
 
 SEED_NOTE = (
@@ -93,7 +93,7 @@ SHORT_LATTICES: Mapping[str, Request] = {
 }
 SHORT_IMPACTS: Mapping[str, Request] = {
     **SHORT_LATTICES,
-    f"impact, {ONE_LAW}": _beginning(ONE_LAW, stop_time=6e-3),
+    f"impact, {ONE_LAW}": _beginning(ONE_LAW, stop_time=1e-2),
 }
 """Beginnings of the impact of test 4, which studies of the laboratory stand on.
 

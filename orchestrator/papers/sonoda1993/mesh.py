@@ -174,7 +174,7 @@ def on_girders(impact_on: full_scale.Impact, division: int, quick: bool) -> Mesh
     return Mesh(words, ONE_LAW, radius / mm, made)
 
 
-_GIRDERS_STOP = 0.15
+_GIRDERS_STOP = 0.16
 
 
 def _refined(task: Task, changes: Mapping[str, Value], sizes: Mapping[str, int]) -> Task:

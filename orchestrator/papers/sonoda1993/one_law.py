@@ -41,7 +41,7 @@ SEEDS = range(1, 9)
 VARIED_SEEDS = range(1, 4)
 """Packings of a law with one number changed."""
 RIGID_BASE = "rigid-base-crushed"
-_STATIC_STOP = 6.6
+_STATIC_STOP = 8.1
 """End of a static test (s): the disc starts well above the uneven surface of a packing."""
 _KGF_PER_CM2 = kgf / cm**2
 _RIGID_RATIO = "rigid base: settled ratio transmitted / rock"
@@ -152,7 +152,7 @@ def _rigid(law: Law, quick: bool) -> list[Task]:
     return impacts(RIGID_BASE, law, quick, full_scale.impacts()[RIGID_BASE].stop_time)
 
 
-_GIRDERS_STOP = 0.15
+_GIRDERS_STOP = 0.16
 _SPANS = [impact for impact in full_scale.impacts().values() if impact.span]
 
 

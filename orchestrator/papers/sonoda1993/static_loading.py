@@ -56,7 +56,7 @@ class PushedSand:
     surface : float
         Highest surface (m) that a sample may have.
     margin : float
-        Height (m) by which the lowest one may be lower.
+        Height (m) by which the mean level of the lowest one may be lower.
     """
 
     name: str
@@ -72,8 +72,8 @@ _RANDOM: Mapping[str, Value] = {"sand.packing": "random", "sand.disc.spread": 0.
 SANDS = (
     PushedSand("calibrated, square", "calibrated", _LATTICE, 1.38e-4),
     PushedSand("literal, square", "literal", _LATTICE, 7.5e-5),
-    PushedSand("calibrated, random", "calibrated", _RANDOM, 1e-4, 14.4 * cm, 1.6 * cm),
-    PushedSand("literal, random", "literal", _RANDOM, 5.6e-5, 11.4 * cm, 1.3 * cm),
+    PushedSand("calibrated, random", "calibrated", _RANDOM, 1e-4, 14.4 * cm, 1.9 * cm),
+    PushedSand("literal, random", "literal", _RANDOM, 5.6e-5, 11.4 * cm, 1.4 * cm),
 )
 """Models and packings that are pushed."""
 
