@@ -84,7 +84,8 @@ def surface_level(w, x, k):
     tops, counted = bodies.force_x, bodies.force_y
     for i in range(bodies.rock):
         place = math.floor((bodies.x[i] - w[V.box_left]) / w[V.box_width] * columns)
-        column, top = min(columns - 1, max(0, place)), bodies.y[i] + bodies.radius[i]
+        column = min(columns - 1, max(0, place))
+        top = bodies.y[i] + bodies.radius[i]
         tops[column] = max(tops[column], top) if counted[column] else top
         counted[column] = 1.0
     level, number = 0.0, 0.0

@@ -99,7 +99,8 @@ def mean_base(w, x, k):
         Height (m).
     """
     if w[V.base] == BEAM_SURFACE:
-        bodies, left = bodies_of(x, k), w[V.box_left]
+        bodies = bodies_of(x, k)
+        left = w[V.box_left]
         first, last = bodies.rock + 1, bodies.end - 1
         return mean_level(left, left + w[V.box_width], bodies.rows, first, last)
     valleys = 0.0

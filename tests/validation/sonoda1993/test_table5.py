@@ -52,16 +52,16 @@ def test_calibrated_model(row):
 @pytest.mark.parametrize(
     ("modulus", "penetration_range", "force_range"),
     [
-        (20, (-0.25, -0.10), (0.10, 0.30)),
-        (40, (-0.08, 0.14), (-0.05, 0.20)),
-        (60, (0.03, 0.32), (-0.10, 0.12)),
+        (20, (-0.30, -0.12), (0.10, 0.30)),
+        (40, (-0.14, 0.10), (-0.08, 0.24)),
+        (60, (0.03, 0.25), (-0.12, 0.12)),
     ],
 )
 def test_literal_model_misses_the_trend(modulus, penetration_range, force_range):
     """Free rotation, no factor: discs roll aside, and the result hardly depends on E_bar; it is chaotic, so the ranges are wide.
 
-    Measured: penetration -20, +2, +24 percent, peak force +21, +5, +5 percent; a lattice disturbed by 1e-3 diameters (three
-    seeds) -18 to -14, +1 to +8, +9 to +21 and +21, +3 to +14, -3 to +2 percent.
+    Measured: penetration -26, +2, +7 percent, peak force +24, +10, 0 percent; a lattice disturbed by 1e-3 diameters (three
+    seeds) -20 to -18, -10 to -5, +15 to +17 and +15 to +19, -4 to +19, -8 to +6 percent.
     """
     penetration, force = errors(ROWS[modulus], **LITERAL)
     assert penetration_range[0] < penetration < penetration_range[1]
