@@ -1,6 +1,6 @@
 """Declarations of what is shown of a component.
 
-Figures that follow from an output, and pictures as data.
+Metrics that follow from an output, and pictures as data.
 """
 
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from .units import SCREEN_UNITS
 
 
 class Statistic(StrEnum):
-    """How a figure follows from an output over time.
+    """How a metric follows from an output over time.
 
-    Of an array, the largest of its elements' figures is taken.
+    Of an array, the largest of its elements' metrics is taken.
     """
 
     LARGEST = "largest"
@@ -23,7 +23,7 @@ class Statistic(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Reported:
-    """A figure that is reported of an output: a metric of the run and a row of its table.
+    """A metric that is reported of an output, also as a row of the table of a run.
 
     Attributes
     ----------

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from ..pictures.style import styled
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from ..pictures.sheet import Sheet
 
 
 @contextmanager
-def drawn(lines: Sequence[str], width: float, height: float) -> "Iterator[Figure]":
+def drawn(lines: Sequence[str], width: float, height: float) -> "Iterator[Sheet]":
     """Open a figure that keeps the look of all pictures after the block.
 
     Parameters
@@ -19,13 +19,13 @@ def drawn(lines: Sequence[str], width: float, height: float) -> "Iterator[Figure
     lines : sequence of str
         Stand below the figure.
     width, height : float
-        Size (inch).
+        Of the panels (inch).
 
     Yields
     ------
-    matplotlib.figure.Figure
+    Sheet
         Empty but for the lines.
     """
     with styled(lines, width, height) as figure:
         yield figure
-        figure.draw_without_rendering()  # ticks are made when they are drawn: here, in this look
+        figure.fit()  # draws it too: ticks are made when they are drawn, here in this look

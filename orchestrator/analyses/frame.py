@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animations.formats import Count
 from ..core.errors import refusing_unwritable
 from ..core.results.metric import Metric, Metrics
 from ..core.results.own_files import refuse_foreign
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 """Numbers of any shape."""
-Count = Callable[[int, int], None]
-"""Called with the number of pieces of work that are done, and of all."""
 StageProgress = Callable[[str, int, int], None]
 """Called with the name of a stage, and the numbers of its pieces that are done and of all."""
 Drawing = Callable[[], "Figure"]

@@ -23,9 +23,11 @@ COMMANDS = {
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU, a component or a system: ports, values, connections.",
-    "export": "Write a system as TOML, with its FMUs, to change and run it.",
+    "export": "Write a system as TOML, with its FMUs, to change and run it; or a run in another "
+    "format.",
     "run": "Run a case, a project or a system file, compare, draw.",
-    "plot": "Draw a run again, also one that failed or was killed.",
+    "plot": "Draw a run again, also one that failed or was killed; or any variables of runs.",
+    "animate": "Animate rock, sand with its force chains, and beam of a run.",
     "report": "Write a report that a reviewer can check, as an HTML page and a PDF.",
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",

@@ -1,35 +1,96 @@
-"""The command ``rockshed export``: a system as files."""
+"""The command ``rockshed export``: a system as files, or a run in formats of other programs."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..core.errors import Problem
+from ..core.errors import InputRefused, Problem
 from ..runs.request import Request
+from ..runs.run import read_run
 from ..runs.system import System
 from .analysis import options_named
 from .assignments import sizes_of, values_of
-from .options import Assignments, CaseSizes, CouplingScheme, ModelName, Target
+from .options import Assignments, CaseSizes, CouplingScheme, ModelName
 from .screen import opened
 
-_Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A new or empty folder.")]
+_Target = Annotated[
+    str,
+    typer.Argument(
+        metavar="CASE|FILE.toml|RUN",
+        help="A case of `rockshed list`, a project or a system file; with --format the folder "
+        "of a run.",
+    ),
+]
+_Folder = Annotated[
+    Path | None, typer.Argument(metavar="[FOLDER]", help="Of a system: a new or empty folder.")
+]
+_Format = Annotated[
+    str | None,
+    typer.Option(
+        "--format",
+        metavar="csv|mat4|vtk",
+        help="Write the time series of a run as CSV or as MAT 4 of Dymola and OpenModelica, or its "
+        "recorded states as VTK.",
+    ),
+]
+_Output = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        metavar="FILE|FOLDER",
+        help="With --format: file, of vtk a folder; default RUN/export/...",
+    ),
+]
+
+_MOST_TOLD = 3
+"""Files of an export that are listed; of more, the first names the others."""
+_FAULT_OF_SYSTEM = Problem(
+    "export",
+    "a system goes into a new folder, which stands behind its name",
+    "rockshed export CASE FOLDER; of a run: rockshed export RUN --format csv",
+)
 
 
 def command(
-    target: Target,
-    folder: _Folder,
+    target: _Target,
+    folder: _Folder = None,
+    format_: _Format = None,
+    output: _Output = None,
     set_: Assignments = None,
     size: CaseSizes = None,
     coupling: CouplingScheme = None,
     model: ModelName = None,
 ) -> None:
-    """Write a system as TOML, with its FMUs, to change and run it."""
+    """Write a system as TOML, with its FMUs, to change and run it; or a run in another format."""
     problems: list[Problem] = []
     with opened() as screen:
+        if format_ is not None:
+            of_systems = {"--set": set_, "--size": size, "--coupling": coupling, "--model": model}
+            _check_run(folder, of_systems)
+            with options_named(("format", "output", "state_interval")):
+                files = read_run(Path(target)).export(format_, output)
+            for file in files[:1] if len(files) > _MOST_TOLD else files:
+                screen.say(str(file))
+            return
+        if folder is None or output is not None:
+            raise InputRefused([_FAULT_OF_SYSTEM])
         values = values_of("--set", set_ or [], problems)
         sizes = sizes_of(size or [], problems)
         request = Request(target, values, sizes, coupling, model=model)
         with options_named(("values", "sizes", "coupling", "model"), target):
             system = System.prepared(request, screen.note, problems)
         screen.say(str(system.save(folder)))
+
+
+def _check_run(folder: Path | None, of_systems: Mapping[str, object]) -> None:
+    """Refuse with --format what belongs to the export of a system."""
+    what = "belongs to the export of a system, not to that of a run"
+    problems = [
+        Problem(option, what, "leave it out") for option, value in of_systems.items() if value
+    ]
+    if folder is not None:
+        problems.append(Problem(str(folder), what, "name the place with --output"))
+    if problems:
+        raise InputRefused(problems)

@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
-from ..analyses.rockfall.animation_format import can_write_mp4
 from ..analyses.rockfall.campaign import CampaignFailed
 from ..analyses.rockfall.cluster import Certificates
 from ..analyses.rockfall.run import rockfall
+from ..animations.formats import can_write_mp4
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold

@@ -1,5 +1,6 @@
 """Caption of a run: what was run, in short lines."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -7,8 +8,14 @@ from rockshed.components.common.roles import Role
 from rockshed.components.common.units import ms
 
 from ..core.results.reading import StoredRun
+from ..tables import digits
 from . import contents
 from .roles import parameter, parameters
+
+_MOST = 12
+"""Changed values, or components, that a line of the caption names."""
+_LONGEST, _LONGEST_DESCRIPTION = 60, 300
+"""Letters of a name or value, and of a description, at most."""
 
 
 def caption(run: StoredRun) -> list[str]:
@@ -25,13 +32,34 @@ def caption(run: StoredRun) -> list[str]:
         Case; differences from it, if there are any; models of the components; exchange and steps.
     """
     facts = run.provenance
-    differences = facts.get("differences", {})
-    changed = ", ".join(f"{name} = {value}" for name, value in differences.items())
+    description = _cut(facts["system"]["description"], _LONGEST_DESCRIPTION)
+    changed = _changed(facts.get("differences", {}))
     return [
-        f"{facts['name']}: {facts['system']['description']}".removesuffix(": "),
+        f"{_cut(facts['name'], _LONGEST)}: {description}".removesuffix(": "),
         *filter(None, [changed and f"changed: {changed}", *models(run)]),
         scheme(run),
     ]
+
+
+def _changed(differences: Mapping[str, Any]) -> str:
+    """Return the first of the values that are other than in the case, and how many more there are.
+
+    Numbers have four digits, of whole ones all.
+    """
+    words = [
+        f"{_cut(name, _LONGEST)} = {_cut(_written(value), _LONGEST)}"
+        for name, value in list(differences.items())[:_MOST]
+    ]
+    more = len(differences) - len(words)
+    return ", ".join(words) + (f" and {more} more, see run.json" if more else "")
+
+
+def _written(value: Any) -> str:
+    return digits(value, 4) if isinstance(value, float) and math.isfinite(value) else str(value)
+
+
+def _cut(text: str, letters: int) -> str:
+    return text if len(text) <= letters else f"{text[:letters]}..."
 
 
 def models(run: StoredRun) -> list[str]:
@@ -60,7 +88,9 @@ def scheme(run: StoredRun) -> str:
     """
     facts, system = run.provenance, run.provenance["system"]
     steps = {name: _step(run, name, system) for name in facts["components"]}
-    shown = "".join(f", {name} {step:g}" for name, step in steps.items() if step)
+    told = [f", {_cut(name, _LONGEST)} {step:g}" for name, step in steps.items() if step]
+    more = f", {len(told) - _MOST} more" if len(told) > _MOST else ""
+    shown = "".join(told[:_MOST]) + more
     coupling = f"{system['master']} master"
     if "coupling" in facts:
         coupling = f"coupling {facts['coupling']}"

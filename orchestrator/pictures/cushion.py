@@ -15,6 +15,7 @@ from ..metrics.practice import with_handbook
 from ..metrics.roles import column
 from ..metrics.values import extreme
 from ..references import Known
+from ..tables import digits
 from .references import KnownMetrics, draw_references
 from .style import (
     GREY,
@@ -23,6 +24,7 @@ from .style import (
     TRANSMITTED,
     WIDTH,
     figure,
+    legend,
     over_time,
     reference_line,
     second_scale,
@@ -49,12 +51,13 @@ def forces(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> Non
         _settled_forces(run, cushion, axes)
         on_rock = with_handbook(run, known.get(names.SETTLED_ROCK))
         draw_references(axes, on_rock, "kN", "force on the rock")
-        highest = [1.2 * reference.value / kN for reference in on_rock.by().values()]
+        highest = [1.1 * reference.value / kN for reference in on_rock.by().values()]
         axes.set_ylim(top=max([axes.get_ylim()[1], *highest]))
+        legend(axes)
 
 
 def force_axes(run: StoredRun, cushion: str, known: KnownMetrics, axes: Axes) -> None:
-    """Draw both forces in kN, with kgf at the right.
+    """Draw both forces in kN, with kgf at the right, and lines for a legend.
 
     Parameters
     ----------
@@ -71,37 +74,28 @@ def force_axes(run: StoredRun, cushion: str, known: KnownMetrics, axes: Axes) ->
     words = (("transmitted to the base", TRANSMITTED), ("on the rock", ROCK))
     for (name, colour), force in zip(words, both_forces(run, cushion) or ()):
         peak, at = extreme(run, force)
-        text = f"{name}, peak {peak / kN:.2f} kN at {at / ms:.1f} ms"
+        text = f"{name}, peak {digits(peak / kN)} kN at {digits(at / ms)} ms"
         axes.plot(time, run.series[force] / kN, color=colour, label=text)
         axes.plot(at / ms, peak / kN, "o", color=colour, markersize=3.5)
     draw_references(axes, known.get(names.PEAK_TRANSMITTED), "kN", "peak transmitted force")
     axes.set(xlabel="time (ms)", ylabel="force (kN)")
     over_time(axes, time)
-    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.12 * axes.get_ylim()[1])
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     second_scale(axes, kN / kgf, "(kgf)")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
 def _settled_forces(run: StoredRun, cushion: str, axes: Axes) -> None:
     """Draw both forces without their spikes."""
     fastest = cut_off(run, cushion)
+    label = f"dashed: settled, below {fastest:.0f} Hz" if fastest else ""
     for colour, force in zip((TRANSMITTED, ROCK), both_forces(run, cushion) or ()):
         curve = settled(run, cushion, force)
         if curve is None:
             return
         time = run.series["time"] / ms
-        axes.plot(time, curve / kN, color=colour, linewidth=0.9, linestyle=(0, (3, 2)))
-    axes.annotate(
-        f"dashed: settled, below {fastest:.0f} Hz",
-        (1.0, 1.0),
-        xycoords="axes fraction",
-        xytext=(-2, -3),
-        textcoords="offset points",
-        ha="right",
-        va="top",
-        fontsize=8,
-        color=GREY,
-    )
+        dashes = (0, (3, 2))
+        axes.plot(time, curve / kN, color=colour, linewidth=0.9, linestyle=dashes, label=label)
+        label = ""
 
 
 def penetration(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
@@ -122,26 +116,19 @@ def penetration(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -
     time = run.series["time"] / ms
     with figure(run, file, WIDTH, 3.2) as made:
         axes = made.subplots()
-        axes.plot(time, run.series[depth] / cm, color=ROCK)
         most, at = extreme(run, depth)
-        axes.annotate(
-            f"{most / cm:.2f} cm at {at / ms:.1f} ms",
-            (at / ms, most / cm),
-            xytext=(0, 6),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=8.5,
-            color=ROCK,
-        )
+        text = f"penetration, largest {digits(most / cm)} cm at {digits(at / ms)} ms"
+        axes.plot(time, run.series[depth] / cm, color=ROCK, label=text)
+        axes.plot(at / ms, most / cm, "o", color=ROCK, markersize=3.5)
         thickness = thickness_at_start(run, cushion)
         if thickness is not None:
             reference_line(axes, thickness / cm, "base", "-")
-        draw_references(axes, known.get(names.PENETRATION), "cm", "largest")
+        draw_references(axes, known.get(names.PENETRATION), "cm", "largest penetration")
         axes.axhline(0.0, color=GREY, linewidth=0.7)
         axes.set(xlabel="time (ms)", ylabel="penetration (cm)")
         over_time(axes, time)
         axes.invert_yaxis()
+        legend(axes)
 
 
 def load(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
@@ -174,7 +161,7 @@ def load(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
         axes.set(xlabel="penetration (cm)", ylabel="load (kN)")
         axes.set_xlim(left=0.0)
         second_scale(axes, kN / kgf, "(kgf)")
-        axes.legend(loc="upper left")
+        legend(axes)
 
 
 def _secant(axes: Axes, stiffness: float, colour: str, dashes: str, words: str) -> None:
@@ -188,5 +175,5 @@ def _secant(axes: Axes, stiffness: float, colour: str, dashes: str, words: str) 
         marker="o",
         markevery=[1],
         markersize=3.5,
-        label=f"{words} {stiffness / kN:.1f} kN/m = {stiffness * cm / kgf:.1f} kgf/cm",
+        label=f"{words} {digits(stiffness / kN)} kN/m = {digits(stiffness * cm / kgf)} kgf/cm",
     )

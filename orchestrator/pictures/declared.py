@@ -16,6 +16,7 @@ from ..core.results.metric import identifier
 from ..core.results.reading import StoredRun
 from ..metrics.energy import load_at_rest
 from ..metrics.names import without_component
+from ..tables import digits
 from .envelope import draw_envelope
 from .references import KnownMetrics, draw_references
 from .style import (
@@ -27,6 +28,7 @@ from .style import (
     WIDTH,
     figure,
     legend,
+    literal,
     over_time,
     second_scale,
 )
@@ -101,7 +103,7 @@ class DeclaredPicture:
             One of the panels.
         """
         owners = {panel.components[0] for panel in self.panels if not panel.common}
-        return panel.components[0] if len(owners) > 1 and not panel.common else ""
+        return literal(panel.components[0]) if len(owners) > 1 and not panel.common else ""
 
     def draw(self, run: StoredRun, known: KnownMetrics, file: Path) -> None:
         """Draw the picture.
@@ -125,6 +127,7 @@ class DeclaredPicture:
                 else:
                     _draw_panel(run, panel, axes, owner)
                     _draw_known(panel, known, axes)
+                legend(axes)
             drawn = zip(rows, self.panels, strict=True)
             _share_time(run, [axes for axes, panel in drawn if not panel.is_envelope])
 
@@ -209,7 +212,7 @@ def curves_of(run: StoredRun, panel: DeclaredPanel) -> Iterator[DeclaredCurve]:
             values = curve["factor"] * run.series[name]
             if curve["from_start"]:
                 values = values - values[0]
-            words = [component] if panel.common else []
+            words = [literal(component)] if panel.common else []
             yield DeclaredCurve(
                 ", ".join(filter(None, [*words, curve["label"]])),
                 values / SCREEN_UNITS[panel.told["unit"]],
@@ -248,7 +251,7 @@ def loads_at_rest(run: StoredRun, panel: DeclaredPanel) -> list[str]:
         return []
     loads = [load_at_rest(run, component) for component in panel.components]
     return [
-        f"beyond the load at rest, {abs(load) / SCREEN_UNITS[unit]:.1f} {unit}"
+        f"beyond the load at rest, {digits(abs(load) / SCREEN_UNITS[unit])} {unit}"
         for load in loads
         if load
     ]
@@ -267,7 +270,7 @@ def _draw_panel(run: StoredRun, panel: DeclaredPanel, axes: Axes, owner: str) ->
             label=curve.label or None,
         )
     for text in loads_at_rest(run, panel):
-        _note(axes, text)
+        axes.plot([], [], linestyle="none", label=text)
     axes.axhline(0.0, color=GREY, linewidth=0.7)
     downwards = "\ndownwards" if told["downwards"] else ""
     axes.set(ylabel=label_of(panel, owner) + downwards)
@@ -276,7 +279,6 @@ def _draw_panel(run: StoredRun, panel: DeclaredPanel, axes: Axes, owner: str) ->
     if told["second_unit"]:
         factor = SCREEN_UNITS[told["unit"]] / SCREEN_UNITS[told["second_unit"]]
         second_scale(axes, factor, f"({told['second_unit']})")
-    legend(axes, loc="best")
 
 
 def known_in(panel: DeclaredPanel, known: KnownMetrics) -> KnownMetrics:
@@ -300,17 +302,3 @@ def _draw_known(panel: DeclaredPanel, known: KnownMetrics, axes: Axes) -> None:
     """Draw the references of the metric that a panel names."""
     for name, references in known_in(panel, known).items():
         draw_references(axes, references, panel.told["unit"], name)
-
-
-def _note(axes: Axes, text: str) -> None:
-    axes.annotate(
-        text,
-        (1.0, 0.0),
-        xycoords="axes fraction",
-        xytext=(-3, 3),
-        textcoords="offset points",
-        ha="right",
-        va="bottom",
-        fontsize=8,
-        color=GREY,
-    )

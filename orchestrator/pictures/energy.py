@@ -15,7 +15,7 @@ from rockshed.components.common.units import ms
 from ..core.results.reading import StoredRun
 from ..metrics.energy import carried_work, impact_energy, machine_work, system_residual
 from ..metrics.roles import Member, recorded
-from .style import GREY, INK, WIDTH, figure, over_time
+from .style import GREY, INK, WIDTH, figure, legend_beside, literal, over_time
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def energy(run: StoredRun, file: Path) -> None:
         File of the picture.
     """
     with figure(run, file, WIDTH, 5.2) as made:
-        upper, lower = made.subplots(2, sharex=True, height_ratios=(4, 1))
+        upper, lower = made.subplots(2, sharex=True, height_ratios=(3.5, 1))
         _stack(run, upper)
         _error(run, lower)
         lower.set_xlabel("time (ms)")
@@ -106,8 +106,7 @@ def _stack(run: StoredRun, axes: Axes) -> None:
     )
     axes.set(ylabel="energy (J)")
     over_time(axes, time)
-    handles, labels = axes.get_legend_handles_labels()
-    axes.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
+    legend_beside(axes)
 
 
 def _error(run: StoredRun, axes: Axes) -> None:
@@ -115,7 +114,7 @@ def _error(run: StoredRun, axes: Axes) -> None:
     found = balance_error(run)
     if found is not None:
         axes.plot(run.series["time"] / ms, found.values, color=INK, linewidth=1.0)
-        axes.set_ylabel(f"error of the balance\n({found.label})", fontsize=8)
+        axes.set_ylabel(f"error\n({found.label})")
     axes.axhline(0.0, color=GREY, linewidth=0.7)
 
 
@@ -139,7 +138,7 @@ def expected(run: StoredRun) -> Layer:
     }
     added = {words: work for words, work in works.items() if work is not None and work.any()}
     whole = np.full(run.series["time"].size, start) + sum(added.values())
-    return Layer("\nand ".join(["all energy at the start", *added]), INK, whole)
+    return Layer(" and ".join(["all energy at the start", *added]), INK, whole)
 
 
 def balance_error(run: StoredRun) -> Layer | None:
@@ -158,10 +157,10 @@ def balance_error(run: StoredRun) -> Layer | None:
     """
     residual, machine = system_residual(run), machine_work(run)
     whole = impact_energy(run)
-    label = "% of the impact\nenergy"
+    label = "% of the\nimpact energy"
     if machine is not None:
         whole = float(abs(machine[-1]))
-        label = "% of the work of\nthe machine"
+        label = "% of the\nmachine's work"
     if residual is None or not whole:
         return None
     return Layer(label, INK, 100.0 * residual / whole)
@@ -194,7 +193,7 @@ def _labels(run: StoredRun, family: _Family) -> list[str]:
 def _label(member: Member) -> str:
     """Return the label of an energy, or words for it."""
     words = next(family.words for family in _FAMILIES if family.role.includes(member.role))
-    return member.label or words.format(component=member.component)
+    return member.label or words.format(component=literal(member.component))
 
 
 def _sum(run: StoredRun, label: str) -> NDArray[np.float64]:

@@ -11,7 +11,8 @@ from rockshed.components.common.units import SCREEN_UNITS, ms
 
 from ..core.results.reading import StoredRun
 from ..metrics.roles import elements
-from .style import GREY, ROCK, TRANSMITTED, legend
+from ..tables import digits
+from .style import GREY, ROCK, TRANSMITTED
 
 
 def draw_envelope(
@@ -39,12 +40,12 @@ def draw_envelope(
     axes.fill_between(places, low, high, color=TRANSMITTED, alpha=0.15, linewidth=0.0)
     axes.plot(places, high, color=TRANSMITTED, linewidth=1.1, label="largest and least")
     axes.plot(places, low, color=TRANSMITTED, linewidth=1.1)
-    instant = f"at {run.series['time'][row] / ms:.2f} ms"
+    instant = f"at {digits(run.series['time'][row] / ms)} ms"
     axes.plot(places, values[:, row], ".-", color=ROCK, linewidth=1.1, markersize=3, label=instant)
     axes.axhline(0.0, color=GREY, linewidth=0.7)
     axes.set(xlabel="x (m)", ylabel=f"{owner}{told['label']} ({told['unit']})")
-    axes.set_xlim(places[0], places[-1])
-    legend(axes, loc="best")
+    if places[-1] > places[0]:
+        axes.set_xlim(places[0], places[-1])
 
 
 def along(

@@ -57,4 +57,4 @@ def _envelope(found: RoofPressure, axes: Axes, time: Samples) -> None:
     words = f"{100 * MOST:.0f} % of it within {reach:.2f} m of its centre"
     axes.axvspan(centre - reach, centre + reach, color=ROCK, alpha=0.08, linewidth=0, label=words)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.05 * axes.get_ylim()[1])
-    legend(axes, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend(axes)

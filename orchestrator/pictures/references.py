@@ -8,14 +8,15 @@ from matplotlib.axes import Axes
 from rockshed.components.common.units import SCREEN_UNITS
 
 from ..references import Known
+from ..tables import digits
 from .style import reference_line
 
 KnownMetrics = Mapping[str, Known]
 """References by the name of the metric."""
 
 _FOUND_BY = {
-    "experiment": ("{what} measured, {about}{value:.2f} {unit}", "--"),
-    "paper": ("{what} in the paper's analysis, {about}{value:.2f} {unit}", ":"),
+    "experiment": ("{what} measured, {about}{value} {unit}", "--"),
+    "paper": ("{what} in the paper's analysis, {about}{value} {unit}", ":"),
 }
 
 
@@ -51,10 +52,10 @@ def levels(known: Known | None, unit: str, what: str) -> Iterator[ReferenceLevel
         Name of the metric in words.
     """
     for who, reference in ({} if known is None else known.by()).items():
-        words, dashes = _FOUND_BY.get(who, (f"{{what}} by {who}, {{value:.4g}} {{unit}}", "-."))
+        words, dashes = _FOUND_BY.get(who, (f"{{what}} by {who}, {{value}} {{unit}}", "-."))
         value = reference.value / SCREEN_UNITS[unit]
         about = "≈ " if reference.note else ""
-        text = words.format(what=what, about=about, value=value, unit=unit)
+        text = words.format(what=what, about=about, value=digits(value), unit=unit)
         yield ReferenceLevel(value, text, dashes)
 
 

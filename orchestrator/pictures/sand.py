@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection, LineCollection
@@ -23,15 +24,16 @@ from ..metrics.contents import decoded
 from ..metrics.energy import structures
 from ..metrics.roles import column, elements, members
 from ..metrics.values import extreme
+from ..tables import digits
 from .cushion import force_axes
 from .references import KnownMetrics
-from .style import BEAM, GREY, INK, captioned
+from .style import BEAM, GREY, INK, captioned, legend, literal
 
 FRAMES = 6
 _READ_AS = (
-    "lines: forces in the contacts, by width and colour; deep: the rock's lowest point below "
-    "the surface that the sand had at the start; transmitted: vertical force of the sand on its "
-    "base"
+    "to scale; lines: forces in the contacts, by width and colour; deep: the rock's lowest point "
+    "below the surface that the sand had at the start; transmitted: vertical force of the sand on "
+    "its base"
 )
 _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar (cm): the largest of these that is at most a quarter of the box."""
@@ -41,6 +43,16 @@ them within a disc."""
 _INTERESTING = 0.25
 """The frames end when the transmitted force has fallen below this part of its peak for good."""
 _CHAINS = LinearSegmentedColormap.from_list("chains", ["#e8c98f", "#e08a2e", "#c23b22", "#5a0f3c"])
+_WIDE = 10.0
+"""Width (inch) of the overview."""
+_TITLE = 0.4
+"""Height (inch) of the words above a panel."""
+_STRIP = 0.06
+"""Height of the strip with the scale / width of a panel."""
+_HIGHEST = 3.0
+"""Height of a panel / its width, at most."""
+_DEEPEST = 6.0
+"""Depth below the base of the sand to which the beam is shown / width of the box."""
 _SHOWN = 0.01
 """Contacts with less than this part of the largest force are not drawn."""
 _SAND_FACE, _SAND_EDGE, _ROCK_FACE, _BEAM_FACE = "#f4ecdc", "#d9c9a8", "#6b6b6b", "#dfe6df"
@@ -82,7 +94,7 @@ def frames(run: StoredRun, cushion: str, wanted: Sequence[float]) -> list[Frame]
 
 def _evenly(run: StoredRun, cushion: str) -> list[float]:
     """Return times (s) evenly over that part of the run in which something happens."""
-    force = run.series[str(column(run, cushion, Role.TRANSMITTED))]
+    force = np.abs(run.series[str(column(run, cushion, Role.TRANSMITTED))])
     time = run.series["time"]
     end = time[np.flatnonzero(force >= _INTERESTING * force.max())[-1]]
     return list(np.linspace(time[0], end, FRAMES))
@@ -91,7 +103,7 @@ def _evenly(run: StoredRun, cushion: str) -> list[float]:
 def _moments(run: StoredRun, cushion: str) -> list[float]:
     """Return the times (s) of half the peak force, of the peak, and of the greatest depth."""
     transmitted = str(column(run, cushion, Role.TRANSMITTED))
-    force = run.series[transmitted]
+    force = np.abs(run.series[transmitted])
     half = float(run.series["time"][np.flatnonzero(force >= 0.5 * force.max())[0]])
     deepest = extreme(run, str(column(run, cushion, Role.PENETRATION)))
     return [half, extreme(run, transmitted)[1], deepest[1]]
@@ -113,8 +125,9 @@ def snapshots(run: StoredRun, cushion: str, file: Path) -> None:
     columns = min(3, len(shown))
     lines = -(-len(shown) // columns)
     width = 3.5 * columns + 0.6
-    height = (3.5 * _shape(shown) + 0.3) * lines + 0.6
-    with captioned([_READ_AS, *caption(run)], file, width, height) as made:
+    height = (3.5 * shape_of(shown) + _TITLE) * lines
+    words = [read_as(run, shown), *caption(run)]
+    with captioned(words, file, width, height) as made:
         panels = list(made.subplots(lines, columns, squeeze=False).ravel())
         for axes in panels[len(shown) :]:
             axes.set_axis_off()
@@ -136,8 +149,9 @@ def overview(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> N
         File of the picture.
     """
     shown = frames(run, cushion, _moments(run, cushion))
-    above = 9.3 / len(shown) * _shape(shown) + 0.3
-    with captioned([_READ_AS, *caption(run)], file, 10.0, above + 3.8) as made:
+    above = 9.3 / len(shown) * shape_of(shown) + _TITLE
+    words = [read_as(run, shown), *caption(run)]
+    with captioned(words, file, _WIDE, above + 3.2) as made:
         grid = made.add_gridspec(2, len(shown), height_ratios=(above, 3.2))
         upper = [made.add_subplot(grid[0, i]) for i in range(len(shown))]
         draw(run, cushion, shown, made, upper)
@@ -145,12 +159,37 @@ def overview(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> N
         force_axes(run, cushion, known, axes)
         for frame in shown:
             axes.axvline(frame.time / ms, color=INK, linewidth=0.8, linestyle=(0, (1, 2)))
+        legend(axes)
 
 
-def _shape(shown: Sequence[Frame]) -> float:
-    """Height of a panel / its width."""
+def shape_of(shown: Sequence[Frame]) -> float:
+    """Return height / width of a panel; what is higher still is drawn smaller.
+
+    Parameters
+    ----------
+    shown : sequence of Frame
+        What is drawn.
+    """
     left, right, bottom, top = _window(shown)
-    return (top - bottom) / (right - left)
+    return min((top - bottom) / (right - left), _HIGHEST)
+
+
+def read_as(run: StoredRun, shown: Sequence[Frame]) -> str:
+    """Say how the pictures of the sand are read.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    shown : sequence of Frame
+        What is drawn.
+    """
+    structure = next(iter(structures(run)), None)
+    if structure is None:
+        return _READ_AS
+    scale = _deflection_scale(run, structure, shown)
+    larger = f" with deflections × {scale:g}" if scale != 1.0 else ""
+    return f"{_READ_AS}; green line: axis of {literal(structure)}{larger}"
 
 
 def draw(
@@ -171,17 +210,14 @@ def draw(
     panels : sequence of Axes
         As many as there are frames.
     """
-    strongest = [float(frame.state.contacts.normal_force.max(initial=0.0)) for frame in shown]
-    largest = max(strongest, default=0.0) or 1.0
-    structure = next(iter(structures(run)), None)
-    view = _View(run, cushion, structure, _window(shown), _deflection_scale(run, structure, shown))
+    view = view_of(run, cushion, shown)
     for frame, axes in zip(shown, panels):
-        _panel(view, frame, axes, largest / kN)
-    if structure is not None:
-        _name_axis(panels[0], view.deflection_scale)
+        draw_still(view, frame, axes)
+        draw_moving(view, frame, axes)
+        axes.set_title(in_words(view, frame), fontsize=8)
     _scale_bar(panels[0], shown[0].state.box.width / cm)
     bar = made.colorbar(
-        ScalarMappable(Normalize(0.0, largest / kN), _CHAINS),
+        ScalarMappable(Normalize(0.0, view.largest), _CHAINS),
         ax=list(panels),
         shrink=0.8,
         aspect=25,
@@ -192,10 +228,23 @@ def draw(
 
 
 @dataclass(frozen=True)
-class _View:
+class View:
     """Geometry and scales that all panels have in common.
 
-    StoredRun, cushion, structure under it, window (m), enlargement of deflections.
+    Attributes
+    ----------
+    run : StoredRun
+        The run.
+    cushion : str
+        Name of the component in the system.
+    structure : str or None
+        What carries the sand.
+    window : tuple of float
+        Left, right, bottom and top (m).
+    deflection_scale : float
+        Enlargement of the deflections.
+    largest : float
+        Largest force in a contact (kN).
     """
 
     run: StoredRun
@@ -203,6 +252,26 @@ class _View:
     structure: str | None
     window: tuple[float, float, float, float]
     deflection_scale: float
+    largest: float
+
+
+def view_of(run: StoredRun, cushion: str, shown: Sequence[Frame]) -> View:
+    """Return the view of all frames that are drawn.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    cushion : str
+        Name of the component in the system.
+    shown : sequence of Frame
+        What is drawn.
+    """
+    strongest = [float(frame.state.contacts.normal_force.max(initial=0.0)) for frame in shown]
+    structure = next(iter(structures(run)), None)
+    scale = _deflection_scale(run, structure, shown)
+    largest = (max(strongest, default=0.0) or 1.0) / kN
+    return View(run, cushion, structure, _window(shown), scale, largest)
 
 
 def _deflection_scale(run: StoredRun, structure: str | None, shown: Sequence[Frame]) -> float:
@@ -216,29 +285,16 @@ def _deflection_scale(run: StoredRun, structure: str | None, shown: Sequence[Fra
     return next(fitting, DEFLECTION_SCALES[-1])
 
 
-def _name_axis(axes: Axes, scale: float) -> None:
-    axes.annotate(
-        f"beam axis, deflections × {scale:g}",
-        (0.0, 0.0),
-        xycoords="axes fraction",
-        xytext=(2, 1),
-        textcoords="offset points",
-        fontsize=6.5,
-        color=BEAM,
-        zorder=5,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75},
-    )
-
-
 def _scale_bar(axes: Axes, box: float) -> None:
-    """Draw a length (cm) to measure by, in the upper right corner, where the rock leaves room."""
+    """Draw a length (cm) to measure by, in the strip below the beam."""
     length = max((bar for bar in _BARS if bar <= 0.25 * box), default=0.25 * box)
-    (_, right), (_, top) = axes.get_xlim(), axes.get_ylim()
-    end = right - 0.12 * (right - axes.get_xlim()[0])
+    (left, right), (bottom, _) = axes.get_xlim(), axes.get_ylim()
+    end = right - 0.01 * (right - left)
+    height = bottom + 0.5 * _STRIP * (right - left)
     axes.annotate(
         "",
-        (end - length, 0.94 * top),
-        (end, 0.94 * top),
+        (end - length, height),
+        (end, height),
         arrowprops={
             "arrowstyle": "|-|,widthA=0.25,widthB=0.25",
             "color": INK,
@@ -250,11 +306,11 @@ def _scale_bar(axes: Axes, box: float) -> None:
     )
     axes.annotate(
         f"{length:g} cm",
-        (end - 0.5 * length, 0.94 * top),
-        xytext=(0, -3),
+        (end - length, height),
+        xytext=(-4, 0),
         textcoords="offset points",
-        ha="center",
-        va="top",
+        ha="right",
+        va="center",
         fontsize=7.5,
         zorder=5,
     )
@@ -263,8 +319,9 @@ def _scale_bar(axes: Axes, box: float) -> None:
 def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
     """Left, right, bottom, top (m) of what all panels show.
 
-    That is the sand with what carries it, however far that gives way, and the rock; of things that
-    are farther off than the box is wide, nothing.
+    That is the sand with what carries it, however far that gives way, the rock, and a strip for
+    the scale; of rock and sand that are farther off than the box is wide, and of a beam that is
+    farther off than six times that, nothing.
     """
     box = shown[0].state.box
     margin = max(0.06 * box.width, 0.0 if math.isinf(box.wall_top) else 1.2 * box.wall_thickness)
@@ -274,34 +331,72 @@ def _window(shown: Sequence[Frame]) -> tuple[float, float, float, float]:
         for frame in shown
         for disc in (frame.state.rock, frame.state.discs)
     )
-    lowest = min(
-        float((discs.y - discs.radius).min(initial=box.base))
-        for frame in shown
-        for discs in (frame.state.beam, frame.state.rock, frame.state.discs)
+    lowest, beam_lowest = (
+        min(
+            float((discs.y - discs.radius).min(initial=box.base))
+            for frame in shown
+            for discs in parts(frame.state)
+        )
+        for parts in (lambda state: (state.rock, state.discs), lambda state: (state.beam,))
     )
-    bottom = min(box.base - max(2.2 * beam, margin), lowest - 0.1 * margin)
+    bottom = min(
+        box.base - max(2.2 * beam, margin),
+        max(lowest - 0.1 * margin, box.base - 1.2 * box.width),
+        max(beam_lowest - 0.1 * margin, box.base - _DEEPEST * box.width),
+    )
+    width = box.width + 2.0 * margin
     return (
         box.left - margin,
         box.left + box.width + margin,
-        max(bottom, box.base - 1.2 * box.width),
+        bottom - _STRIP * width,
         min(top, box.base + 1.2 * box.width) + 0.3 * margin,
     )
 
 
-def _panel(view: _View, frame: Frame, axes: Axes, largest: float) -> None:
+def draw_still(view: View, frame: Frame, axes: Axes) -> None:
+    """Draw the walls of the box and the base of the sand.
+
+    Parameters
+    ----------
+    view : View
+        Of all frames.
+    frame : Frame
+        What is drawn.
+    axes : Axes
+        Where to draw.
+    """
     left, right, bottom, top = (value / cm for value in view.window)
-    state = frame.state
     axes.set(aspect="equal", xlim=(left, right), ylim=(bottom, top), xticks=[], yticks=[])
     axes.spines[:].set_visible(False)
-    _discs(axes, state.discs, _SAND_FACE, _SAND_EDGE, 1)
-    _chains(axes, state, largest)
-    _discs(axes, state.beam, _BEAM_FACE, BEAM, 3)
-    _discs(axes, state.rock, _ROCK_FACE, INK, 3)
-    _walls(axes, state.box, top)
-    axes.axhline(state.box.base / cm, color=GREY, linewidth=0.5, zorder=2)
-    _axis_of_structure(view, frame, axes)
-    axes.set_title(f"{frame.time / ms:g} ms")
-    axes.set_title(_words(view, frame), loc="right", fontsize=6.5, color=GREY)
+    _walls(axes, frame.state.box, top)
+    axes.axhline(frame.state.box.base / cm, color=GREY, linewidth=0.5, zorder=2)
+
+
+def draw_moving(view: View, frame: Frame, axes: Axes) -> list[Artist]:
+    """Draw sand, force chains, beam and rock.
+
+    Parameters
+    ----------
+    view : View
+        Of all frames.
+    frame : Frame
+        What is drawn.
+    axes : Axes
+        Where to draw.
+
+    Returns
+    -------
+    list of Artist
+        What has been drawn, from below upwards.
+    """
+    state = frame.state
+    return [
+        _discs(axes, state.discs, _SAND_FACE, _SAND_EDGE, 1),
+        _chains(axes, state, view.largest),
+        _discs(axes, state.beam, _BEAM_FACE, BEAM, 3),
+        _discs(axes, state.rock, _ROCK_FACE, INK, 3),
+        *_axis_of_structure(view, frame, axes),
+    ]
 
 
 def _walls(axes: Axes, box: Any, top: float) -> None:
@@ -325,9 +420,9 @@ def _walls(axes: Axes, box: Any, top: float) -> None:
             )
 
 
-def _discs(axes: Axes, discs: Any, face: str, edge: str, order: int) -> None:
+def _discs(axes: Axes, discs: Any, face: str, edge: str, order: int) -> Artist:
     size = 2.0 * discs.radius / cm
-    axes.add_collection(
+    return axes.add_collection(
         EllipseCollection(
             size,
             size,
@@ -343,7 +438,7 @@ def _discs(axes: Axes, discs: Any, face: str, edge: str, order: int) -> None:
     )
 
 
-def _chains(axes: Axes, state: Any, largest: float) -> None:
+def _chains(axes: Axes, state: Any, largest: float) -> Artist:
     """Draw a line from centre to centre for each contact, the strongest on top.
 
     Width and colour follow from the force / ``largest`` (kN).
@@ -361,7 +456,7 @@ def _chains(axes: Axes, state: Any, largest: float) -> None:
         )
         / cm
     )
-    axes.add_collection(
+    return axes.add_collection(
         LineCollection(
             list(ends[order]),
             colors=_CHAINS(share[order]),
@@ -372,7 +467,7 @@ def _chains(axes: Axes, state: Any, largest: float) -> None:
     )
 
 
-def _axis_of_structure(view: _View, frame: Frame, axes: Axes) -> None:
+def _axis_of_structure(view: View, frame: Frame, axes: Axes) -> Sequence[Artist]:
     """Draw the axis of the structure, its deflections since the start enlarged."""
     heights = [
         values
@@ -381,11 +476,11 @@ def _axis_of_structure(view: _View, frame: Frame, axes: Axes) -> None:
         for values in elements(view.run, member.column)
     ]
     if not heights or len(heights) != frame.state.beam.x.size:
-        return
+        return []
     row = int(abs(view.run.series["time"] - frame.time).argmin())
     start = np.array([values[0] for values in heights])
     moved = np.array([values[row] for values in heights]) - start
-    axes.plot(
+    return axes.plot(
         frame.state.beam.x / cm,
         (start + view.deflection_scale * moved) / cm,
         color=BEAM,
@@ -394,11 +489,20 @@ def _axis_of_structure(view: _View, frame: Frame, axes: Axes) -> None:
     )
 
 
-def _words(view: _View, frame: Frame) -> str:
-    """Return the place of the rock and the transmitted force at the time of the frame."""
+def in_words(view: View, frame: Frame) -> str:
+    """Return time, place of the rock and transmitted force of a frame.
+
+    Parameters
+    ----------
+    view : View
+        Of all frames.
+    frame : Frame
+        What is drawn.
+    """
     run = view.run
     row = int(abs(run.series["time"] - frame.time).argmin())
     above = run.series[str(column(run, view.cushion, Role.ABOVE_SURFACE))][row]
     force = run.series[str(column(run, view.cushion, Role.TRANSMITTED))][row]
-    place = f"{abs(above) / cm:.1f} cm {'above' if above >= 0.0 else 'deep'}"
-    return f"rock {place}, {force / kN:.{2 if abs(force) < 10.0 * kN else 0}f} kN transmitted"
+    place = f"{digits(abs(above) / cm)} cm {'above' if above >= 0.0 else 'deep'}"
+    words = f"rock {place}, {digits(force / kN)} kN transmitted"
+    return f"{digits(frame.time / ms, 4)} ms: {words}"

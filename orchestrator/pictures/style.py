@@ -3,28 +3,26 @@
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from textwrap import wrap
 from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 
 from ..core.results.reading import StoredRun
 from ..files import whole_file
 from ..metrics.caption import caption
+from .sheet import LEGEND_SIZE, Sheet, shortened
 
 WIDTH = 7.2
 """Width (inch) of a picture of curves."""
 INK, GREY, FAINT = "#222222", "#767676", "#d9d9d9"
 TRANSMITTED, ROCK, BEAM, SAND = "#1f5a94", "#c0561a", "#3d7d3f", "#c9a66b"
-_DPI = 140
-_LETTERS = 20
-"""Letters of the caption in an inch."""
+REFERENCE_DASHES = "--"
+"""Dashes of a line at a value that somebody else has found."""
 _LONGEST_NAME = 80
 """Letters of a name in a picture, at most."""
 _METADATA = {".png": {"Software": "rockshed"}, ".svg": {"Creator": "rockshed", "Date": None}}
@@ -53,16 +51,17 @@ _LOOK = {
     "grid.color": FAINT,
     "grid.linewidth": 0.5,
     "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
     "lines.linewidth": 1.4,
     "legend.frameon": False,
-    "legend.fontsize": 8.5,
+    "legend.fontsize": LEGEND_SIZE,
     "figure.facecolor": "white",
 }
 
 
 def figure(
     run: StoredRun, file: Path, width: float, height: float
-) -> AbstractContextManager[Figure]:
+) -> AbstractContextManager[Sheet]:
     """Make a figure with the run's caption below, written to a file whole or not at all.
 
     Parameters
@@ -72,13 +71,13 @@ def figure(
     file : Path
         File of the picture.
     width, height : float
-        In inches.
+        Of the panels (inch).
     """
     return captioned(caption(run), file, width, height)
 
 
 @contextmanager
-def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> Iterator[Figure]:
+def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> Iterator[Sheet]:
     """Make a figure with lines below, written to a file at the end, whole or not at all.
 
     Parameters
@@ -88,24 +87,20 @@ def captioned(lines: Sequence[str], file: Path, width: float, height: float) -> 
     file : Path
         File of the picture.
     width, height : float
-        In inches.
+        Of the panels (inch).
     """
     with styled(lines, width, height) as made:
         yield made
+        made.fit()
         with whole_file(file) as temporary:
             made.savefig(temporary, metadata=_METADATA.get(file.suffix))
 
 
 @contextmanager
-def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Figure]:
-    """Make a figure (inches) in this look, with these lines below."""
+def styled(lines: Sequence[str], width: float, height: float) -> Iterator[Sheet]:
+    """Make a figure, its panels of this size (inch), in this look, with these lines below."""
     with matplotlib.rc_context(_LOOK):  # type: ignore[arg-type]  # the stubs know names, not numbers
-        wrapped = [line for text in lines for line in wrap(text, int(_LETTERS * width))]
-        made = Figure(figsize=(width, height), layout="constrained", dpi=_DPI)
-        made.supxlabel(
-            "\n".join(wrapped), x=0.01, ha="left", fontsize=6.5, color=GREY, linespacing=1.3
-        )
-        yield made
+        yield Sheet(lines, width, height, GREY)
 
 
 def literal(text: str) -> str:
@@ -123,26 +118,13 @@ def literal(text: str) -> str:
         where it is longer than a line.
     """
     plain = "".join(letter if letter.isprintable() else " " for letter in text)
-    if len(plain) > _LONGEST_NAME:
-        plain = f"{plain[:_LONGEST_NAME]}..."
     hidden = " " if plain.startswith("_") else ""
-    return hidden + plain.replace("$", r"\$")
+    return hidden + shortened(plain, _LONGEST_NAME).replace("$", r"\$")
 
 
-def reference_line(axes: Axes, value: float, text: str, dashes: str = "--") -> None:
-    """Draw a horizontal line at a reference, named at its right end."""
-    axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes)
-    axes.annotate(
-        text,
-        (1.0, value),
-        xycoords=("axes fraction", "data"),
-        xytext=(-2, 2),
-        textcoords="offset points",
-        ha="right",
-        va="bottom",
-        fontsize=8,
-        color=GREY,
-    )
+def reference_line(axes: Axes, value: float, text: str, dashes: str = REFERENCE_DASHES) -> None:
+    """Draw a horizontal line at a reference, named in the legend."""
+    axes.axhline(value, color=GREY, linewidth=0.9, linestyle=dashes, label=text)
 
 
 def over_time(axes: Axes, time: NDArray[np.float64]) -> None:
@@ -157,10 +139,30 @@ def plain_powers(axis: Axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def legend(axes: Axes, **options: Any) -> None:
-    """Add a legend, where there is something to name."""
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(**options)
+def legend(axes: Axes, entries: Sequence[Any] = ()) -> None:
+    """Name what is drawn above the panel, where it hides nothing; so the figure does it at its end.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel; without anything to name it gets no legend.
+    entries : sequence of Artist, optional
+        What is named, by default everything that has a label.
+    """
+    if handles := list(entries) or axes.get_legend_handles_labels()[0]:
+        _sheet_of(axes).name(axes, handles)
+
+
+def legend_beside(axes: Axes) -> None:
+    """Name what is drawn at the right of the panel, from below upwards."""
+    if handles := axes.get_legend_handles_labels()[0]:
+        _sheet_of(axes).name(axes, handles[::-1], is_beside=True)
+
+
+def _sheet_of(axes: Axes) -> Sheet:
+    made = axes.get_figure()
+    assert isinstance(made, Sheet)
+    return made
 
 
 def second_scale(axes: Axes, factor: float, label: str) -> None:

@@ -1,6 +1,7 @@
 """A run as one looks at it: variables with units, metrics, warnings, tables and pictures."""
 
 import shutil
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -9,11 +10,12 @@ from typing import TYPE_CHECKING
 from ..core.errors import InputRefused, Problem
 from ..core.results import reading
 from ..core.results.own_files import add_files
-from ..core.system.names import select
 from ..metrics import comparison
 from ..metrics.practice import formula_table
 from ..tables import Table
 from .building import Note, silent
+from .formats.choice import export_run
+from .overlay import overlay
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,13 +66,26 @@ class Run(reading.StoredRun):
         """
         return formula_table(self)
 
-    def plot(self, *names: str) -> "Figure":
+    def plot(
+        self,
+        *names: str,
+        beside: Sequence[reading.StoredRun] = (),
+        measured: str | Path | None = None,
+        side_by_side: bool = False,
+    ) -> "Figure":
         """Draw variables over time, a panel for each unit.
 
         Parameters
         ----------
         *names : str
             Names of recorded variables; ``*`` stands for any text.
+        beside : sequence of Run
+            Other runs whose variables of these names are drawn too.
+        measured : str or Path, optional
+            CSV file of measured curves that are drawn too: a column ``time (ms)`` and others with
+            their units, ``force (kN)``. The errors in peak, impulse and duration stand below.
+        side_by_side : bool
+            Whether each run has a column of panels of its own.
 
         Returns
         -------
@@ -82,7 +97,7 @@ class Run(reading.StoredRun):
         UnknownName
             The run has no variable of a name.
         InputRefused
-            No name is there.
+            No name is there, another run has no such variable, or the file of measured curves.
 
         Examples
         --------
@@ -92,15 +107,31 @@ class Run(reading.StoredRun):
         >>> [axes.get_ylabel() for axes in figure.axes]
         ['velocity (m/s)', 'force (N)']
         """
-        if not names:
-            remedy = f"name some, {', '.join([*self][1:4])} for instance; * stands for any text"
-            raise InputRefused([Problem("plot", "there is no variable to draw", remedy)])
-        from ..pictures.variables import draw  # imports matplotlib
+        for name in names:
+            _ = self[name]  # of an unknown name a KeyError, as everywhere in Python
+        return overlay([self, *beside], names, measured).figure(side_by_side)
 
-        chosen = dict.fromkeys(
-            match for name in names for match in (select(name, list(self)) or [name])
-        )
-        return draw([self[name] for name in chosen], self.caption)
+    def against(self, measured: str | Path, *names: str) -> Table:
+        """Return the errors of variables in peak, impulse and duration, beside measured curves.
+
+        Parameters
+        ----------
+        measured : str or Path
+            CSV file, as :meth:`plot` takes it.
+        *names : str
+            Names of recorded variables; ``*`` stands for any text.
+
+        Returns
+        -------
+        Table
+            A row for each number of each variable.
+
+        Raises
+        ------
+        InputRefused
+            No name is there, the run has no variable of a name, or the file of measured curves.
+        """
+        return overlay([self], names, measured).table()
 
     def figures(
         self, folder: str | Path | None = None, *, note: Note = silent, warn: Note = silent
@@ -132,6 +163,60 @@ class Run(reading.StoredRun):
         files = pictures.draw_all(self, place, note, warn)
         add_files(self.folder, files)
         return {file.stem: file for file in files}
+
+    def export(self, format: str, output: str | Path | None = None) -> list[Path]:
+        """Write the run in a format of other programs.
+
+        Parameters
+        ----------
+        format : str
+            ``csv``: time series as fmpy reads them. ``mat4``: time series and parameters as Dymola
+            and OpenModelica have them. ``vtk``: recorded states for ParaView.
+        output : str or Path, optional
+            File, of ``vtk`` a folder; by default in the folder ``export`` of the run.
+
+        Returns
+        -------
+        list of Path
+            The files.
+
+        Raises
+        ------
+        InputRefused
+            The format is unknown, a library for it is missing, the run has nothing to write,
+            something is there already, or it cannot be written.
+        """
+        return export_run(self, format, None if output is None else Path(output))
+
+    def animate(
+        self, file: str | Path | None = None, *, progress: Callable[[int, int], None] | None = None
+    ) -> Path:
+        """Write rock, sand with its force chains, and beam over time as an animation.
+
+        Parameters
+        ----------
+        file : str or Path, optional
+            Ends in ``.mp4`` or ``.gif``; by default in the folder of the pictures of the run.
+        progress : callable, optional
+            Called with the numbers of frames that are done, and of all.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputRefused
+            The run has too few recorded states, the format is unknown or its packages are missing,
+            or something else is there.
+        """
+        from ..pictures.sand_animation import animate_run  # imports matplotlib
+
+        place = Path(file) if file is not None else None
+        written = animate_run(self, place, progress or (lambda done, total: None))
+        add_files(self.folder, [written])
+        return written
 
     def save(self, folder: str | Path) -> Path:
         """Copy the results into a folder that does not exist yet.

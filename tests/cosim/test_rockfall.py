@@ -16,10 +16,10 @@ from typer.testing import CliRunner
 
 import rockshed
 from rockshed.analyses.rockfall import campaign
-from rockshed.analyses.rockfall.animation_format import animation_format
 from rockshed.analyses.rockfall.campaign import campaign_of
 from rockshed.analyses.rockfall.passages import line_passages
 from rockshed.analyses.rockfall.replay import replay
+from rockshed.animations.formats import animation_format
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE
 from rockshed.core.errors import InputRefused

@@ -12,6 +12,7 @@ def test_names_with_dollars_brackets_and_braces_are_drawn_letter_for_letter(tmp_
         axes.set(xlabel=name, ylabel=name, title=name, yscale="log")
         plain_powers(axes.yaxis)
         legend(axes)
+        made.fit()
         drawn = [axes.xaxis.label, axes.yaxis.label, *axes.get_legend().get_texts()]
         assert not any(text.get_parse_math() for text in drawn)
     assert file.is_file()

@@ -16,6 +16,8 @@ from ...pictures.style import (
     ROCK,
     TRANSMITTED,
     WIDTH,
+    legend,
+    literal,
     reference_line,
     second_scale,
 )
@@ -70,14 +72,14 @@ def overview(result: "CalibrationResult") -> Figure:
             _constants(axes, result.calibrations[0])
         axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)
-        axes.legend(loc="upper left")
+        legend(axes)
     return figure
 
 
 def _curves(axes: Axes, calibrations: Sequence[Calibration]) -> None:
     measured = calibrations[0].fits[0].measured
     depth = measured.depth / cm
-    label = f"measured: {measured.name}"
+    label = f"measured: {literal(measured.name)}"
     axes.plot(depth, measured.load / kN, "s", color=INK, markersize=3.5, label=label)
     for made, colour in zip(calibrations, (TRANSMITTED, ROCK)):
         fit = made.fits[0]

@@ -10,8 +10,20 @@ from matplotlib.figure import Figure
 
 from rockshed.components.common.units import kJ, kN, mm, ms
 
-from ...pictures.style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH, legend, literal
+from ...pictures.style import (
+    BEAM,
+    GREY,
+    INK,
+    ROCK,
+    SAND,
+    TRANSMITTED,
+    WIDTH,
+    legend,
+    literal,
+    plain_powers,
+)
 from ...sites.pile.preparation import PreparedPile
+from ...tables import digits
 from ..drawing import drawn
 from ..frame import Drawing
 from .blows import Blow
@@ -40,10 +52,11 @@ def caption(pile: PreparedPile) -> list[str]:
         cushion = f"{stiffness}, restitution {site.cushion.restitution:g}"
     return [
         ": ".join(filter(None, (literal(pile.name), literal(site.description)))),
-        f"ram {site.hammer.mass:g} kg x {site.hammer.drop:g} m, "
+        f"ram {digits(site.hammer.mass, 4)} kg x {digits(site.hammer.drop, 4)} m, "
         f"efficiency {site.hammer.efficiency:g}, {cushion}; "
         f"rod {length:g} m in {len(site.rod)} section(s), {site.segments} segments; "
-        f"R_u {shaft / kN:g} kN at the shaft, {site.toe.resistance / kN:g} kN at the toe",
+        f"R_u {digits(shaft / kN, 4)} kN at the shaft, "
+        f"{digits(site.toe.resistance / kN, 4)} kN at the toe",
     ]
 
 
@@ -102,7 +115,7 @@ def traces(pile: PreparedPile, blow: Blow) -> Figure:
             for arrival in np.arange(2.0, end * ms / pile.travel_time, 2.0):
                 at = arrival * pile.travel_time / ms
                 axes.axvline(at, color=GREY, linewidth=0.5, linestyle=":")
-            legend(axes, loc="upper right", ncols=2)
+            legend(axes)
         way.invert_yaxis()
         way.set(xlabel="time (ms); dotted: back from the toe", xlim=(0.0, min(end, time[-1])))
     return figure
@@ -138,7 +151,7 @@ def _displacements(blow: Blow, axes: Axes) -> None:
     time = blow.traces["time"] / ms
     axes.plot(time, blow.traces["head.position"] / mm, color=ROCK, label="head")
     axes.plot(time, blow.traces["toe.position"] / mm, color=TRANSMITTED, label="toe")
-    words = f"set, {blow.set / mm:.2f} mm"
+    words = f"set, {digits(blow.set / mm)} mm"
     axes.plot(time, blow.traces["toe.set"] / mm, ":", color=INK, label=words)
 
 
@@ -178,7 +191,7 @@ def envelopes(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
             axes.axvline(0.0, color=GREY, linewidth=0.7)
             for layer in pile.site.shaft:
                 axes.axhspan(layer.top, layer.bottom, color=SAND, alpha=0.18, linewidth=0.0)
-            legend(axes, loc="best")
+            legend(axes)
         stress.set(xlabel="stress (MPa), tension to the left", ylabel="depth below the head (m)")
         stress.set_ylim(pile.depths[-1], 0.0)
         left.set(xlabel="residual force (kN)")
@@ -212,10 +225,10 @@ def blow_by_blow(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
         label = "transferred energy"
         energy.plot(numbers, energies, "s--", color=BEAM, linewidth=1.0, label=label)
         energy.set(ylabel="transferred energy (kJ)")
-        energy.set_ylim(0.0, 1.2 * max(energies))
+        energy.set_ylim(0.0, 1.2 * max(energies) or 1.0)
         energy.grid(False)
         lines = [*axes.get_lines(), *energy.get_lines()]
-        axes.legend(lines, [str(line.get_label()) for line in lines], loc="lower right")
+        legend(axes, lines)
     return figure
 
 
@@ -252,10 +265,10 @@ def bearing(pile: PreparedPile, graph: Sequence[Blow]) -> Figure:
         stress.set_ylim(0.0, 1.15 * max(blow.compression.max() / MPa for blow in graph))
         if wide:
             stress.set_xscale("log")
-            stress.xaxis.set_major_formatter("{x:g}")
+            plain_powers(stress.xaxis)
         else:
             stress.set_xlim(left=0.0)
-        legend(stress, loc="center right")
+        legend(stress)
     return figure
 
 

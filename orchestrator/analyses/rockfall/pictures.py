@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from rockshed.components.common.units import kJ
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSED_RIGHT, RESTED, STOPPED
 
+from ...animations.writing import FRAMES_PER_SECOND, write_animation
+from ...pictures.marks import Mark, name_marks
 from ...pictures.style import (
     BEAM,
     GREY,
@@ -33,7 +35,6 @@ from ...sites.rockfall.site import Barrier
 from ...tables import digits
 from ..drawing import drawn
 from ..frame import Count, Drawing, StageProgress, counter
-from .animation import FRAMES_PER_SECOND, write_animation
 from .passages import QUANTITIES, LinePassages, PassageQuantity
 from .replay import MODES, Replay, replay
 
@@ -75,8 +76,6 @@ _LEVEL = 0.05
 """Height of a picture of a level profile / its length."""
 _FEWEST_RADII = 20.0
 """Height of a picture of a level profile / radius of the rock, at least."""
-_NAMES_IN_A_LINE = 5
-"""Names that stand side by side above a panel."""
 _TO_SCALE = 0.02
 """Part by which heights may be drawn larger than lengths and still be to scale."""
 _ALIKE = 1e-9
@@ -88,12 +87,12 @@ def caption(result: "RockfallResult") -> list[str]:
     site = result.slope.site
     campaign = result.campaign
     mass = result.slope.instance["mass"]
-    rock = f"rock: r = {site.rock.radius:g} m, m = {mass:.0f} kg, {site.rock.shape}"
+    rock = f"rock: r = {digits(site.rock.radius)} m, m = {digits(mass, 4)} kg, {site.rock.shape}"
     chance = f"Latin hypercube of {site.hypercube}" if site.hypercube else "independent trials"
     return [
         ": ".join(filter(None, (literal(result.name), literal(site.description)))),
         f"{campaign.trials} trials, seed {campaign.seed}, {chance}; {rock}; "
-        f"V_lim {site.limit_speed.mean:g} ± {site.limit_speed.deviation:g} m/s",
+        f"V_lim {digits(site.limit_speed.mean)} ± {digits(site.limit_speed.deviation)} m/s",
     ]
 
 
@@ -147,41 +146,28 @@ def _slope(result: "RockfallResult", axes: Axes) -> None:
     axes.plot(x, y, color=INK, linewidth=1.0, zorder=3)
     top = y.max() + 0.12 * rise
     axes.set(xlim=(x[0], x[-1]), ylim=(bottom, top), ylabel="y (m)")
-    _search_lines(result, axes)
-    for barrier in result.slope.site.barrier:
-        _barrier(barrier, surface(nodes, barrier.x), axes)
-
-
-def _search_lines(result: "RockfallResult", axes: Axes) -> None:
-    top = axes.get_ylim()[1]
     campaign = result.campaign
-    for line, name in zip(campaign.lines[: len(result.slope.site.line)], campaign.names):
+    for line in campaign.lines[: len(result.slope.site.line)]:
         upper = np.minimum(line[[1, 3]], top)
         axes.plot(line[[0, 2]], upper, color=GREY, linewidth=0.9, linestyle="--", zorder=2)
-        axes.annotate(
-            literal(name),
-            (line[2], min(line[3], top)),
-            xytext=(2, -2),
-            rotation=90,
-            ha="left",
-            va="top",
-            color=GREY,
-            **_MARK,
-        )
+    for barrier in result.slope.site.barrier:
+        foot = surface(nodes, barrier.x)
+        ends = [foot, foot + barrier.height]
+        axes.plot([barrier.x, barrier.x], ends, color=BEAM, linewidth=2.2, zorder=5)
 
 
-def _barrier(barrier: Barrier, foot: float, axes: Axes) -> None:
-    top = foot + barrier.height
-    axes.plot([barrier.x, barrier.x], [foot, top], color=BEAM, linewidth=2.2, zorder=5)
-    axes.annotate(
-        f"{literal(barrier.name)}: {barrier.height:g} m, {barrier.capacity / kJ:g} kJ",
-        (barrier.x, top),
-        xytext=(0, 4),
-        ha="center",
-        va="bottom",
-        color=BEAM,
-        **_MARK,
-    )
+def _marks(result: "RockfallResult") -> list[Mark]:
+    """Return the names of search lines and barriers."""
+    campaign = result.campaign
+    lines = campaign.lines[: len(result.slope.site.line)]
+    return [
+        *(Mark(float(line[2]), name) for line, name in zip(lines, campaign.names)),
+        *(Mark(b.x, b.name, BEAM, _limits(b)) for b in result.slope.site.barrier),
+    ]
+
+
+def _limits(barrier: Barrier) -> str:
+    return f": {digits(barrier.height)} m, {digits(barrier.capacity / kJ)} kJ"
 
 
 def envelopes(result: "RockfallResult") -> Figure:
@@ -206,30 +192,19 @@ def envelopes(result: "RockfallResult") -> Figure:
         for number in range(count):
             path = replay(result.slope, campaign, number, _INTERVAL)
             panels[0].plot(path.x, path.y, color=ROCK, linewidth=0.5, alpha=0.35, zorder=4)
-        _legend_above(panels[0])
+        legend(panels[0])
         for axes, name in zip(panels[1:], _SHOWN, strict=True):
             _envelope(result, name, axes)
-        _legend_above(panels[1])
+        legend(panels[1])
         panels[-1].set(xlabel="x (m)")
+        figure.fit()
+        name_marks(panels[0], _marks(result))
         _tell_scale(panels[0])
     return figure
 
 
-def _legend_above(axes: Axes) -> None:
-    """Name what is drawn above the panel, where it hides neither curves nor labels."""
-    number = len(axes.get_legend_handles_labels()[0])
-    legend(
-        axes,
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        ncols=max(1, min(number, _NAMES_IN_A_LINE)),
-        borderaxespad=0.2,
-    )
-
-
 def _tell_scale(axes: Axes) -> None:
     """Say by how much heights are drawn larger than lengths."""
-    axes.figure.draw_without_rendering()  # type: ignore[union-attr]  # it is no part of a figure
     box = axes.get_window_extent()
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     ratio = (box.height / (top - bottom)) / (box.width / (right - left))
@@ -346,7 +321,7 @@ def ends(result: "RockfallResult") -> Figure:
     with drawn([*caption(result), "Curve: rocks that get beyond x."], WIDTH, 5.2) as figure:
         slope, axes = figure.subplots(2, 1, sharex=True, height_ratios=[1, 1.2])
         _slope(result, slope)
-        _legend_above(slope)
+        legend(slope)
         _end_histogram(result, x, axes)
         axes.set(xlabel="x (m)", ylabel="trials that end here")
         reached = axes.twinx()
@@ -359,7 +334,9 @@ def ends(result: "RockfallResult") -> Figure:
         )
         reached.set(ylabel="beyond x (%)", ylim=(0.0, 104.0))
         reached.grid(False)
-        _legend_above(axes)
+        legend(axes)
+        figure.fit()
+        name_marks(slope, _marks(result))
         _tell_scale(slope)
     return figure
 
@@ -434,6 +411,8 @@ def animate_trial(
     last = len(trial.time) - 1
     with styled([*caption(result), f"Trial {number}, {pace}."], WIDTH, 5.6) as figure:
         draw, moving = _stage(result, trial, figure)
+        figure.fit()
+        name_marks(figure.axes[0], _marks(result))
         frames = len(trial.time) + _STILL
         write_animation(file, figure, frames, lambda i: draw(min(i, last)), moving, count)
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from rockshed.components.catalogue import component
 
+from ...animations.formats import animation_format
 from ...core.errors import InputRefused, Problem
 from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
-from .animation_format import animation_format
 from .campaign import Executor, campaign_of, threads
 from .cluster import Certificates, dask_workers
 from .replay import check

@@ -137,7 +137,7 @@ def _foot() -> Row:
 
 def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """Draw both masses over the plate's area."""
-    from ...pictures.style import GREY, INK, ROCK, WIDTH, captioned
+    from ...pictures.style import GREY, INK, ROCK, WIDTH, captioned, legend
 
     file = folder / "mass.png"
     areas = np.linspace(20.0, 450.0, 200)
@@ -156,7 +156,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
         axes.plot(AREAS, [_by_quadrature(a) for a in AREAS], "o", color=GREY, fillstyle="none")
         axes.set(xlabel="area of the plate (cm²)", ylabel="mass (kg)")
         axes.set_ylim(bottom=0.0)
-        axes.legend(loc="lower right")
+        legend(axes)
     return [file]
 
 

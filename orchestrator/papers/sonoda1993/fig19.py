@@ -248,7 +248,7 @@ def _fig_19(outcomes: Outcomes, file: Path) -> Path:
         left.set_ylabel("transmitted force (kgf)")
         _draw_steps(right, outcomes, "beam.energy.elastic", kgf * cm)
         right.set_ylabel("energy of the beam (kgf cm)")
-        legend(left, loc="upper left")
+        legend(left)
     return file
 
 
@@ -285,7 +285,7 @@ def _orders(outcomes: Outcomes, file: Path) -> Path:
     with captioned([words], file, WIDTH, 3.6) as made:
         for axes, name in zip(made.subplots(1, 2), ERRORS, strict=True):
             _draw_errors(axes, name, outcomes)
-            legend(axes, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+            legend(axes)
     return file
 
 

@@ -194,7 +194,7 @@ def _fig_17(outcomes: Outcomes, file: Path) -> Path:
             reference_line(axes, sonoda1993.tests()[number].peak_force / kgf, "peak measured")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
         panels[0].set_ylabel("transmitted force (kgf)")
-        legend(panels[0], loc="upper left")
+        legend(panels[0])
     return file
 
 
@@ -213,7 +213,7 @@ def _fig_18(outcomes: Outcomes, file: Path) -> Path:
             reference_line(axes, sonoda1993.BEAM_ENERGY[number] / _ENERGY, "peak measured, eq. (7)")
             axes.set(xlabel="time (ms)", title=f"({letter}) test {number}", xlim=(0.0, None))
         panels[0].set_ylabel("energy of the beam (kgf cm)")
-        legend(panels[0], loc="upper left", bbox_to_anchor=(0.0, 0.93))
+        legend(panels[0])
     return file
 
 

@@ -209,7 +209,7 @@ def _forces(outcomes: Outcomes, file: Path) -> Path:
         for axes in grid[-1]:
             axes.set_xlabel("time (ms)")
         grid[0][0].set_ylim(0.0, None)
-        legend(grid[0][0], loc="upper right")
+        legend(grid[0][0])
     return file
 
 

@@ -307,7 +307,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
             axes.set_xticks(BEAMS, [str(number) for number in BEAMS], minor=False)
         for axes in grid.ravel():
             axes.xaxis.set_minor_formatter("")
-        legend(grid[0][0], loc="best")
+        legend(grid[0][0])
     return [file]
 
 

@@ -142,7 +142,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
         for axes in grid[-1]:
             axes.set_xlabel("time (ms)")
         grid[0][0].set_ylim(0.0, None)
-        legend(grid[0][0], loc="upper right")
+        legend(grid[0][0])
     return [file]
 
 

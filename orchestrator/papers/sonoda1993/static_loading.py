@@ -355,7 +355,7 @@ _SHADES = ("#9ecae1", "#5fa3d0", "#2f7fbc", "#155a9c", "#08306b")
 
 
 def _fig_13b(listed: Sequence[Row], file: Path) -> Path:
-    from ...pictures.style import GREY, INK, WIDTH, captioned
+    from ...pictures.style import GREY, INK, WIDTH, captioned, legend
 
     top = max(E_BAR)
     words = (
@@ -373,7 +373,7 @@ def _fig_13b(listed: Sequence[Row], file: Path) -> Path:
         axes.set(xlabel="fictitious modulus E_bar (kgf/cm²)", xlim=(0.0, 1.06 * top))
         axes.set(ylabel="secant spring constant k (kgf/cm)")
         axes.set_ylim(bottom=0.0)
-        axes.legend(loc="upper left")
+        legend(axes)
     return file
 
 

@@ -218,6 +218,8 @@ def _points(axes: "Axes", name: str, colour: str, mark: str, rows: Mapping[int, 
 
 
 def _decorate(axes: "Axes") -> None:
+    from ...pictures.style import legend  # imports matplotlib
+
     axes.set(
         xscale="log",
         yscale="log",
@@ -229,7 +231,7 @@ def _decorate(axes: "Axes") -> None:
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(lambda value, place: "")
-    axes.legend(loc="upper left")
+    legend(axes)
 
 
 STUDY = Study(

@@ -143,7 +143,7 @@ def _separation() -> Row:
 
 def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """Draw R_u over the number of segments."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED, WIDTH, captioned, plain_powers
+    from ...pictures.style import INK, ROCK, TRANSMITTED, WIDTH, captioned, legend, plain_powers
 
     file = folder / "resistance.png"
     words = (
@@ -159,7 +159,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
         axes.set(xlabel="segments", ylabel="R_u (kN)")
         plain_powers(axes.xaxis)
         plain_powers(axes.yaxis)
-        axes.legend()
+        legend(axes)
     return [file]
 
 

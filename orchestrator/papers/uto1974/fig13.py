@@ -136,7 +136,7 @@ def _draw_velocities(axes: "Axes") -> None:
 
     Velocities belong to half a step later in a chain, to the step that ends with waves.
     """
-    from ...pictures.style import INK, ROCK, TRANSMITTED
+    from ...pictures.style import INK, ROCK, TRANSMITTED, legend
 
     for scheme, label, colour, look, later in (
         ("modified_smith", "modified Smith", ROCK, ".-", 0.5),
@@ -150,12 +150,12 @@ def _draw_velocities(axes: "Axes") -> None:
         axes.plot(since / ms, velocity, look, color=colour, label=label, **form)
     axes.set(xlabel="time since the arrival (ms)", xlim=(-0.05, 0.25))
     axes.set(ylabel="velocity of the toe / V0")
-    axes.legend()
+    legend(axes)
 
 
 def _draw_energies(axes: "Axes") -> None:
     """Draw the energy in the ground, by the modified scheme."""
-    from ...pictures.style import ROCK, TRANSMITTED
+    from ...pictures.style import ROCK, TRANSMITTED, legend
 
     modified = run("modified_smith", ALPHA)
     time = modified.time / ms
@@ -164,7 +164,7 @@ def _draw_energies(axes: "Axes") -> None:
     axes.plot(time, kinetic, color=TRANSMITTED, label="kinetic")
     axes.plot(time, elastic, "--", color=ROCK, label="elastic")
     axes.set(xlabel="time (ms)", ylabel="energy in the ground (J)", xlim=(0.0, time[-1]))
-    axes.legend()
+    legend(axes)
 
 
 STUDY = Study(

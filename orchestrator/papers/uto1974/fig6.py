@@ -88,7 +88,7 @@ def _parts_early() -> Row:
 
 def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """Draw the force under the hammer and the velocity of the toe."""
-    from ...pictures.style import GREY, WIDTH, captioned
+    from ...pictures.style import GREY, WIDTH, captioned, legend
 
     file = folder / "figure6.png"
     words = (
@@ -104,7 +104,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
             for n in (1, 2):
                 at = n * coarse().travel_time / ms
                 axes.axvline(at, color=GREY, linewidth=0.8, linestyle="--")
-            axes.legend()
+            legend(axes)
         lower.set(xlabel="time (ms)", xlim=(0.0, coarse().time[-1] / ms))
     return [file]
 

@@ -164,7 +164,7 @@ def _parting() -> Row:
 
 def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
     """Draw the stress at the gauge over time."""
-    from ...pictures.style import GREY, ROCK, TRANSMITTED, WIDTH, captioned
+    from ...pictures.style import GREY, ROCK, TRANSMITTED, WIDTH, captioned, legend
 
     file = folder / "figure7.png"
     words = (
@@ -187,7 +187,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
         axes.axhline(0.0, color=GREY, linewidth=0.7)
         axes.set(xlabel="time (ms)", xlim=(0.0, 40.0))
         axes.set(ylabel="stress at the gauge (N/mm²)\ncompression positive")
-        axes.legend()
+        legend(axes)
     return [file]
 
 

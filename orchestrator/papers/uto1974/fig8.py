@@ -100,7 +100,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
 
 def _draw_head(axes: "Axes") -> None:
     """Draw the force under the hammer beside St. Venant's."""
-    from ...pictures.style import INK, ROCK
+    from ...pictures.style import INK, ROCK, legend
 
     run = spring()
     exact = closed_form(run, -1.0)
@@ -109,12 +109,12 @@ def _draw_head(axes: "Axes") -> None:
     axes.plot(run.time / ms, run.relative("head.contact_force"), color=ROCK, label="Smith, k2 = k1")
     axes.plot(at / ms, exact.force(at) / exact.first_force, "--", **form)
     axes.set(ylabel="force under the\nhammer / Z V0")
-    axes.legend()
+    legend(axes)
 
 
 def _draw_toe(axes: "Axes") -> None:
     """Draw the force on the toe of all three rods."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED
+    from ...pictures.style import INK, ROCK, TRANSMITTED, legend
 
     for run, look, colour, label in (
         (spring(), "-", ROCK, "Smith, k2 = k1"),
@@ -124,7 +124,7 @@ def _draw_toe(axes: "Axes") -> None:
         force = run.relative("toe.contact_force")
         axes.plot(run.time / ms, force, look, color=colour, linewidth=1.2, label=label)
     axes.set(ylabel="force on the\ntoe / Z V0")
-    axes.legend()
+    legend(axes)
 
 
 STUDY = Study(

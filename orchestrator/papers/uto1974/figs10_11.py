@@ -158,7 +158,7 @@ def draw(outcomes: Outcomes, listed: Sequence[Row], folder: Path) -> list[Path]:
 
 def _draw_forces(axes: "Axes") -> None:
     """Draw the force on the toe for every stiffness of its spring."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED, plain_powers
+    from ...pictures.style import INK, ROCK, TRANSMITTED, legend, plain_powers
 
     for ratio, colour in zip(STIFFNESSES, (TRANSMITTED, INK, "#8cc28a", ROCK), strict=True):
         run = stiff(ratio)
@@ -174,12 +174,12 @@ def _draw_forces(axes: "Axes") -> None:
         yticks=[-1e4, -1e3, -1e2, -1e1, 0.0, 1e1, 1e2, 1e3, 1e4],
     )
     plain_powers(axes.yaxis)
-    axes.legend(loc="upper left")
+    legend(axes)
 
 
 def _draw_energies(axes: "Axes") -> None:
     """Draw the total energy as printed, and the half-step energy."""
-    from ...pictures.style import INK, ROCK, TRANSMITTED
+    from ...pictures.style import INK, ROCK, TRANSMITTED, legend
 
     for segments, colour, marker in ((10, ROCK, "."), (100, TRANSMITTED, None)):
         run = energy(segments)
@@ -193,7 +193,7 @@ def _draw_energies(axes: "Axes") -> None:
     axes.plot(ten.time / ms, half_step, color=INK, linewidth=1.0, label=label)
     axes.set(xlabel="time (ms)", ylabel="total energy / that of the hammer")
     axes.set(xlim=(0.0, ten.time[-1] / ms))
-    axes.legend()
+    legend(axes)
 
 
 STUDY = Study(

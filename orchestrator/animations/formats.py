@@ -1,9 +1,12 @@
 """Formats of animations, and whether this installation can write them."""
 
+from collections.abc import Callable
 from importlib.util import find_spec
 
-from ...core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem
 
+Count = Callable[[int, int], None]
+"""Called with the number of pieces of work that are done, and of all."""
 FORMATS = ("mp4", "gif")
 """Endings of the files."""
 

@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...files import whole_file
-from ..frame import Count
+from ..files import whole_file
+from .formats import Count
 
 FRAMES_PER_SECOND = 25
 """Frames in a second of an animation."""

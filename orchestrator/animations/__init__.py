@@ -1,0 +1,1 @@
+"""Animations as MP4 or GIF: their formats, and how frames become a file."""
