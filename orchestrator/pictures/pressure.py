@@ -9,6 +9,7 @@ from rockshed.components.common.units import ms
 from ..core.results.reading import StoredRun
 from ..metrics.pressure import MOST, RoofPressure, roof_pressure
 from ..metrics.values import Samples
+from ..tables import digits
 from .style import GREY, ROCK, TRANSMITTED, WIDTH, figure, legend, over_time
 
 _KPA = 1e3
@@ -47,14 +48,16 @@ def _envelope(found: RoofPressure, axes: Axes, time: Samples) -> None:
     """Draw largest pressures, those under the largest load, and where 90 % of it lie."""
     row = found.row_of_most_load()
     axes.plot(found.places, found.values.max(axis=1) / _KPA, color=TRANSMITTED, label="largest")
-    instant = f"under the largest load of the impact, at {time[row]:.1f} ms"
+    instant = f"under the largest load of the impact, at {digits(time[row])} ms"
     axes.plot(found.places, found.values[:, row] / _KPA, ".-", color=ROCK, label=instant)
     rest = found.values[:, 0] / _KPA
     axes.plot(found.places, rest, color=GREY, linewidth=0.9, label="at rest")
     load = found.added[:, row].clip(min=0.0)
-    centre = float(load @ found.places / load.sum())
-    reach = found.within(MOST)
-    words = f"{100 * MOST:.0f} % of it within {reach:.2f} m of its centre"
-    axes.axvspan(centre - reach, centre + reach, color=ROCK, alpha=0.08, linewidth=0, label=words)
+    if load.any():
+        centre = float(load @ found.places / load.sum())
+        reach = found.within(MOST)
+        words = f"{100 * MOST:.0f} % of it within {digits(reach)} m of its centre"
+        ends = (centre - reach, centre + reach)
+        axes.axvspan(*ends, color=ROCK, alpha=0.08, linewidth=0, label=words)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.05 * axes.get_ylim()[1])
     legend(axes)

@@ -50,7 +50,8 @@ def _keys(mapping, new):
 
 def scaled(run, factor):
     series = {
-        name: values if name == "time" else factor * values for name, values in run.series.items()
+        name: values if name == "time" or ".position." in name else factor * values
+        for name, values in run.series.items()
     }
     return replace(run, series=series, metrics=type(run.metrics)())
 

@@ -8,6 +8,9 @@ import pytest
 
 from rockshed.pictures.sand import Frame, _window
 
+STRIP = 0.06 * (0.4 + 2 * 0.024)
+"""Height (m) of the strip with the scale, below a box of 40 cm with its margins."""
+
 
 def state(beam, rock):
     """Sand 10 cm high in a box of 40 cm on beam discs, at height 0.025 m, that have gone down."""
@@ -27,11 +30,11 @@ def bottom(*pairs):
 
 
 def test_the_beam_stays_in_the_picture_however_far_it_gives_way():
-    assert bottom(([0.0, 0.0], 0.2)) == pytest.approx(0.025 - 0.055)
+    assert bottom(([0.0, 0.0], 0.2)) == pytest.approx(0.025 - 0.055 - STRIP)
     deep = ([-0.1, -0.15, -0.1], 0.1)
     assert bottom(([0.0, 0.0], 0.2), deep) < -0.15 - 0.025
     assert bottom(([0.0, 0.0], -0.2)) < -0.25
 
 
 def test_a_rock_that_is_far_below_does_not_make_the_sand_small():
-    assert bottom(([0.0, 0.0], -100.0)) == pytest.approx(0.025 - 1.2 * 0.4)
+    assert bottom(([0.0, 0.0], -100.0)) == pytest.approx(0.025 - 1.2 * 0.4 - STRIP)
