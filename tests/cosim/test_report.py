@@ -14,7 +14,7 @@ import rockshed
 from rockshed.commands.app import app
 from rockshed.commands.report import repeating
 from rockshed.reports import step_halving
-from rockshed.reports.of_run import report_of_run
+from rockshed.reports.of_run import report_of_run, status_of
 from rockshed.reports.page import page
 
 HOSTILE = "</script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
@@ -126,13 +126,18 @@ def test_a_curve_that_is_named_like_code_is_escaped_in_the_data_too(copy):
 
 @pytest.mark.parametrize(
     ("status", "said"),
-    [("failed", "failed"), ("interrupted", "interrupted"), ("running", "or was killed")],
+    [("failed", "This run failed"), ("interrupted", "interrupted"), ("running", "or was killed")],
 )
-def test_a_run_that_is_not_complete_says_so_first(copy, status, said):
+def test_a_run_that_is_not_complete_is_said_not_to_be(copy, status, said):
     change(copy, status=status, error="sand at t = 0.004 s: broken")
+    assert said in status_of(rockshed.read_run(copy))
+
+
+def test_a_page_of_a_run_that_failed_says_so_first(copy):
+    change(copy, status="failed", error="sand at t = 0.004 s: broken")
     (file,) = rockshed.report(copy)
     shown = file.read_text()
-    assert re.search(rf'<p class="status" role="alert">[^<]*{said}', shown)
+    assert re.search(r'<p class="status" role="alert">This run failed[^<]*: broken', shown)
     assert shown.index('role="alert"') < shown.index("<nav>")
     assert "The run is not complete, and was not made again" in shown
 

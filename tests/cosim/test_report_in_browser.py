@@ -78,7 +78,7 @@ def test_every_figure_is_there(shown):
 
 def test_hover_tells_the_values_of_all_curves(shown):
     script = """const chart = document.querySelector('[data-chart]');
-        Plotly.Fx.hover(chart, [{curveNumber: 0, pointNumber: 20}]);
+        Plotly.Fx.hover(chart, {xval: 2});
         return chart.querySelector('.hoverlayer').textContent"""
     told = shown.execute_script(script)
     assert "transmitted to the base" in told
