@@ -71,11 +71,13 @@ def with_roof():
     components["rock"]["parameters"] = {n: {"value": v} for n, v in given.items()}
     components["sand"]["parameters"]["thickness"] = {"value": 0.1}
     facts = {**run.provenance, "components": components}
+    depth = run.series["sand.penetration"]
+    above = {"sand.rock.above_surface": -depth, "sand.clearance": 0.3 - depth}
     series = {
         **run.series,
         **forces,
         **places,
-        "sand.clearance": 0.3 - run.series["sand.penetration"],
+        **above,
     }
     return replace(run, series=series, provenance=facts)
 
