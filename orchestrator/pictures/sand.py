@@ -503,6 +503,7 @@ def in_words(view: View, frame: Frame) -> str:
     row = int(abs(run.series["time"] - frame.time).argmin())
     above = run.series[str(column(run, view.cushion, Role.ABOVE_SURFACE))][row]
     force = run.series[str(column(run, view.cushion, Role.TRANSMITTED))][row]
-    place = f"{digits(abs(above) / cm)} cm {'above' if above >= 0.0 else 'deep'}"
-    words = f"rock {place}, {digits(force / kN)} kN transmitted"
+    place = f"{abs(above) / cm:.1f} cm {'above' if above >= 0.0 else 'deep'}"
+    load = f"{force / kN:.{2 if abs(force) < 10.0 * kN else 0}f} kN"
+    words = f"rock {place}, {load} transmitted"
     return f"{digits(frame.time / ms, 4)} ms: {words}"

@@ -747,8 +747,8 @@ def test_pictures_of_the_sand_have_a_scale_and_one_unit_of_length(finished):
     panels = list(made.subplots(1, 2))
     sand.draw(run, "sand", sand.frames(run, "sand", [0.0, 0.004]), made, panels)
     words = [text.get_text() for text in made.findobj(Text) if text.get_text()]
-    assert "rock 0.1 cm above, 0.05 kN transmitted" in words
-    assert any(text.startswith("rock 3.0 cm deep, ") for text in words)
+    assert "0 ms: rock 0.1 cm above, 0.05 kN transmitted" in words
+    assert any(text.startswith("4 ms: rock 3.0 cm deep, ") for text in words)
     assert not [text for text in words if " mm" in text or "P =" in text]
     bars = [text for text in panels[0].texts if isinstance(text, Annotation) and text.arrow_patch]
     assert [abs(bar.xy[0] - bar.xyann[0]) for bar in bars] == [
