@@ -24,6 +24,8 @@ class Role(StrEnum):
     """Elastic energy (J) of a structure as a gauge lets it be estimated; no part of the balance."""
     DISSIPATED = "energy.dissipated"
     """Energy (J) dissipated since the start."""
+    PLASTIC = "energy.dissipated.plastic"
+    """Energy (J) dissipated in a structure by what yields, since the start."""
     LEFT_BEHIND = "energy.dissipated.on_the_way"
     """Energy (J) dissipated on the way to the system, which may have begun before it; its zero is
     arbitrary."""
@@ -65,6 +67,16 @@ class Role(StrEnum):
     """Deflection (m) of a structure, downwards."""
     BENDING_MOMENT = "moment.bending"
     """Bending moment (N m) in a structure, positive with tension below, a scalar or an array."""
+    SHEAR = "force.shear"
+    """Shear force (N) in a structure, the rate of its bending moment along it, a scalar or an
+    array."""
+    PLASTIC_CURVATURE = "curvature.plastic"
+    """Plastic part (1/m) of the curvature of a structure, an array along it."""
+    CURVATURE_RATIO = "curvature.ratio"
+    """Largest curvature of a structure so far, as a multiple of that of the last corner of its
+    moment-curvature line; 0 for one that does not yield."""
+    RESIDUAL_DEFLECTION = "residual_deflection"
+    """Deflection (m) that would stay in a structure if all loads were taken from it, downwards."""
     SUPPORT_FORCE = "force.on_support"
     """Vertical force (N) of a structure on its supports, upwards, a scalar or an array."""
     UNBALANCED = "unbalanced_force_ratio"

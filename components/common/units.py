@@ -47,6 +47,7 @@ UNITS: dict[str, Unit] = {
     "m4": Unit("SecondMomentOfArea", {"m": 4}),
     "m/s": Unit("Velocity", {"m": 1, "s": -1}),
     "m/s2": Unit("Acceleration", {"m": 1, "s": -2}),
+    "1/m": Unit("Curvature", {"m": -1}),
     "s/m": Unit("Slowness", {"s": 1, "m": -1}),
     "rad": Unit("Angle", {"rad": 1}),
     "rad/s": Unit("AngularVelocity", {"rad": 1, "s": -1}),

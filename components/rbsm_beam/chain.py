@@ -13,12 +13,15 @@ support. With it every disc has the same formula, and the end half-bar has the a
 * ``load.x``, ``load.y``, shape (n): held forces with the couples of the torques (N);
 * ``support.height``, shape (supports): heights of the supports (m); ``reaction``: forces of the
   beam on them (N, upwards).
+
+A section that yields has more of them: :mod:`.yielding`.
 """
 
 from collections import namedtuple
 
 from ..common.kernels import kernel, view
-from .declarations import FIXED, LAYOUT
+from .declarations import FIXED, LAYOUT, YIELDING
+from .yielding import locked_and_elastic_energy, rate_energy, relieve, slip
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -31,10 +34,12 @@ BEARING = 16.0
 
 What it yields is of the third order in R, below the error of the chain."""
 
-Chain = namedtuple("Chain", "n supports fixed spacing bending axial bearing drag viscosity gravity")
+Chain = namedtuple(
+    "Chain", "n supports fixed spacing bending axial bearing drag viscosity gravity yielding"
+)
 """Constants: numbers of discs and supports, whether the outer ones are fixed, R (m), EI/R2 (N),
 EA/R (N/m), stiffness of an inner support (N/m), Rayleigh factors of mass (1/s) and stiffness (s),
-gravity (m/s2)."""
+gravity (m/s2), whether the section yields."""
 
 
 @kernel
@@ -54,6 +59,7 @@ def chain(w, k):
         w[V.damping_mass],
         w[V.damping_stiffness],
         w[V.gravity],
+        w[V.section_bending] == YIELDING,
     )
 
 
@@ -143,34 +149,38 @@ def deform(c, displacement_factor, rate_factor, w, x, k):
     k : ndarray of int64
         Integer state.
     """
-    _shape_discs(
-        c.n,
-        displacement_factor,
-        rate_factor,
-        view(x, k, A.u),
-        view(x, k, A.u_rate),
-        view(x, k, A.u_shape),
-    )
-    _shape_discs(
-        c.n,
-        displacement_factor,
-        rate_factor,
-        view(x, k, A.v),
-        view(x, k, A.v_rate),
-        view(x, k, A.v_shape),
-    )
-    u, v = view(x, k, A.u_shape), view(x, k, A.v_shape)
-    n = c.n
-    height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
-    u[0] = -u[1]
-    u[n + 1] = -u[n] if c.fixed else u[n]
-    v[0] = 2.0 * (displacement_factor * height[0] + rate_factor * speed[0]) - v[1]
-    v[n + 1] = 2.0 * (displacement_factor * height[1] + rate_factor * speed[1]) - v[n]
+    if c.yielding:
+        _relieve(c, displacement_factor, rate_factor, w, x, k)
+    _shape_axis(c, displacement_factor, rate_factor, x, k)
+    _shape_bending(c, displacement_factor, rate_factor, w, x, k)
     _bend(c, x, k)
+    v, height = view(x, k, A.v_shape), view(x, k, A.support_height)
     element, reaction = view(w, k, A.support_element), view(x, k, A.reaction)
+    speed = view(w, k, A.support_velocity_y)
     for s in range(2, c.supports):
         below = displacement_factor * height[s] + rate_factor * speed[s]
         reaction[s] = c.bearing * (v[int(element[s])] - below)
+
+
+@kernel
+def _shape_axis(c, displacement_factor, rate_factor, x, k):
+    """Set the shape along the axis, the supports included."""
+    u = view(x, k, A.u_shape)
+    n = c.n
+    _shape_discs(n, displacement_factor, rate_factor, view(x, k, A.u), view(x, k, A.u_rate), u)
+    u[0] = -u[1]
+    u[n + 1] = -u[n] if c.fixed else u[n]
+
+
+@kernel
+def _shape_bending(c, displacement_factor, rate_factor, w, x, k):
+    """Set the shape across the axis, the supports included."""
+    v = view(x, k, A.v_shape)
+    n = c.n
+    _shape_discs(n, displacement_factor, rate_factor, view(x, k, A.v), view(x, k, A.v_rate), v)
+    height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
+    v[0] = 2.0 * (displacement_factor * height[0] + rate_factor * speed[0]) - v[1]
+    v[n + 1] = 2.0 * (displacement_factor * height[1] + rate_factor * speed[1]) - v[n]
 
 
 @kernel
@@ -181,16 +191,28 @@ def _shape_discs(n, displacement_factor, rate_factor, displacement, rate, shape)
 
 @kernel
 def _bend(c, x, k):
-    v, moment = view(x, k, A.v_shape), view(x, k, A.hinge_moment)
+    """Set the moments in the present shape, with their mirror images in the supports."""
+    moment, relief = view(x, k, A.hinge_moment), view(x, k, A.relief)
+    n = c.n
+    _bend_discs(c, moment, x, k)
+    if c.yielding:
+        for i in range(1, n + 1):
+            moment[i] -= relief[i]
+    left, right = wall_moments(c, x, k)
+    moment[0] = 2.0 * left - moment[1]
+    moment[n + 1] = 2.0 * right - moment[n]
+
+
+@kernel
+def _bend_discs(c, moment, x, k):
+    """Set the elastic moments at the discs in the present shape."""
+    v = view(x, k, A.v_shape)
     n = c.n
     for i in range(n):
         moment[i + 1] = c.bending * ((v[i + 2] + v[i]) - 2.0 * v[i + 1])
     if c.fixed:
         moment[1] *= END_HINGE
         moment[n] *= END_HINGE
-    left, right = wall_moments(c, x, k)
-    moment[0] = 2.0 * left - moment[1]
-    moment[n + 1] = 2.0 * right - moment[n]
 
 
 @kernel
@@ -201,9 +223,59 @@ def wall_moments(c, x, k):
     """
     if not c.fixed:
         return 0.0, 0.0
+    left, right = _elastic_wall_moments(c, x, k)
+    if c.yielding:
+        relief = view(x, k, A.relief)
+        left, right = left - relief[0], right - relief[c.n + 1]
+    return left, right
+
+
+@kernel
+def _elastic_wall_moments(c, x, k):
     v = view(x, k, A.v_shape)
     n, stiffness = c.n, WALL_HINGE * c.bending
     return stiffness * (v[1] - v[0]), stiffness * (v[n] - v[n + 1])
+
+
+@kernel
+def _bend_elastic(c, moment, x, k):
+    """Set the elastic moments in the present shape, those at the walls in the first and last."""
+    _bend_discs(c, moment, x, k)
+    moment[0] = moment[c.n + 1] = 0.0
+    if c.fixed:
+        moment[0], moment[c.n + 1] = _elastic_wall_moments(c, x, k)
+
+
+@kernel
+def _relieve(c, displacement_factor, rate_factor, w, x, k):
+    """Set what a yielding section takes from the elastic moments of a shape."""
+    if rate_factor != 0.0:
+        _shape_bending(c, 0.0, 1.0, w, x, k)
+        _bend_elastic(c, view(x, k, A.moment_rate), x, k)
+    relieve(c, displacement_factor, rate_factor, x, k)
+
+
+@kernel
+def follow(c, w, x, k):
+    """Let a section that yields follow the present displacements.
+
+    Before each :func:`deform` with them; calls that follow without a motion in between change
+    nothing.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    w, x : ndarray of float64
+        Variables and state.
+    k : ndarray of int64
+        Integer state.
+    """
+    if not c.yielding:
+        return
+    _shape_bending(c, 1.0, 0.0, w, x, k)
+    _bend_elastic(c, view(x, k, A.elastic_moment), x, k)
+    slip(c, w, x, k)
 
 
 @kernel
@@ -368,6 +440,12 @@ def bending_energy(c, x, k):
 
     That of the inner supports is in it.
     """
+    bent = locked_and_elastic_energy(c, x, k) if c.yielding else _elastic_energy(c, x, k)
+    return bent + _bearing_energy(c, x, k)
+
+
+@kernel
+def _elastic_energy(c, x, k):
     moment = view(x, k, A.hinge_moment)
     n = c.n
     total = 0.0
@@ -377,18 +455,25 @@ def bending_energy(c, x, k):
         left, right = wall_moments(c, x, k)
         total += (1.0 / END_HINGE - 1.0) * (moment[1] * moment[1] + moment[n] * moment[n])
         total += (left * left + right * right) / WALL_HINGE
+    return 0.5 * total / (c.bending * c.spacing)
+
+
+@kernel
+def _bearing_energy(c, x, k):
+    """Return the energy of the inner supports (J) in the present shape."""
     reaction = view(x, k, A.reaction)
     held = 0.0
     for s in range(2, c.supports):
         held += reaction[s] * reaction[s]
-    return 0.5 * total / (c.bending * c.spacing) + 0.5 * held / c.bearing
+    return 0.5 * held / c.bearing
 
 
 @kernel
 def dissipation(c, w, x, k):
     """Return the power (W) that the damping takes now. Leaves the rates as the shape."""
     deform(c, 0.0, 1.0, w, x, k)
+    bent = rate_energy(c, x, k) if c.yielding else _elastic_energy(c, x, k)
     return 2.0 * (
         c.drag * kinetic_energy(c, x, k)
-        + c.viscosity * (axial_energy(c, x, k) + bending_energy(c, x, k))
+        + c.viscosity * (axial_energy(c, x, k) + (bent + _bearing_energy(c, x, k)))
     )

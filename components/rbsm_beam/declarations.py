@@ -8,6 +8,9 @@ from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2, cm4, kgf
 
 SIMPLE, FIXED = 1, 2
+ELASTIC, YIELDING = 1, 2
+SLIDERS = 3
+"""Elements in parallel that slip, one for each corner of the moment-curvature line."""
 
 SIZES = {
     "elements": Size(24, 2, 2000, "rigid discs of the chain"),
@@ -18,7 +21,17 @@ SIZES = {
 
 _SONODA = "Sonoda et al. 1993, sec. 4: H-100x50x7, span 120 cm, discs of 5 cm"
 _GEOMETRY = ("span", "axis.x")
+_YIELDING = (
+    "section.bending",
+    "section.corner1.moment",
+    "section.corner2.moment",
+    "section.corner2.curvature",
+    "section.corner3.moment",
+    "section.corner3.curvature",
+    "section.hardening_ratio",
+)
 _AT_REST = (
+    *_YIELDING,
     "span",
     "axis.y",
     "supports",
@@ -42,9 +55,18 @@ def _per_element(name: str, description: str, unit: str, *depends: str):
     return out(name, description, unit, size="elements", initial_dependencies=depends)
 
 
+def _corner(name: str, description: str, unit: str = "N.m"):
+    """Declare a value of a corner of the moment-curvature line of the whole section."""
+    return param(name, f"{description}; of the whole section, if it yields", 0.0, unit, minimum=0.0)
+
+
 def _padded(sizes: Sizes) -> int:
     """Return the length of an array over the discs with a place at each end for the support."""
     return sizes["elements"] + 2
+
+
+def _slipped(sizes: Sizes) -> int:
+    return SLIDERS * _padded(sizes)
 
 
 def _supports(sizes: Sizes) -> int:
@@ -120,6 +142,25 @@ LAYOUT = Layout(
             minimum=1e-6,
             source=_SONODA,
             plausible=Plausible(5e-3, 10.0, ("cm", "mm")),
+        ),
+        choice(
+            "section.bending",
+            "elastic, or yielding along the corners of a moment-curvature line with kinematic "
+            "hardening, alike in both directions",
+            ("elastic", "yielding"),
+            "elastic",
+        ),
+        _corner("section.corner1.moment", "bending moment up to which the section is elastic"),
+        _corner("section.corner2.moment", "bending moment at the second corner, 0 without one"),
+        _corner("section.corner2.curvature", "curvature at the second corner", "1/m"),
+        _corner("section.corner3.moment", "bending moment at the third corner, 0 without one"),
+        _corner("section.corner3.curvature", "curvature at the third corner", "1/m"),
+        param(
+            "section.hardening_ratio",
+            "slope of the moment-curvature line past its last corner, as a part of the elastic one",
+            0.0,
+            minimum=0.0,
+            maximum=1.0,
         ),
         param(
             "density",
@@ -251,6 +292,45 @@ LAYOUT = Layout(
             role=Role.BENDING_MOMENT,
         ),
         out(
+            "shear",
+            "shear force of the whole section in the joint at the left edge of the disc, the rate "
+            "of the moment along the beam: positive where the left part pushes the right one up",
+            "N",
+            size="elements",
+            role=Role.SHEAR,
+        ),
+        out(
+            "support.shear",
+            "shear force beside the support: [1] right of the left end, [2] left of the right one; "
+            "of an inner support that of the two beside it which is farther from zero",
+            "N",
+            size="support_count",
+            role=Role.SHEAR,
+        ),
+        out(
+            "plastic_curvature",
+            "plastic part of the curvature at the disc's centre, positive with tension below",
+            "1/m",
+            size="elements",
+            initial_dependencies=_AT_REST,
+            role=Role.PLASTIC_CURVATURE,
+        ),
+        out(
+            "support.plastic_rotation",
+            "plastic rotation of the hinge at a fixed support, positive with tension below",
+            "rad",
+            size="support_count",
+            initial_dependencies=_AT_REST,
+        ),
+        out(
+            "curvature_ratio",
+            "largest curvature so far, at discs and walls, as a multiple of that of the last "
+            "corner; 0 while the section is elastic",
+            "1",
+            initial_dependencies=_AT_REST,
+            role=Role.CURVATURE_RATIO,
+        ),
+        out(
             "support.force.y",
             "force of the beam on the support at the end of the step, upwards (negative under a "
             "load)",
@@ -300,6 +380,14 @@ LAYOUT = Layout(
             "m",
             role=Role.DEFLECTION,
         ),
+        out(
+            "midspan.residual_deflection",
+            "deflection of the midspan that would stay if all loads were taken from the beam, "
+            "elastically, positive downwards",
+            "m",
+            initial_dependencies=_AT_REST,
+            role=Role.RESIDUAL_DEFLECTION,
+        ),
         out("midspan.moment", "bending moment at midspan, positive with tension below", "N.m"),
         out("midspan.strain", "strain at the lower flange at midspan, positive in tension", "1"),
         out(
@@ -325,7 +413,8 @@ LAYOUT = Layout(
         ),
         out(
             "energy.bending",
-            "elastic energy of the bending springs, those of inner supports included",
+            "elastic energy of the bending springs, those of inner supports included; where the "
+            "section yields, with what its hardening locks in",
             "J",
             source="Sonoda et al. 1993, eq. (6)",
         ),
@@ -357,6 +446,14 @@ LAYOUT = Layout(
             label="lost in the beam",
         ),
         out(
+            "energy.plastic",
+            "energy that the yielding section has dissipated",
+            "J",
+            initial_dependencies=(),
+            role=Role.PLASTIC,
+            label="plastic work in the beam",
+        ),
+        out(
             "energy.work.contact",
             "work that the inputs force and torque have done on the beam",
             "J",
@@ -370,7 +467,8 @@ LAYOUT = Layout(
         ),
         out(
             "energy.residual",
-            "energies + damping - works, minus their sum at the start: error of the integration",
+            "energies + damping + plastic - works, minus their sum at the start: error of the "
+            "integration",
             "J",
             role=Role.RESIDUAL,
         ),
@@ -393,5 +491,17 @@ LAYOUT = Layout(
         State("jump", _supports),
         State("influence", lambda sizes: _supports(sizes) ** 2),
         State("rest.load", lambda sizes: sizes["elements"]),
+        State("unit.load", lambda sizes: sizes["elements"]),
+        State("slider.share", lambda sizes: SLIDERS),
+        State("slider.limit", lambda sizes: SLIDERS),
+        State("slipped", _slipped),
+        State("hinge.length", _padded),
+        State("elastic_moment", _padded),
+        State("moment_rate", _padded),
+        State("offset", _padded),
+        State("above", _padded),
+        State("below", _padded),
+        State("relief", _padded),
+        State("midspan.influence", _padded),
     ),
 )

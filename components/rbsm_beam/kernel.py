@@ -5,6 +5,8 @@ from ..common.kernels import kernel, view
 from ..common.stepping import TOO_MANY_STEPS
 from ..common.substeps import are_too_many, substep_count, substep_length
 from .chain import (
+    END_HINGE,
+    WALL_HINGE,
     axial_energy,
     bending_energy,
     box_momentum,
@@ -13,6 +15,7 @@ from .chain import (
     deform,
     dissipation,
     distribute,
+    follow,
     hold,
     kinetic_energy,
     move,
@@ -23,8 +26,9 @@ from .chain import (
     wall_moments,
 )
 from .declarations import LAYOUT
-from .faults import BOX_OFF_BEAM, DIVERGED, NO_PLACE
-from .statics import rest, stable_step
+from .faults import BAD_CORNERS, BOX_OFF_BEAM, DIVERGED, NO_PLACE, NO_REST
+from .statics import rest, set_midspan_influence, stable_step
+from .yielding import curvature_ratio, residual_deflection, set_lengths, set_sliders, unslip
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -43,16 +47,22 @@ def initialise(w, x, k):
     Returns
     -------
     int
-        Status: OK, BOX_OFF_BEAM or NO_PLACE.
+        Status: OK, BOX_OFF_BEAM, NO_PLACE or BAD_CORNERS.
     """
     if not box_stands_on_beam(w):
         return BOX_OFF_BEAM
     if not supports_have_places(w, k):
         return NO_PLACE
     c = chain(w, k)
+    if c.yielding and not set_sliders(w, x, k):
+        return BAD_CORNERS
+    set_lengths(c, WALL_HINGE, END_HINGE, x, k)
+    unslip(x, k)
     distribute(c, w, x, k)
     w[V.radius] = 0.5 * c.spacing
     w[V.stable_step] = stable_step(c, w, x, k)
+    if c.yielding:
+        set_midspan_influence(c, w, x, k)
     return OK
 
 
@@ -72,13 +82,15 @@ def evaluate(w, x, k):
     Returns
     -------
     int
-        Status, OK or DIVERGED.
+        Status, OK, NO_REST or DIVERGED.
     """
     c = chain(w, k)
     _place(view(x, k, A.support_height), view(w, k, A.support_position_y))
-    rest(c, w, x, k)
+    if not rest(c, w, x, k):
+        return NO_REST
     hold(c, w, x, k)
     w[V.energy_damping], w[V.energy_work_contact] = 0.0, 0.0
+    w[V.energy_plastic], w[V.curvature_ratio] = 0.0, 0.0
     w[V.energy_work_support], w[V.energy_start] = 0.0, 0.0
     w[V.box_inertia_force] = 0.0
     status = publish(w, x, k)
@@ -170,6 +182,7 @@ def _move_and_react(c, n, dt, w, x, k):
     for s in range(c.supports):
         total[s] = 0.0
     for _ in range(n):
+        follow(c, w, x, k)
         if damped:
             w[V.energy_damping] += dt * dissipation(c, w, x, k)
         deform(c, 1.0, c.viscosity, w, x, k)
@@ -183,7 +196,7 @@ def _move_and_react(c, n, dt, w, x, k):
 def settle(c, w, x, k):
     """Put the supports at their input heights.
 
-    The work of the jump is exact, as the elastic force is linear in it.
+    The work of the jump is exact where nothing yields in it, as the elastic force is linear in it.
 
     Parameters
     ----------
@@ -204,6 +217,7 @@ def settle(c, w, x, k):
     if stays:
         return
     for _ in range(2):
+        follow(c, w, x, k)
         deform(c, 1.0, 0.0, w, x, k)
         react(c, w, x, k)
         done = 0.0
@@ -231,10 +245,12 @@ def publish(w, x, k):
         Status: OK, or DIVERGED where a displacement exceeds half the span or is no number.
     """
     c = chain(w, k)
+    follow(c, w, x, k)
     _publish_forces(c, w, x, k)
     _publish_rates(c, w, x, k)
     deform(c, 1.0, 0.0, w, x, k)
     _publish_places(c, w, x, k)
+    _publish_yielding(c, w, x, k)
     _publish_midspan(c, w, x, k)
     _publish_energies(c, w, x, k)
     limit = 0.5 * w[V.span]
@@ -255,6 +271,26 @@ def _publish_forces(c, w, x, k):
     deform(c, 1.0, c.viscosity, w, x, k)
     react(c, w, x, k)
     _place(on_supports, view(x, k, A.reaction))
+    _publish_shears(c, w, x, k)
+
+
+@kernel
+def _publish_shears(c, w, x, k):
+    """Write the shear forces in the joints: what the discs left of them push up with.
+
+    A torque on a disc is a couple of forces at its neighbours: half of it acts in either joint.
+    """
+    moment, torque = view(x, k, A.hinge_moment), view(w, k, A.torque)
+    shear, at_support = view(w, k, A.shear), view(w, k, A.support_shear)
+    element, reaction = view(w, k, A.support_element), view(x, k, A.reaction)
+    for i in range(c.n):
+        couple = 0.5 * (torque[max(i - 1, 0)] + torque[i])
+        shear[i] = (moment[i + 1] - moment[i] + couple) / c.spacing
+    at_support[0], at_support[1] = -reaction[0], reaction[1]
+    for s in range(2, c.supports):
+        disc = int(element[s]) - 1
+        left, right = shear[disc], reaction[1] if disc == c.n - 1 else shear[disc + 1]
+        at_support[s] = left if abs(left) > abs(right) else right
 
 
 @kernel
@@ -287,6 +323,22 @@ def _publish_support_moments(c, w, x, k):
 
 
 @kernel
+def _publish_yielding(c, w, x, k):
+    """Write plastic curvatures and rotations, the residual deflection, the largest curvature."""
+    if not c.yielding:
+        return
+    offset, length = view(x, k, A.offset), view(x, k, A.hinge_length)
+    curvature, turned = view(w, k, A.plastic_curvature), view(w, k, A.support_plastic_rotation)
+    stiffness = c.bending * c.spacing * c.spacing
+    for i in range(c.n):
+        curvature[i] = offset[i + 1] / stiffness
+    turned[0] = offset[0] / stiffness * length[0] * c.spacing
+    turned[1] = offset[c.n + 1] / stiffness * length[c.n + 1] * c.spacing
+    w[V.midspan_residual_deflection] = residual_deflection(c, x, k)
+    w[V.curvature_ratio] = max(w[V.curvature_ratio], curvature_ratio(c, x, k))
+
+
+@kernel
 def _publish_axis(n, first, spacing, padded, target):
     """Set target[i] = first + i * spacing + value of the padded array for disc i."""
     for i in range(n):
@@ -311,7 +363,11 @@ def _publish_midspan(c, w, x, k):
     stiffness = w[V.elastic_modulus] * w[V.section_second_moment]
     w[V.midspan_deflection] = -0.5 * (v[one] + v[other])
     w[V.midspan_moment] = 0.5 * (moment[one] + moment[other])
-    w[V.midspan_strain] = w[V.midspan_moment] * 0.5 * w[V.section_height] / stiffness
+    bent = w[V.midspan_moment]
+    if c.yielding:
+        elastic = view(x, k, A.elastic_moment)
+        bent = 0.5 * (elastic[one] + elastic[other])
+    w[V.midspan_strain] = bent * 0.5 * w[V.section_height] / stiffness
     gained = w[V.midspan_strain] - w[V.midspan_start_strain]
     deflection = w[V.span] * w[V.span] * gained / (6.0 * w[V.section_height])
     w[V.energy_strain_estimate] = 24.0 * stiffness / w[V.span] ** 3 * deflection * deflection
@@ -332,6 +388,7 @@ def _publish_energies(c, w, x, k):
         + w[V.energy_elastic]
         + w[V.energy_gravity]
         + w[V.energy_damping]
+        + w[V.energy_plastic]
         - w[V.energy_work_contact]
         - w[V.energy_work_support]
         - w[V.energy_start]

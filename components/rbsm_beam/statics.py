@@ -3,12 +3,19 @@
 import math
 
 from ..common.kernels import kernel, view
-from .chain import END_HINGE, WALL_HINGE, A, V, box_share, deform
+from .chain import END_HINGE, WALL_HINGE, A, V, box_share, deform, follow
+from .yielding import unslip
 
 POWER_ITERATIONS = 80
 """Number of power iterations.
 
 Each halves the error of the highest mode's shape, and quarters that of its frequency."""
+
+
+_MOST_ROUNDS = 5_000
+"""Of the search for the rest of a section that yields under its weights."""
+_AT_REST = 1e-13
+"""Part of the largest elastic moment by which plastic ones change in the last round."""
 
 
 @kernel
@@ -23,37 +30,106 @@ def rest(c, w, x, k):
         Variables and state.
     k : ndarray of int64
         Integer state.
+
+    Returns
+    -------
+    bool
+        Whether there is such a rest: a section that yields may not bear the weights.
     """
     u, u_rate = view(x, k, A.u), view(x, k, A.u_rate)
     v_rate, height = view(x, k, A.v_rate), view(x, k, A.support_height)
     for i in range(c.n + 2):
         u[i] = u_rate[i] = v_rate[i] = 0.0
     load = view(x, k, A.rest_load)
-    for i in range(c.n):
-        load[i] = _weight(c, i, w, x, k)
-    _bear(c, w, x, k)
-    _sag(c, height[0], height[1] - height[0], x, k)
+    unslip(x, k)
+    for _ in range(_MOST_ROUNDS):
+        for i in range(c.n):
+            load[i] = _weight(c, i, w, x, k)
+        _bear(c, w, x, k)
+        _sag(c, load, height[0], height[1] - height[0], 1.0, x, k)
+        if not c.yielding or _plastic_change(c, w, x, k) <= _AT_REST:
+            return True
+    return False
 
 
 @kernel
-def _sag(c, height, rise, x, k):
-    """Set moments and deflections of the chain under the loads at rest, its ends where they are.
+def _plastic_change(c, w, x, k):
+    """Let the sliders slip from nothing to the present curvature; return how much that changed.
+
+    As a part of the largest elastic moment.
+    """
+    offset, elastic = view(x, k, A.offset), view(x, k, A.elastic_moment)
+    before = view(x, k, A.relief)
+    slipped = view(x, k, A.slipped)
+    for i in range(c.n + 2):
+        before[i] = offset[i]
+    for i in range(len(slipped)):
+        slipped[i] = 0.0
+    follow(c, w, x, k)
+    change, largest = 0.0, 0.0
+    for i in range(c.n + 2):
+        change = max(change, abs(offset[i] - before[i]))
+        largest = max(largest, abs(elastic[i]))
+    return change / largest if change > 0.0 else 0.0
+
+
+@kernel
+def set_midspan_influence(c, w, x, k):
+    """Set the rotation-weighted moments of the elastic beam under a unit load at midspan.
+
+    They are times the length of each hinge over EI (m/(N m)): their sum with EI * plastic
+    curvatures is the deflection that those leave at midspan.
 
     Parameters
     ----------
     c : Chain
         Constants.
+    w, x : ndarray of float64
+        Variables and state; the displacements are overwritten.
+    k : ndarray of int64
+        Integer state.
+    """
+    height, load = view(x, k, A.support_height), view(x, k, A.rest_load)
+    for s in range(c.supports):
+        height[s] = 0.0
+    for i in range(c.n):
+        load[i] = 0.0
+    load[(c.n - 1) // 2] += 0.5
+    load[c.n // 2] += 0.5
+    unslip(x, k)
+    _bear(c, w, x, k)
+    _sag(c, load, 0.0, 0.0, 0.0, x, k)
+    follow(c, w, x, k)
+    influence, length = view(x, k, A.midspan_influence), view(x, k, A.hinge_length)
+    elastic = view(x, k, A.elastic_moment)
+    for i in range(c.n + 2):
+        influence[i] = elastic[i] * length[i] / (c.bending * c.spacing)
+    unslip(x, k)
+
+
+@kernel
+def _sag(c, load, height, rise, plastic, x, k):
+    """Set moments and deflections of the chain under loads at rest, its ends where they are.
+
+    Parameters
+    ----------
+    c : Chain
+        Constants.
+    load : ndarray of float64, shape (n,)
+        On the discs (N, downwards).
     height, rise : float
         Height of the left support, and of the right one above it (m).
+    plastic : float
+        1 where plastic curvatures count, 0 for the elastic beam.
     x : ndarray of float64
         State.
     k : ndarray of int64
         Integer state.
     """
     moment = view(x, k, A.hinge_moment)
-    _load_moments(c, view(x, k, A.rest_load), moment)
-    _add_redundant_moments(c, rise, moment)
-    _deflect(c, rise, height, moment, view(x, k, A.v))
+    _load_moments(c, load, moment)
+    _add_redundant_moments(c, rise, plastic, moment, view(x, k, A.offset))
+    _deflect(c, rise, height, plastic, x, k)
 
 
 @kernel
@@ -68,23 +144,21 @@ def _bear(c, w, x, k):
         return
     load, v, height = view(x, k, A.rest_load), view(x, k, A.v), view(x, k, A.support_height)
     element, borne = view(w, k, A.support_element), view(x, k, A.reaction)
-    influence = view(x, k, A.influence)
+    influence, unit = view(x, k, A.influence), view(x, k, A.unit_load)
     count = c.supports
-    _sag(c, height[0], height[1] - height[0], x, k)
+    _sag(c, load, height[0], height[1] - height[0], 1.0, x, k)
     for s in range(2, count):
         borne[s] = height[s] - v[int(element[s])]
     for i in range(c.n):
-        load[i] = 0.0
+        unit[i] = 0.0
     for s in range(2, count):
-        load[int(element[s]) - 1] = -1.0
-        _sag(c, 0.0, 0.0, x, k)
-        load[int(element[s]) - 1] = 0.0
+        unit[int(element[s]) - 1] = -1.0
+        _sag(c, unit, 0.0, 0.0, 0.0, x, k)
+        unit[int(element[s]) - 1] = 0.0
         for other in range(2, count):
             influence[other * count + s] = v[int(element[other])]
         influence[s * count + s] += 1.0 / c.bearing
     _solve(count, influence, borne)
-    for i in range(c.n):
-        load[i] = _weight(c, i, w, x, k)
     for s in range(2, count):
         load[int(element[s]) - 1] -= borne[s]
 
@@ -131,18 +205,20 @@ def _load_moments(c, load, moment):
 
 
 @kernel
-def _deflect(c, rise, height, moment, v):
+def _deflect(c, rise, height, plastic, x, k):
     """Set the deflections v from the moments: angles from bar to bar, then heights, from the left.
 
     The first bar's angle is the one with which the last ends at the right support.
     """
+    moment, offset, v = view(x, k, A.hinge_moment), view(x, k, A.offset), view(x, k, A.v)
     n = c.n
     slope = rise / (n * c.spacing)
     for i in range(n):
-        slope -= moment[i + 1] * _flexibility(c, i) * (n - i - 0.5) / n
+        bent = moment[i + 1] + plastic * offset[i + 1]
+        slope -= bent * _flexibility(c, i) * (n - i - 0.5) / n
     v[1] = height + 0.5 * c.spacing * slope
     for i in range(n - 1):
-        slope += moment[i + 1] * _flexibility(c, i)
+        slope += (moment[i + 1] + plastic * offset[i + 1]) * _flexibility(c, i)
         v[i + 2] = v[i + 1] + c.spacing * slope
 
 
@@ -154,20 +230,25 @@ def _flexibility(c, i):
 
 
 @kernel
-def _add_redundant_moments(c, rise, moment):
+def _add_redundant_moments(c, rise, plastic, moment, offset):
     """Add the moments of fixed supports: constant + tilt * (n/2 - x/R).
 
     With them both ends stay level and the right one stands higher by ``rise`` (m). Both are
-    orthogonal, as the flexibilities are symmetric.
+    orthogonal, as the flexibilities are symmetric. Plastic curvatures turn and lift the ends as
+    those of moments do.
     """
     if not c.fixed:
         return
     n, stiffness = c.n, c.bending * c.spacing
-    turn, lift, lever = 0.0, 0.0, 0.5 * n * n / WALL_HINGE / stiffness
+    wall = plastic / (WALL_HINGE * stiffness)
+    turn = wall * (offset[0] + offset[n + 1])
+    lift = wall * (offset[0] - offset[n + 1]) * 0.5 * n
+    lever = 0.5 * n * n / WALL_HINGE / stiffness
     for i in range(n):
         arm = 0.5 * (n - 1) - i
-        turn += moment[i + 1] * _flexibility(c, i)
-        lift += moment[i + 1] * _flexibility(c, i) * arm
+        bent = moment[i + 1] + plastic * offset[i + 1]
+        turn += bent * _flexibility(c, i)
+        lift += bent * _flexibility(c, i) * arm
         lever += arm * arm * _flexibility(c, i)
     tilt = (rise / c.spacing - lift) / lever
     for i in range(n):

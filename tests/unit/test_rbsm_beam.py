@@ -139,4 +139,96 @@ def test_every_output_is_published():
     ends = ["support.element[1]", "support.element[2]"]
     free_ends = ["support.moment[1]", "support.moment[2]"]  # on simple supports
     unset = ["axis.x", "deck.mass", "box.mass", "cushion.weight", "damping.stiffness"]
-    assert sorted(silent) == sorted(unset + ends + free_ends + ["box.inertia_force"])  # no box
+    unset += [name for name in silent if name.startswith(("section.corner", "section.hardening"))]
+    yielding = ["energy.plastic", "midspan.residual_deflection", "curvature_ratio"]
+    yielding += [name for name in silent if "plastic_" in name]
+    assert sorted(silent) == sorted(
+        unset + ends + free_ends + yielding + ["box.inertia_force"]  # no box
+    )
+
+
+YIELDING = {
+    "section.bending": "yielding",
+    "section.corner1.moment": 100.0,
+    "section.corner2.moment": 150.0,
+    "section.corner2.curvature": 1e-3,
+    "section.hardening_ratio": 0.05,
+    "supports": "fixed",
+    "damping.stiffness": 1e-7,
+}
+
+
+def yielding(**values):
+    instance = BEAM.instance()
+    for name, value in {**YIELDING, **values}.items():
+        instance[name] = value
+    instance.initialise()
+    return instance
+
+
+def test_a_yielding_beam_publishes_what_is_plastic():
+    instance = push(yielding())
+    instance["force.y"] = -3e4
+    instance.step(0.0, 1e-3)
+    for name in ("energy.plastic", "midspan.residual_deflection", "curvature_ratio"):
+        assert instance[name] > 0.0
+    assert instance["plastic_curvature"].max() > 0.0
+    assert instance["support.plastic_rotation"].max() < 0.0
+    elastic = instance["midspan.moment"] * 0.05 / (2.1e6 * 9.80665e4 * 187e-8)
+    assert instance["midspan.strain"] > 1.01 * elastic
+
+
+@pytest.mark.parametrize("calls", [1, 2, 10])
+def test_internal_steps_of_a_yielding_beam_are_the_same_however_they_are_called(calls):
+    whole, parts = push(yielding()), push(yielding())
+    whole["support.velocity.y"] = parts["support.velocity.y"] = [0.0, 0.0]
+    for count in range(100):
+        whole.step(count * 1e-5, 1e-5)
+        for _ in range(calls):
+            kernel.advance(10 // calls, 1e-6, parts.w, parts.x, parts.k)
+            kernel.publish(parts.w, parts.x, parts.k)
+    assert whole["energy.plastic"] > 0.0
+    for name in ("position.y", "velocity.y", "moment", "plastic_curvature", "support.force.y"):
+        assert np.array_equal(whole[name], parts[name])
+    assert parts["energy.plastic"] == pytest.approx(whole["energy.plastic"], rel=1e-12)
+
+
+def test_a_yielding_beam_goes_on_from_its_state_to_the_bit():
+    one = push(yielding())
+    one.step(0.0, 5e-4)
+    other = yielding()
+    other.from_bytes(one.to_bytes())
+    for instance in (one, other):
+        instance["force.y"] = 2e4
+        instance.step(5e-4, 5e-4)
+    assert one["energy.plastic"] > 0.0
+    assert one.to_bytes() == other.to_bytes()
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        {"section.corner1.moment": 0.0},
+        {"section.corner2.moment": 90.0},
+        {"section.corner2.moment": 0.0},
+        {"section.corner2.curvature": 0.0},
+        {"section.corner2.curvature": 1e-5},
+        {"section.corner3.moment": 400.0, "section.corner3.curvature": 1.1e-3},
+        {"section.corner3.moment": 160.0},
+        {"section.hardening_ratio": 0.9},
+    ],
+)
+def test_corners_that_make_no_moment_curvature_line_are_refused(corners):
+    with pytest.raises(ComponentError, match=r"moment-curvature line.*section\.corner1\.moment"):
+        yielding(**corners)
+
+
+def test_a_section_with_an_elastic_slope_past_its_corners_is_elastic():
+    stiff = {"section.corner2.moment": 0.0, "section.corner2.curvature": 0.0}
+    one = push(yielding(**stiff, **{"section.hardening_ratio": 1.0}))
+    other = push(yielding(**{"section.bending": "elastic"}))
+    for instance in (one, other):
+        instance.step(0.0, 1e-3)
+    assert one["energy.plastic"] == 0.0
+    for name in ("position.y", "velocity.y", "moment", "support.force.y", "energy.damping"):
+        assert one[name] == pytest.approx(other[name], rel=1e-12)
