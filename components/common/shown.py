@@ -125,6 +125,9 @@ class Envelope:
     ends : str
         Name of an array whose first two values are those half a spacing before the first place and
         after the last one; empty for none.
+    at_edges : bool
+        Whether the values stand half a spacing before their places, and the second of ``ends``
+        behind the last of them.
     """
 
     label: str
@@ -132,6 +135,7 @@ class Envelope:
     variable: str
     along: str
     ends: str = ""
+    at_edges: bool = False
 
     def __post_init__(self) -> None:
         _check_unit(self.label, self.unit)

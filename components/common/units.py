@@ -22,6 +22,7 @@ tf = 1e3 * kgf
 tonne = 1e3
 kN = 1e3
 kJ = 1e3
+MPa = 1e6
 deg = math.pi / 180.0
 
 
@@ -90,7 +91,7 @@ SCREEN_UNITS: dict[str, float] = {
     "kgf/cm": kgf / cm,
     "Pa": 1.0,
     "kPa": 1e3,
-    "MPa": 1e6,
+    "MPa": MPa,
     "J": 1.0,
     "kJ": kJ,
     "kgf cm": kgf * cm,

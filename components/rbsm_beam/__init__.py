@@ -48,6 +48,14 @@ COMPONENT = Component(
             (
                 Envelope("bending moment", "kN m", "moment", "position.x", "support.moment"),
                 Panel("moment at midspan", "kN m", (Curve("midspan.moment"),)),
+            ),
+        ),
+        Picture(
+            "shear",
+            (
+                Envelope(
+                    "shear force", "kN", "shear", "position.x", "support.shear", at_edges=True
+                ),
                 Panel(
                     "support reaction",
                     "kN",

@@ -45,6 +45,7 @@ _SETTLED = (
 _FORCE = (Scale("kN", 2), Scale("kgf", 0))
 _ENERGY = (Scale("J", 2), Scale("kgf cm", 1))
 _TIME = (Scale("ms", 2),)
+_PLACE = (Scale("m", 3),)
 _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.STATIC_LOAD: ("load at 4 cm", _FORCE),
     names.STATIC_STIFFNESS: (
@@ -80,10 +81,18 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.LOAD_MOST: ("90 % of the load within", (Scale("m", 2),)),
     names.SPREAD_ANGLE: ("  spread angle (45 is practice)", (Scale("deg", 0),)),
     names.DEFLECTION: ("peak midspan deflection", (Scale("mm", 3),)),
+    names.RESIDUAL_DEFLECTION: ("residual midspan deflection", (Scale("mm", 3),)),
     names.PEAK_MOMENT: ("peak bending moment", (Scale("kN m", 3),)),
     names.PEAK_MOMENT_AT: ("  at", _TIME),
+    names.PEAK_MOMENT_PLACE: ("  at x =", _PLACE),
+    names.PEAK_SHEAR: ("peak shear force", (Scale("kN", 2),)),
+    names.PEAK_SHEAR_AT: ("  at", _TIME),
+    names.PEAK_SHEAR_PLACE: ("  at x =", _PLACE),
+    names.PEAK_STRESS: ("peak bending stress", (Scale("MPa", 1),)),
     names.PEAK_REACTION: ("peak support reaction", (Scale("kN", 2),)),
     names.PEAK_REACTION_AT: ("  at", _TIME),
+    names.CURVATURE_RATIO: ("largest curvature / last corner's", (Scale("1", 2),)),
+    names.PLASTIC_WORK: ("plastic work in the beam", _ENERGY),
     names.IMPACT_ENERGY: ("impact energy E0", _ENERGY),
     names.BEAM_ENERGY: ("peak beam energy (5), (6)", _ENERGY),
     names.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
@@ -191,6 +200,7 @@ def rows(run: StoredRun, known: Mapping[str, Known]) -> list[ComparedRow]:
         if names.without_component(metric.name) == name
         for row in _headline_rows(metric, name)
     ]
+    shown += [row for metric in computed for row in _utilisation_rows(metric)]
     shown += [
         row
         for entry in reported(run)
@@ -211,6 +221,13 @@ def _headline_rows(metric: Metric, name: str) -> Iterator[ComparedRow]:
     label, scales = _ROWS[name]
     owner = metric.name.removesuffix(name)
     return _rows(f"{owner}{label}", scales, metric)
+
+
+def _utilisation_rows(metric: Metric) -> Iterator[ComparedRow]:
+    """Yield the row of a metric that compares the run with a criterion; none of another metric."""
+    criterion = names.criterion_of(names.without_component(metric.name))
+    if criterion:
+        yield from _rows(f"utilisation: {criterion}", (Scale("1", 2),), metric)
 
 
 def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[ComparedRow]:

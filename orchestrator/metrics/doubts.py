@@ -15,6 +15,7 @@ from .cushion import cushions, thickness_at_start
 from .energy import driven, structures
 from .headlines import headlines
 from .roles import column, members, owners, parameter, parameters, recorded
+from .utilisation import exceeded
 
 _RESIDUAL_LIMIT = 0.01
 """Part of the impact energy that may be missing in the balance."""
@@ -49,6 +50,7 @@ def warnings(run: StoredRun) -> list[str]:
     texts = [
         *meaningless(run),
         *told,
+        *exceeded(run, found),
         *_open_balance(run, found),
         *(text for structure in structures(run) for text in _other_weight(run, structure)),
         *(text for cushion in cushions(run) for text in _restless(run, cushion)),

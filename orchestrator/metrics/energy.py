@@ -10,6 +10,7 @@ from rockshed.components.common.roles import Role
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import names
+from .along import peak
 from .roles import all_samples, column, owners, parameter, recorded
 from .values import Samples, extreme, of_each
 
@@ -166,18 +167,60 @@ def _of_structure(run: StoredRun, structure: str) -> Iterator[Metric]:
     if deflection is not None:
         yield Metric(names.DEFLECTION, extreme(run, deflection)[0], "m")
     yield from _peak_moment(run, structure)
+    yield from _peak_shear(run, structure)
+    yield from _yielding(run, structure)
     yield from _reactions(run, structure)
     for name, energy in _structure_energies(run, structure):
         yield Metric(name, energy, "J")
 
 
 def _peak_moment(run: StoredRun, structure: str) -> Iterator[Metric]:
-    """Yield the bending moment farthest from zero, with its sign, and its time."""
+    """Yield the bending moment farthest from zero, with its sign, its time and its place."""
     moments = all_samples(run, structure, Role.BENDING_MOMENT)
     if moments.size:
         place, row = np.unravel_index(np.abs(moments).argmax(), moments.shape)
         yield Metric(names.PEAK_MOMENT, float(moments[place, row]), "N.m")
         yield Metric(names.PEAK_MOMENT_AT, float(run.series["time"][row]), "s")
+    found = peak(run, structure, Role.BENDING_MOMENT)
+    if found:
+        yield Metric(names.PEAK_MOMENT_PLACE, found.place, "m")
+
+
+def _peak_shear(run: StoredRun, structure: str) -> Iterator[Metric]:
+    """Yield the shear force farthest from zero, with its sign, its time and its place."""
+    found = peak(run, structure, Role.SHEAR)
+    if found:
+        yield Metric(names.PEAK_SHEAR, found.value, "N")
+        yield Metric(names.PEAK_SHEAR_AT, found.time, "s")
+        yield Metric(names.PEAK_SHEAR_PLACE, found.place, "m")
+
+
+def yields(run: StoredRun, structure: str) -> bool:
+    """Return whether the section of a structure may yield.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    structure : str
+        Name of the component in the system.
+    """
+    ratio = column(run, structure, Role.CURVATURE_RATIO)
+    return ratio is not None and bool(run.series[ratio].any())
+
+
+def _yielding(run: StoredRun, structure: str) -> Iterator[Metric]:
+    """Yield what stays of the deflection, plastic work and the largest curvature, if it yields."""
+    if not yields(run, structure):
+        return
+    for name, role, unit in (
+        (names.RESIDUAL_DEFLECTION, Role.RESIDUAL_DEFLECTION, "m"),
+        (names.PLASTIC_WORK, Role.PLASTIC, "J"),
+        (names.CURVATURE_RATIO, Role.CURVATURE_RATIO, "1"),
+    ):
+        found = column(run, structure, role)
+        if found is not None:
+            yield Metric(name, float(run.series[found][-1]), unit)
 
 
 def _reactions(run: StoredRun, structure: str) -> Iterator[Metric]:

@@ -15,6 +15,7 @@ from .pressure import of_pressures
 from .pulse import of_pulses
 from .reported import reported
 from .shares import of_energies
+from .utilisation import of_design
 
 
 def headlines(run: StoredRun) -> list[Metric]:
@@ -35,11 +36,14 @@ def headlines(run: StoredRun) -> list[Metric]:
     declared = [entry.metric for entry in reported(run)]
     cushions, machine = list(of_cushions(run)), list(_of_machine(run))
     loads = [*of_pulses(run), *of_pressures(run)]
+    bent = list(of_structures(run))
+    design = of_design(run, [*cushions, *bent, *declared])
     return [
         *cushions,
         *loads,
         *machine,
-        *of_structures(run),
+        *bent,
+        *design,
         *declared,
         *of_system(run),
         *of_energies(run),

@@ -16,6 +16,15 @@ CLEARANCE = "least distance of rock and base"
 DEFLECTION = "peak midspan deflection"
 PEAK_MOMENT = "peak bending moment"
 PEAK_MOMENT_AT = "peak bending moment at"
+PEAK_MOMENT_PLACE = "peak bending moment at the place"
+PEAK_SHEAR = "peak shear force"
+PEAK_SHEAR_AT = "peak shear force at"
+PEAK_SHEAR_PLACE = "peak shear force at the place"
+RESIDUAL_DEFLECTION = "residual midspan deflection"
+PLASTIC_WORK = "plastic work in the beam"
+CURVATURE_RATIO = "largest curvature / curvature of the last corner"
+PEAK_STRESS = "peak bending stress"
+"""Moment over section modulus, as if the section were elastic."""
 PEAK_REACTION = "peak support reaction"
 PEAK_REACTION_AT = "peak support reaction at"
 BEAM_ENERGY = "peak beam energy"
@@ -53,6 +62,29 @@ MACHINE_WORK = "work of the machine"
 RESIDUAL_WORK_SHARE = "largest energy residual of the system / work of the machine"
 
 _SEPARATOR = ": "
+_UTILISATION = "utilisation by "
+
+
+def utilisation(criterion: str) -> str:
+    """Return the name of the metric that compares a run with a criterion.
+
+    Parameters
+    ----------
+    criterion : str
+        Name of the criterion: ``stress``.
+    """
+    return _UTILISATION + criterion
+
+
+def criterion_of(name: str) -> str:
+    """Return the criterion of a utilisation; empty for another metric.
+
+    Parameters
+    ----------
+    name : str
+        Name of a metric without that of its component.
+    """
+    return name.removeprefix(_UTILISATION) if name.startswith(_UTILISATION) else ""
 
 
 def of_component(component: str, name: str) -> str:

@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from rockshed.components.common.units import SCREEN_UNITS, ms
 
 from ..core.results.reading import StoredRun
-from ..metrics.roles import elements
+from ..metrics.along import along
 from ..tables import digits
 from .style import GREY, ROCK, TRANSMITTED
 
@@ -46,35 +45,3 @@ def draw_envelope(
     axes.set(xlabel="x (m)", ylabel=f"{owner}{told['label']} ({told['unit']})")
     if places[-1] > places[0]:
         axes.set_xlim(places[0], places[-1])
-
-
-def along(
-    run: StoredRun, component: str, told: Mapping[str, Any]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the values of an array along a component, those at its ends included.
-
-    Parameters
-    ----------
-    run : StoredRun
-        The run.
-    component : str
-        Name of the component in the system.
-    told : mapping
-        The envelope as it is declared.
-
-    Returns
-    -------
-    places : array of float, shape (n,)
-        In m.
-    values : array of float, shape (n, rows)
-        In SI units.
-    """
-    places = np.array([at[0] for at in elements(run, f"{component}.{told['along']}")])
-    values = np.array(elements(run, f"{component}.{told['variable']}"))
-    ends = elements(run, f"{component}.{told['ends']}") if told["ends"] else []
-    if not ends:
-        return places, values
-    half = 0.5 * (places[1] - places[0])
-    first, last = ends[:2]
-    wider = np.concatenate([places[:1] - half, places, places[-1:] + half])
-    return wider, np.vstack([first, values, last])

@@ -11,6 +11,7 @@ from rockshed.components.common.units import SCREEN_UNITS, cm, kN, ms
 
 from ..core.results.reading import StoredRun
 from ..metrics import names
+from ..metrics.along import along
 from ..metrics.comparison import known_of
 from ..metrics.cushion import both_forces, curve_of, cushions, cut_off, settled, thickness_at_start
 from ..metrics.energy import driven
@@ -27,7 +28,6 @@ from ..pictures.declared import (
     loads_at_rest,
 )
 from ..pictures.energy import balance_error, expected, layers
-from ..pictures.envelope import along
 from ..pictures.references import KnownMetrics, ReferenceLevel, levels
 from ..pictures.style import GREY, INK, ROCK, TRANSMITTED
 from .form import Chart, ChartCurve, CurveValues

@@ -147,7 +147,8 @@ def _panel(element: Element) -> dict[str, Any]:
 
 def _envelope(element: Element) -> dict[str, Any]:
     names = ("label", "unit", "variable", "along", "ends")
-    return {name: element.get(name, "") for name in names}
+    data: dict[str, Any] = {name: element.get(name, "") for name in names}
+    return {**data, "at_edges": element.get("at_edges") == "true"}
 
 
 def _curve(element: Element) -> dict[str, Any]:

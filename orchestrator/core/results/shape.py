@@ -57,6 +57,7 @@ class _Envelope(_Shape):
     variable: _Name
     along: _Name
     ends: _Name
+    at_edges: bool = False
 
 
 def _kind_of_panel(panel: Any) -> str:

@@ -1,0 +1,150 @@
+"""Utilisation of a structure: what a run has found over the limits of its design criteria.
+
+Criteria and the section stand in the provenance of a run, ``design``: of a project, or of a case
+that knows them.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from rockshed.components.common.units import MPa, cm, kN, mm
+
+from ..core.results.metric import Metric
+from ..core.results.reading import StoredRun
+from . import names
+from .energy import structures, yields
+
+STRESS = "stress"
+"""Criterion: bending stress of the elastic section (Pa)."""
+
+_MEASURES: Mapping[str, Sequence[str]] = {
+    STRESS: (names.PEAK_STRESS,),
+    "plastic moment": (names.PEAK_MOMENT,),
+    "curvature": (names.CURVATURE_RATIO,),
+    "deflection": (names.DEFLECTION,),
+    "reaction": (names.PEAK_REACTION,),
+    "penetration": (names.PENETRATION,),
+    "pile set": ("permanent set",),
+}
+"""Metrics that a criterion limits, each in the unit of the limit; the largest of them counts."""
+
+
+def criteria(run: StoredRun) -> dict[str, float]:
+    """Return the limits of a run's design by the name of the criterion.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    dict of str to float
+        In SI units, positive ones only; empty where the run has no design.
+    """
+    told = run.provenance.get("design", {}).get("criteria", ())
+    limits = {str(entry["name"]): float(entry["limit"]) for entry in told}
+    return {name: limit for name, limit in limits.items() if limit > 0.0}
+
+
+def section_modulus(run: StoredRun) -> float | None:
+    """Return the section modulus of the whole structure, of all girders together.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    float or None
+        In m3; None where the design does not tell it.
+    """
+    roof: Mapping[str, Any] = run.provenance.get("design", {}).get("roof", {})
+    modulus = roof.get("section_modulus")
+    return float(modulus) * float(roof.get("girders") or 1.0) if modulus else None
+
+
+def of_design(run: StoredRun, found: Iterable[Metric]) -> Iterator[Metric]:
+    """Yield the bending stress, and the share of each criterion's limit that the run has reached.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    found : iterable of Metric
+        Its other headline metrics.
+    """
+    known = list(found)
+    modulus = section_modulus(run)
+    moment = _largest(known, (names.PEAK_MOMENT,))
+    if modulus and moment is not None:
+        known.append(Metric(names.PEAK_STRESS, moment / modulus, "Pa"))
+        yield known[-1]
+    for criterion, limit in criteria(run).items():
+        value = _largest(known, _MEASURES.get(criterion, ()))
+        if value is not None:
+            yield Metric(names.utilisation(criterion), value / limit)
+
+
+def _largest(found: Iterable[Metric], wanted: Sequence[str]) -> float | None:
+    """Return the largest amount of the metrics of some names, of whatever component."""
+    amounts = [
+        abs(float(metric.value))
+        for metric in found
+        if names.without_component(metric.name) in wanted
+    ]
+    return max(amounts, default=None)
+
+
+def exceeded(run: StoredRun, found: Iterable[Metric]) -> Iterator[str]:
+    """Yield a doubt for each criterion whose limit a run has passed.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    found : iterable of Metric
+        Its headline metrics, those of :func:`of_design` included.
+    """
+    known = list(found)
+    limits = criteria(run)
+    yielding = any(yields(run, structure) for structure in structures(run))
+    for metric in known:
+        criterion = names.criterion_of(names.without_component(metric.name))
+        if criterion not in limits or float(metric.value) <= 1.0:
+            continue
+        if criterion != STRESS:
+            yield _past(criterion, float(metric.value), limits[criterion])
+        elif not yielding:
+            yield _past_yield(float(metric.value), limits[criterion])
+
+
+def _past_yield(share: float, limit: float) -> str:
+    """Say that an elastic section was bent beyond its yield stress (Pa)."""
+    return (
+        f"stress past yield: {share * limit / MPa:.4g} MPa are {share:.2f} times the "
+        f"{limit / MPa:.4g} MPa of the design, and the section of this run is elastic: results "
+        "mean nothing beyond yield; let the section yield (section.bending=yielding), or make it "
+        "stronger"
+    )
+
+
+_SHOWN = {
+    "plastic moment": ("kN m", kN),
+    "curvature": ("times the curvature of the last corner", 1.0),
+    "deflection": ("mm", mm),
+    "reaction": ("kN", kN),
+    "penetration": ("cm", cm),
+    "pile set": ("mm", mm),
+}
+"""Units on the screen by the name of the criterion, with their size in SI."""
+
+
+def _past(criterion: str, share: float, limit: float) -> str:
+    """Say that a run is past the limit (SI) of a criterion."""
+    unit, size = _SHOWN[criterion]
+    return (
+        f"{criterion} past its limit: {share * limit / size:.4g} {unit} are {share:.2f} times the "
+        f"{limit / size:.4g} {unit} of the design; change the design, or the criterion"
+    )

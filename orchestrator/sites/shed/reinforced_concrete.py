@@ -1,0 +1,207 @@
+"""Moment-curvature line of a reinforced concrete strip: cracking, yield of the steel, ultimate.
+
+Plane sections stay plane. Concrete in compression follows the parabola-rectangle of the codes
+(EN 1992-1-1, 3.1.7, with exponent 2), in tension it carries nothing once it has cracked; steel is
+elastic-perfectly plastic. Between the three points the line is straight, which leaves out tension
+stiffening. Bending that opens the lower face; the compression steel may be 0.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .yielding import Corners
+
+PEAK_STRAIN = 0.002
+"""Strain at which the parabola ends (EN 1992-1-1, table 3.1, up to C50)."""
+ULTIMATE_STRAIN = 0.0035
+"""Strain at which concrete crushes (EN 1992-1-1, table 3.1, up to C50)."""
+BLOCK_FACTOR = 0.85
+"""Strength in the section over that of a cylinder: under a lasting load, as codes take it."""
+
+
+class StripError(ValueError):
+    """A strip has no line of cracking, yield and ultimate: it breaks without a warning."""
+
+
+@dataclass(frozen=True)
+class Concrete:
+    """Concrete of a strip.
+
+    Attributes
+    ----------
+    strength : float
+        Cylinder strength in compression (Pa).
+    tensile_strength : float
+        In bending (Pa).
+    elastic_modulus : float
+        Of the uncracked strip (Pa).
+    """
+
+    strength: float
+    tensile_strength: float
+    elastic_modulus: float
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Reinforcing bars of one material.
+
+    Attributes
+    ----------
+    yield_stress : float
+        In Pa.
+    elastic_modulus : float
+        In Pa.
+    """
+
+    yield_stress: float
+    elastic_modulus: float = 2.0e11
+
+    @property
+    def yield_strain(self) -> float:
+        """Strain at which they yield."""
+        return self.yield_stress / self.elastic_modulus
+
+    def stress(self, strain: float) -> float:
+        """Return the stress (Pa) at a strain."""
+        return max(-self.yield_stress, min(self.yield_stress, self.elastic_modulus * strain))
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A strip of a slab.
+
+    Attributes
+    ----------
+    width, height : float
+        Of the section (m).
+    steel_area : float
+        Of the bars near the lower face (m2).
+    depth : float
+        From the upper face to the middle of these bars (m).
+    upper_area : float
+        Of bars near the upper face (m2).
+    upper_depth : float
+        From the upper face to the middle of these (m).
+    """
+
+    width: float
+    height: float
+    steel_area: float
+    depth: float
+    upper_area: float = 0.0
+    upper_depth: float = 0.0
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area of the gross section (m4)."""
+        return self.width * self.height**3 / 12.0
+
+
+def strip_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
+    """Return cracking, yield and ultimate of a strip as the corners of its line.
+
+    Parameters
+    ----------
+    strip : Strip
+        The section.
+    concrete : Concrete
+        Its concrete.
+    bars : Bars
+        Its steel.
+
+    Returns
+    -------
+    Corners
+        Three, without hardening past the ultimate one, where the concrete crushes: past it the
+        line means nothing more.
+
+    Raises
+    ------
+    StripError
+        The concrete crushes before the steel yields, or the steel cannot bear what cracks the
+        concrete.
+    """
+    elastic = concrete.elastic_modulus * strip.second_moment
+    cracking = concrete.tensile_strength * strip.second_moment / (0.5 * strip.height)
+    section = _Section(strip, concrete, bars)
+    yielding = section.at_yield()
+    ultimate = section.at_ultimate()
+    if ultimate[1] <= yielding[1]:
+        raise StripError(
+            "the concrete crushes before the steel yields: give less steel or more height"
+        )
+    if yielding[0] <= cracking:
+        raise StripError(
+            f"the steel yields at {yielding[0] / 1e3:.4g} kN m and the concrete cracks at "
+            f"{cracking / 1e3:.4g} kN m only: the strip breaks when it cracks; give more steel"
+        )
+    moments = (cracking, yielding[0], max(ultimate[0], yielding[0]))
+    return Corners(moments, (cracking / elastic, yielding[1], ultimate[1]))
+
+
+@dataclass(frozen=True)
+class _Section:
+    """A cracked section under bending without a normal force."""
+
+    strip: Strip
+    concrete: Concrete
+    bars: Bars
+
+    def at_yield(self) -> tuple[float, float]:
+        """Return moment (N m) and curvature (1/m) when the lower bars begin to yield."""
+        strip, strain = self.strip, self.bars.yield_strain
+        axis = _root(
+            lambda x: self._balance(x, strain * x / (strip.depth - x)),
+            1e-9 * strip.depth,
+            (1.0 - 1e-9) * strip.depth,
+        )
+        curvature = strain / (strip.depth - axis)
+        return self._moment(axis, curvature * axis), curvature
+
+    def at_ultimate(self) -> tuple[float, float]:
+        """Return moment (N m) and curvature (1/m) when the concrete crushes."""
+        axis = _root(
+            lambda x: self._balance(x, ULTIMATE_STRAIN), 1e-9 * self.strip.depth, self.strip.height
+        )
+        return self._moment(axis, ULTIMATE_STRAIN), ULTIMATE_STRAIN / axis
+
+    def _block(self, axis: float, top: float) -> tuple[float, float]:
+        """Return the force (N) of the concrete and its moment about the neutral axis (N m).
+
+        ``axis`` is the depth of that axis (m), ``top`` the strain of the upper face.
+        """
+        ratio = top / PEAK_STRAIN
+        if ratio <= 1.0:
+            force, moment = ratio - ratio**2 / 3.0, 2.0 * ratio / 3.0 - ratio**2 / 4.0
+        else:
+            force, moment = 1.0 - 1.0 / (3.0 * ratio), 0.5 - 1.0 / (12.0 * ratio**2)
+        scale = self.strip.width * BLOCK_FACTOR * self.concrete.strength * axis
+        return force * scale, moment * scale * axis
+
+    def _steel(self, axis: float, top: float) -> list[tuple[float, float]]:
+        """Return force (N, tension) and depth (m) of the lower and the upper bars."""
+        strip, curvature = self.strip, top / axis
+        return [
+            (area * self.bars.stress(curvature * (depth - axis)), depth)
+            for area, depth in (
+                (strip.steel_area, strip.depth),
+                (strip.upper_area, strip.upper_depth),
+            )
+        ]
+
+    def _balance(self, axis: float, top: float) -> float:
+        """Return the force (N) by which compression exceeds tension."""
+        return self._block(axis, top)[0] - sum(force for force, _ in self._steel(axis, top))
+
+    def _moment(self, axis: float, top: float) -> float:
+        """Return the moment (N m) of all forces about the neutral axis."""
+        steel = sum(force * (depth - axis) for force, depth in self._steel(axis, top))
+        return self._block(axis, top)[1] + steel
+
+
+def _root(balance: Callable[[float], float], low: float, high: float) -> float:
+    """Return where a balance is zero between two depths (m)."""
+    from scipy.optimize import brentq  # takes 0.2 s to import
+
+    return float(brentq(balance, low, high, xtol=1e-12))
