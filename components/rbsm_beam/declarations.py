@@ -133,6 +133,7 @@ LAYOUT = Layout(
             minimum=1e-18,
             source=_SONODA,
             plausible=Plausible(1e-11, 100.0, ("cm4", "mm4")),
+            role=Role.SECOND_MOMENT,
         ),
         param(
             "section.height",
@@ -142,6 +143,7 @@ LAYOUT = Layout(
             minimum=1e-6,
             source=_SONODA,
             plausible=Plausible(5e-3, 10.0, ("cm", "mm")),
+            role=Role.SECTION_HEIGHT,
         ),
         choice(
             "section.bending",

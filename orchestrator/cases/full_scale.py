@@ -8,6 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, cm2, cm4, kgf, standard_gravity
@@ -118,6 +119,11 @@ GIRDERS_MODEL = "one-law"
 """Model of the sand that comes near the energies measured on the girders (table 6).
 
 The ``calibrated`` one was fitted to the laboratory, and has several times as much.
+"""
+YIELD_STRESS = 235e6
+"""Yield stress of the girders (Pa), which the paper does not give: that of SS41, SS400 today.
+
+JIS G 3101: flanges of 16 to 40 mm, the lower value also for those of 16 mm here.
 """
 _BEAM_STEP = 1e-5
 BEAM_DAMPING = 5e-6
@@ -296,6 +302,45 @@ def _shared(impact: Impact, spacing: float) -> dict[str, SharedValue]:
 def _middle(impact: Impact) -> float:
     """Return the middle of girders or box, from the origin (m)."""
     return 0.5 * (impact.span or impact.width)
+
+
+def design(impact: Impact) -> dict[str, Any]:
+    """Return what results on girders are compared with: one girder's section and its yield stress.
+
+    Parameters
+    ----------
+    impact : Impact
+        The impact.
+
+    Returns
+    -------
+    dict
+        ``roof`` and ``criteria`` for the provenance of a run, in SI units; empty on a rigid base.
+    """
+    if not impact.span:
+        return {}
+    return {
+        "roof": {
+            "kind": "girders",
+            "section": "H-390x300x10x16",
+            "area": GIRDER_AREA,
+            "second_moment": GIRDER_SECOND_MOMENT,
+            "section_modulus": GIRDER_SECOND_MOMENT / (0.5 * GIRDER_HEIGHT),
+            "height": GIRDER_HEIGHT,
+            "yield_stress": YIELD_STRESS,
+            "girders": GIRDERS,
+            "spacing": GIRDER_THICKNESS,
+            "span": impact.span,
+        },
+        "criteria": [
+            {
+                "name": "stress",
+                "limit": YIELD_STRESS,
+                "unit": "Pa",
+                "source": "assumed: SS41, the paper does not say",
+            }
+        ],
+    }
 
 
 def cushion_weight(system: SystemSpec, discs: int) -> float:

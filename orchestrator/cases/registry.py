@@ -383,6 +383,7 @@ def _shed_on_piles() -> Case:
         derived=derived,
         described=partial(described, layer),
         layer=layer,
+        facts=_designed(impact),
     )
 
 
@@ -473,7 +474,14 @@ def _full_scale(impact: full_scale.Impact) -> Case:
         layer=layer,
         described=partial(described, layer),
         model=full_scale.GIRDERS_MODEL if impact.span else None,
+        facts=_designed(impact),
     )
+
+
+def _designed(impact: full_scale.Impact) -> Mapping[str, Any]:
+    """Return the design of girders as facts of a case, none on a rigid base."""
+    found = full_scale.design(impact)
+    return {"design": found} if found else {}
 
 
 def _slope_to_cushion() -> Case:
@@ -505,4 +513,5 @@ def _slope_to_cushion() -> Case:
             ("beam.span", "beam.axis.x", "box_left", "sand.box.left", "beam.box.left"),
             "the slope of this case, on which the roof stands",
         ),
+        facts=_designed(impact),
     )

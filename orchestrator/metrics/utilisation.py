@@ -5,14 +5,18 @@ that knows them.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
+import numpy as np
+
+from rockshed.components.common.roles import Role
 from rockshed.components.common.units import MPa, cm, kN, mm
 
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import names
 from .energy import structures, yields
+from .roles import all_samples, parameter
+from .values import of_each
 
 STRESS = "stress"
 """Criterion: bending stress of the elastic section (Pa)."""
@@ -47,22 +51,23 @@ def criteria(run: StoredRun) -> dict[str, float]:
     return {name: limit for name, limit in limits.items() if limit > 0.0}
 
 
-def section_modulus(run: StoredRun) -> float | None:
-    """Return the section modulus of the whole structure, of all girders together.
-
-    Parameters
-    ----------
-    run : StoredRun
-        The run.
+def _elastic_stress(run: StoredRun, structure: str) -> float | None:
+    """Return the largest stress (Pa) of a structure's outer fibre by its own section, M H / 2 I.
 
     Returns
     -------
     float or None
-        In m3; None where the design does not tell it.
+        None where the design knows no section modulus, so that a stress means nothing (cracked
+        concrete), or the structure tells no section.
     """
-    roof: Mapping[str, Any] = run.provenance.get("design", {}).get("roof", {})
-    modulus = roof.get("section_modulus")
-    return float(modulus) * float(roof.get("girders") or 1.0) if modulus else None
+    if not run.provenance.get("design", {}).get("roof", {}).get("section_modulus"):
+        return None
+    height = parameter(run, structure, Role.SECTION_HEIGHT)
+    second_moment = parameter(run, structure, Role.SECOND_MOMENT)
+    moments = all_samples(run, structure, Role.BENDING_MOMENT)
+    if not height or not second_moment or not moments.size:
+        return None
+    return float(np.abs(moments).max()) * float(height) / (2.0 * float(second_moment))
 
 
 def of_design(run: StoredRun, found: Iterable[Metric]) -> Iterator[Metric]:
@@ -75,16 +80,19 @@ def of_design(run: StoredRun, found: Iterable[Metric]) -> Iterator[Metric]:
     found : iterable of Metric
         Its other headline metrics.
     """
-    known = list(found)
-    modulus = section_modulus(run)
-    moment = _largest(known, (names.PEAK_MOMENT,))
-    if modulus and moment is not None:
-        known.append(Metric(names.PEAK_STRESS, moment / modulus, "Pa"))
-        yield known[-1]
+    stresses = list(of_each(run, structures(run), _peak_stress))
+    yield from stresses
+    known = [*found, *stresses]
     for criterion, limit in criteria(run).items():
         value = _largest(known, _MEASURES.get(criterion, ()))
         if value is not None:
             yield Metric(names.utilisation(criterion), value / limit)
+
+
+def _peak_stress(run: StoredRun, structure: str) -> Iterator[Metric]:
+    stress = _elastic_stress(run, structure)
+    if stress is not None:
+        yield Metric(names.PEAK_STRESS, stress, "Pa")
 
 
 def _largest(found: Iterable[Metric], wanted: Sequence[str]) -> float | None:
@@ -107,26 +115,32 @@ def exceeded(run: StoredRun, found: Iterable[Metric]) -> Iterator[str]:
     found : iterable of Metric
         Its headline metrics, those of :func:`of_design` included.
     """
-    known = list(found)
     limits = criteria(run)
     yielding = any(yields(run, structure) for structure in structures(run))
-    for metric in known:
+    for metric in found:
         criterion = names.criterion_of(names.without_component(metric.name))
         if criterion not in limits or float(metric.value) <= 1.0:
             continue
         if criterion != STRESS:
             yield _past(criterion, float(metric.value), limits[criterion])
         elif not yielding:
-            yield _past_yield(float(metric.value), limits[criterion])
+            yield _past_yield(float(metric.value), limits[criterion], _source(run, criterion))
 
 
-def _past_yield(share: float, limit: float) -> str:
+def _source(run: StoredRun, criterion: str) -> str:
+    """Return where a limit comes from, in brackets; empty where the design does not say."""
+    told = run.provenance["design"]["criteria"]
+    source = next((entry.get("source") for entry in told if entry["name"] == criterion), None)
+    return f" ({source})" if source else ""
+
+
+def _past_yield(share: float, limit: float, source: str) -> str:
     """Say that an elastic section was bent beyond its yield stress (Pa)."""
     return (
         f"stress past yield: {share * limit / MPa:.4g} MPa are {share:.2f} times the "
-        f"{limit / MPa:.4g} MPa of the design, and the section of this run is elastic: results "
-        "mean nothing beyond yield; let the section yield (section.bending=yielding), or make it "
-        "stronger"
+        f"{limit / MPa:.4g} MPa of the design{source}, and the section of this run is elastic: "
+        "results mean nothing beyond yield; let the section yield (section.bending=yielding), or "
+        "make it stronger"
     )
 
 

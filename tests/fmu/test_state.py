@@ -1,16 +1,19 @@
 """The state is complete: going back and moving to another process continue bit for bit; a damaged one is refused."""
 
 import pickle
+import struct
+import zlib
 
 import numpy as np
 import pytest
 
-from rockshed.components.catalogue import NAMES
+from rockshed.components.catalogue import NAMES, component
 from rockshed.components.common.component import ComponentError
 from rockshed.fmus.parts import Runtime
 from rockshed.fmus.python.slave import component_state
 
 from .host import DISCARD, Host
+from .host3 import Host3
 
 
 @pytest.fixture(params=list(Runtime))
@@ -58,6 +61,78 @@ def test_a_state_moved_to_another_process_continues_exactly(fmus, python, tmp_pa
         python(CONTINUE, fmus[name], file)
         host.steps(5, step, first=5)
         assert pickle.loads(file.read_bytes()) == (host.outputs(), host.state())
+
+
+YIELDING = {
+    "section.bending": 2,
+    "section.corner1.moment": 20.0,
+    "section.corner2.moment": 30.0,
+    "section.corner2.curvature": 1e-3,
+    "supports": 2,
+    "damping.stiffness": 1e-7,
+}
+
+
+def bent(host):
+    """A beam that has yielded and is pushed back."""
+    host.start(**YIELDING, **{f"force.y[{i}]": -1e4 for i in range(8, 17)}).steps(20, 1e-5)
+    assert host["energy.plastic"] > 0.0
+    for i in range(8, 17):
+        host[f"force.y[{i}]"] = 2e4
+    return host
+
+
+def test_a_yielding_beam_goes_back_and_on_exactly(fmus):
+    with Host(fmus["RBSMBeam"]) as host:
+        saved = bent(host).state()
+        host.steps(20, 1e-5, first=20)
+        expected = host.outputs(), host.state()
+        host.restore(saved)
+        host.steps(20, 1e-5, first=20)
+        assert (host.outputs(), host.state()) == expected
+        assert expected[0]["plastic_curvature[12]"] != 0.0
+
+
+def test_a_yielding_beam_has_the_same_bits_in_every_fmu(python_fmus, native_fmus, fmi3_fmus):
+    found = []
+    for kind, built in ((Host, python_fmus), (Host, native_fmus), (Host3, fmi3_fmus)):
+        with kind(built["RBSMBeam"]) as host:
+            saved = bent(host).state()
+            host.steps(20, 1e-5, first=20)
+            found.append(host.state())
+            host.restore(saved)
+            host.steps(20, 1e-5, first=20)
+            assert host.state() == found[-1]
+    assert found[0] == found[1] == found[2]
+
+
+def test_hostile_sliders_of_a_yielding_beam_never_give_a_result_that_is_none(fmus):
+    with Host(fmus["RBSMBeam"]) as host:
+        good = bent(host).state()
+        instance = component("RBSMBeam").instance()
+        instance.from_bytes(component_state(good))
+        for value in (np.inf, np.nan, 1e300, -1e12):
+            host.restore(good)
+            host.messages.clear()
+            sliders = instance.state("slipped")
+            kept = sliders.copy()
+            sliders[20] = value
+            content = slave_state(good, instance.to_bytes())
+            sliders[:] = kept
+            host.restore(content)
+            if np.isfinite(value):
+                status = host.step(20e-5, 1e-5)
+                finite = all(np.isfinite(v) for v in host.outputs().values() if v is not None)
+                assert status == DISCARD or finite
+            else:
+                assert "not finite" in host.errors()[0]
+        host.fmu.reset()
+
+
+def slave_state(like, component):
+    """The state of an FMU with another component in it."""
+    content = like.replace(component_state(like), component)
+    return content[:8] + struct.pack("<I", zlib.crc32(content[12:])) + content[12:]
 
 
 def test_time_goes_back_with_the_state(fmus):
