@@ -289,7 +289,8 @@ def _publish_shears(c, w, x, k):
     at_support[0], at_support[1] = -reaction[0], reaction[1]
     for s in range(2, c.supports):
         disc = int(element[s]) - 1
-        left, right = shear[disc], reaction[1] if disc == c.n - 1 else shear[disc + 1]
+        left = shear[disc]
+        right = reaction[1] if disc == c.n - 1 else shear[disc + 1]
         at_support[s] = left if abs(left) > abs(right) else right
 
 

@@ -204,7 +204,8 @@ def locked_and_elastic_energy(c, x, k):
     What hardening locks in, and unloading does not give back, is in it.
     """
     elastic, length = view(x, k, A.elastic_moment), view(x, k, A.hinge_length)
-    share, n = view(x, k, A.slider_share), c.n + 2
+    share = view(x, k, A.slider_share)
+    n = c.n + 2
     rest, total = 1.0, 0.0
     for j in range(SLIDERS):
         rest -= share[j]

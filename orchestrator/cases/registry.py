@@ -345,6 +345,9 @@ def _static_test() -> Case:
     )
 
 
+_RODS = tuple(f"rod_{side}" for side in shed_on_piles.SIDES)
+
+
 def _shed_on_piles() -> Case:
     def make(fmus: Mapping[str, str], sizes: ComponentSizes, coupling: str) -> SystemSpec:
         return shed_on_piles.shed_system(
@@ -354,28 +357,25 @@ def _shed_on_piles() -> Case:
     def derived(system: SystemSpec, sizes: ComponentSizes) -> Mapping[str, Value]:
         values = moved(layer, system, sizes)
         with suppress(ValueError, ArithmeticError):  # no number, or 0: the FMU says so
-            discs, elements = sizes["sand"]["discs"], sizes["beam"]["elements"]
-            values |= shed_on_piles.derived(system, discs, elements)
+            counts = sizes["sand"]["discs"], sizes["beam"]["elements"]
+            values |= shed_on_piles.derived(system, *counts)
         return values
 
     impact = full_scale.impacts()[shed_on_piles.GIRDERS]
     layer = full_scale.layer(impact)
     elements = {"elements": impact.elements}
-    segments = {"segments": shed_on_piles.PILE.segments}
     return Case(
         shed_on_piles.NAME,
         "the girders of 8 m on two piles in the ground, assumed",
         models={
-            "sand": "SandCushion",
-            "rock": "FallingRock",
-            "beam": "RBSMBeam",
-            **{f"rod_{side}": "PileRod" for side in shed_on_piles.SIDES},
+            **{"sand": "SandCushion", "rock": "FallingRock", "beam": "RBSMBeam"},
+            **dict.fromkeys(_RODS, "PileRod"),
             **{f"ground_{side}": "ImpulsiveGround" for side in shed_on_piles.SIDES},
         },
         sizes={
             "sand": {"discs": impact.discs, **elements},
             "beam": elements,
-            **{f"rod_{side}": segments for side in shed_on_piles.SIDES},
+            **{rod: {"segments": shed_on_piles.PILE.segments} for rod in _RODS},
         },
         couplings={"impulse": shed_on_piles.COUPLING},
         make=make,

@@ -1,8 +1,14 @@
 """A beam as a designer asks for it: peak moment, peak reaction, and the picture of the moment."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 import rockshed
+from rockshed.metrics import comparison
+from rockshed.metrics.doubts import warnings
+from rockshed.metrics.headlines import headlines
 from rockshed.pictures.declared import declared_pictures
 
 STEEL = 7850.0 * 11.85e-4
@@ -56,12 +62,8 @@ def test_a_beam_without_gravity_says_that_its_weight_is_left_out(simple):
 def test_the_picture_of_the_moment_goes_from_support_to_support_and_over_time(simple, tmp_path):
     assert simple.figures(tmp_path)["moment"].stat().st_size > 10_000
     (picture,) = [entry for entry in declared_pictures(simple) if entry.name == "moment"]
-    envelope, midspan, reactions = picture.panels
-    assert [envelope.is_envelope, midspan.is_envelope, reactions.is_envelope] == [
-        True,
-        False,
-        False,
-    ]
+    envelope, midspan = picture.panels
+    assert [envelope.is_envelope, midspan.is_envelope] == [True, False]
     from matplotlib.figure import Figure
 
     from rockshed.pictures.envelope import draw_envelope
@@ -87,3 +89,79 @@ def test_a_beam_on_three_supports_gives_the_reaction_of_the_middle_one_and_its_p
     assert reaction == pytest.approx(load * SPAN * 10 / 16, rel=1e-3)
     assert run.metrics["peak_bending_moment"].value == pytest.approx(-load * SPAN**2 / 32, rel=1e-2)
     assert run.figures(tmp_path)["moment"].stat().st_size > 10_000
+
+
+# ------------------------------------------------------------------ shear, places, utilisation
+
+
+def value(metrics, name):
+    return next(float(metric.value) for metric in metrics if metric.name == name)
+
+
+def test_peak_moment_and_shear_have_their_places(simple):
+    load = (STEEL + 100.0) * GRAVITY
+    metrics = simple.metrics
+    assert metrics["peak_bending_moment_at_the_place"].value == pytest.approx(0.5 * SPAN, rel=0.05)
+    assert abs(metrics["peak_shear_force"].value) == pytest.approx(load * SPAN / 2, rel=1e-6)
+    assert metrics["peak_shear_force_at_the_place"].value in (
+        pytest.approx(0.0, abs=1e-9),
+        pytest.approx(SPAN),
+    )
+
+
+def test_the_picture_of_the_shear_goes_from_support_to_support(simple, tmp_path):
+    assert simple.figures(tmp_path)["shear"].stat().st_size > 10_000
+    (picture,) = [entry for entry in declared_pictures(simple) if entry.name == "shear"]
+    from rockshed.metrics.along import along
+
+    places, values = along(simple, "beam", picture.panels[0].told)
+    load = (STEEL + 100.0) * GRAVITY
+    assert places == pytest.approx(np.linspace(0.0, SPAN, 25))
+    assert values[:, 0] == pytest.approx(load * (0.5 * SPAN - places), abs=1e-6)
+
+
+def designed(run, **limits):
+    """The run with a design of one beam and these limits."""
+    criteria = [{"name": name.replace("_", " "), "limit": limit} for name, limit in limits.items()]
+    facts = {"roof": {"section_modulus": 37.4e-6}, "criteria": criteria}
+    return replace(run, provenance={**run.provenance, "design": facts})
+
+
+def test_a_run_is_compared_with_the_criteria_of_its_design(simple):
+    load = (STEEL + 100.0) * GRAVITY
+    moment = load * SPAN**2 / 8
+    stress = moment * 0.05 / 187e-8
+    found = headlines(designed(simple, stress=2.0 * stress, plastic_moment=moment, pile_set=1.0))
+    assert value(found, "peak bending stress") == pytest.approx(stress, rel=1e-6)
+    assert value(found, "utilisation by stress") == pytest.approx(0.5, rel=1e-6)
+    assert value(found, "utilisation by plastic moment") == pytest.approx(1.0, rel=1e-6)
+    assert not any("pile set" in metric.name for metric in found)
+    assert not any("utilisation" in metric.name for metric in headlines(simple))
+
+
+def test_a_limit_that_is_passed_is_doubted(simple):
+    load = (STEEL + 100.0) * GRAVITY
+    stress = load * SPAN**2 / 8 * 0.05 / 187e-8
+    run = designed(simple, stress=stress / 2.33, deflection=1e-9)
+    texts = warnings(run)
+    assert any("stress past yield" in text and "2.33 times" in text for text in texts)
+    assert any("section.bending=yielding" in text for text in texts)
+    assert any("deflection past its limit" in text for text in texts)
+    rows = {row.label: row for row in comparison.rows(run, {})}
+    assert rows["utilisation: stress"].computed == "2.33"
+    assert not any("past" in text for text in warnings(designed(simple, stress=1.01 * stress)))
+
+
+def test_a_beam_that_yields_shows_what_stays_and_no_doubt_about_its_stress():
+    moment = (STEEL + 100.0) * GRAVITY * SPAN**2 / 8
+    corners = {
+        "section.bending": "yielding",
+        "section.corner1.moment": 0.8 * moment,
+        "section.hardening_ratio": 0.2,
+    }
+    run = at_rest(**corners)
+    assert run.metrics["residual_midspan_deflection"].value > 0.0
+    assert "plastic_work_in_the_beam" in run.metrics
+    assert run.metrics["largest_curvature_curvature_of_the_last_corner"].value > 1.0
+    texts = warnings(designed(run, stress=1.0))
+    assert not any("stress past yield" in text for text in texts)
