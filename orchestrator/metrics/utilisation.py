@@ -4,7 +4,9 @@ Criteria and the section stand in the provenance of a run, ``design``: of a proj
 that knows them.
 """
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -46,9 +48,24 @@ def criteria(run: StoredRun) -> dict[str, float]:
     dict of str to float
         In SI units, positive ones only; empty where the run has no design.
     """
-    told = run.provenance.get("design", {}).get("criteria", ())
-    limits = {str(entry["name"]): float(entry["limit"]) for entry in told}
-    return {name: limit for name, limit in limits.items() if limit > 0.0}
+    found = {}
+    for entry in _criteria(run):
+        name, limit = entry.get("name"), entry.get("limit")
+        if isinstance(name, str) and isinstance(limit, int | float) and 0.0 < limit < math.inf:
+            found[name] = float(limit)
+    return found
+
+
+def _criteria(run: StoredRun) -> list[Mapping[str, Any]]:
+    """Return the criteria as the design tells them; what has another form is passed over."""
+    told = _part(run, "criteria")
+    return [entry for entry in told if isinstance(entry, Mapping)] if isinstance(told, list) else []
+
+
+def _part(run: StoredRun, name: str) -> Any:
+    """Return a part of the design; None where there is none, or it is none."""
+    design = run.provenance.get("design")
+    return design.get(name) if isinstance(design, Mapping) else None
 
 
 def _elastic_stress(run: StoredRun, structure: str) -> float | None:
@@ -60,7 +77,8 @@ def _elastic_stress(run: StoredRun, structure: str) -> float | None:
         None where the design knows no section modulus, so that a stress means nothing (cracked
         concrete), or the structure tells no section.
     """
-    if not run.provenance.get("design", {}).get("roof", {}).get("section_modulus"):
+    roof = _part(run, "roof")
+    if not isinstance(roof, Mapping) or not roof.get("section_modulus"):
         return None
     height = parameter(run, structure, Role.SECTION_HEIGHT)
     second_moment = parameter(run, structure, Role.SECOND_MOMENT)
@@ -129,8 +147,8 @@ def exceeded(run: StoredRun, found: Iterable[Metric]) -> Iterator[str]:
 
 def _source(run: StoredRun, criterion: str) -> str:
     """Return where a limit comes from, in brackets; empty where the design does not say."""
-    told = run.provenance["design"]["criteria"]
-    source = next((entry.get("source") for entry in told if entry["name"] == criterion), None)
+    named = (entry for entry in _criteria(run) if entry.get("name") == criterion)
+    source = next((entry.get("source") for entry in named), None)
     return f" ({source})" if source else ""
 
 
