@@ -35,6 +35,8 @@ _DAMAGED = (
     ValueError,
     LookupError,
     TypeError,
+    AttributeError,  # of a list in the place of a table
+    OverflowError,  # of a whole number that no float holds
     EOFError,
     MemoryError,  # of an array that says that it is huge
     RuntimeError,  # a flag says that a member is encrypted, or packed in a way that is not known
