@@ -42,6 +42,8 @@ _SETTLED = (
     (names.SETTLED_ROCK, names.PEAK_ROCK),
 )
 """Metrics of filtered forces, and of the same forces as they are."""
+_ABOVE = 1.01
+"""Ratio of both from which on the filter's overshoot is explained."""
 _FORCE = (Scale("kN", 2), Scale("kgf", 0))
 _ENERGY = (Scale("J", 2), Scale("kgf cm", 1))
 _TIME = (Scale("ms", 2),)
@@ -281,9 +283,10 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     -------
     list of str
         Why something is not compared, weights that are left out, where references that are only
-        about right (≈) come from, and what the end of the run has cut off.
+        about right (≈) come from, what the end of the run has cut off, and why a settled force is
+        above the peak.
     """
-    remarks = [*_references(run).remarks, *_overshooting(run)]
+    remarks = list(_references(run).remarks)
     remarks += [
         f"{name}: its gravity is 0, so moment and reactions are those beyond its own weight"
         for name in weightless(run)
@@ -297,7 +300,7 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
         if reference.note
     ]
     still = [_STILL] if still_in_contact(run) else []
-    return remarks + list(dict.fromkeys(origins)) + still
+    return [*remarks, *dict.fromkeys(origins), *still, *_overshooting(run)]
 
 
 def _overshooting(run: StoredRun) -> list[str]:
@@ -308,7 +311,7 @@ def _overshooting(run: StoredRun) -> list[str]:
         f"{float(values[names.SETTLED_CUT_OFF]):.3g} Hz, overshoots where a force rises quickly; "
         "the peak is the larger force that acts"
         for settled, peak in _SETTLED
-        if settled in values and float(values[settled]) > float(values[peak])
+        if settled in values and float(values[settled]) > _ABOVE * float(values[peak])
     ]
 
 
