@@ -1,6 +1,6 @@
 """A shed of a project file as a case: its system, its derived values and its design.
 
-The sand is the model ``one-law``; the roof is elastic.
+The sand is the model ``one-law``; the roof yields with its section.
 """
 
 from collections.abc import Mapping
@@ -197,7 +197,9 @@ def _rock(found: ShedLayout) -> dict[str, Value]:
 def _beam(found: ShedLayout) -> dict[str, Value]:
     """Return the parameters of all girders that take part, as one beam."""
     roof = found.roof
+    line = roof.corners.parameters(found.girders) if roof.corners else {}
     return {
+        **line,
         "span": roof.span,
         "axis.y": found.axis_y,
         "supports": roof.supports,
@@ -295,17 +297,22 @@ def design(project: ShedProject, found: ShedLayout) -> dict[str, Any]:
 
 
 def _criteria(project: ShedProject, found: ShedLayout) -> list[tuple[str, float | None, str]]:
-    """Return name, limit and unit of the criteria; None where there is no limit."""
+    """Return name, limit and unit of the criteria; None where there is no limit.
+
+    The curvature of concrete counts in that at which it crushes.
+    """
     given = project.criteria
     roof = found.roof
     stress = given.stress
     moment = given.plastic_moment
+    crushing = 1.0 if roof.kind == "concrete" and roof.corners else None
     if roof.yield_stress is not None:
         stress = stress or (roof.yield_stress if roof.kind == "girders" else None)
         moment = moment or roof.yield_stress * roof.plastic_modulus * found.girders
     return [
         ("stress", stress, "Pa"),
         ("plastic moment", moment, "N.m"),
+        ("curvature", crushing, "1"),
         ("deflection", given.deflection, "m"),
         ("pile set", given.pile_set, "m"),
         ("penetration", given.penetration or found.cushion.thickness, "m"),

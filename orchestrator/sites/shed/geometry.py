@@ -20,6 +20,7 @@ from .foundation import (
     spring_rod,
 )
 from .site import Numerics, SandMaterial
+from .yielding import Corners
 
 DISCS_IN_RADIUS, DISCS_IN_THICKNESS = 9.0, 9.0
 """Disc diameters in a rock diameter and in the thickness, at least: those of the girders of Sonoda
@@ -125,6 +126,8 @@ class RoofPart:
         Mass of the slab on it, by area (kg/m2).
     supports : str
         ``simple`` or ``fixed``.
+    corners : Corners or None
+        Of the moment-curvature line; None for an elastic section.
     """
 
     kind: str
@@ -141,6 +144,7 @@ class RoofPart:
     spacing: float
     deck_mass: float = 0.0
     supports: str = "simple"
+    corners: Corners | None = None
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Rock, cushion and roof of a project with all their values, and what is wrong with them."""
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 from rockshed.components.common.units import standard_gravity
@@ -15,9 +16,11 @@ from .effective_width import ON_A_SLAB, ON_GIRDERS, RULES, Spread
 from .foundation import FoundationPart
 from .geometry import CushionPart, RockPart, RoofPart
 from .materials import DEFAULT_MATERIAL, sands
+from .reinforced_concrete import Bars, Concrete, Strip, StripError, strip_corners
 from .sections import section
 from .site import Roof, ShedProject, StrikingRock
 from .steels import DEFAULT_STEEL, Steel, steels
+from .yielding import Corners, SteelSection, steel_corners
 
 ROCK_DENSITY = 2600.0
 """Density (kg/m3) of a rock whose own is not given: common rock."""
@@ -148,18 +151,32 @@ def roof_part(project: ShedProject, where: Places, problems: list[Problem]) -> R
     if stress is None:
         text = f"roof: {roof.steel or DEFAULT_STEEL} has no yield stress for {flange:g} m"
         problems.append(Problem(where.of(("roof", "steel")), text, "give yield_stress"))
+        return None
+    modulus = roof.elastic_modulus or steel.elastic_modulus
     return RoofPart(
         "girders",
         roof.section or "own section",
         **values,
         density=roof.mass / values["area"] if roof.mass else steel.density,
-        elastic_modulus=roof.elastic_modulus or steel.elastic_modulus,
+        elastic_modulus=modulus,
         yield_stress=stress,
         span=roof.span,
         spacing=roof.spacing,
         deck_mass=roof.slab.thickness * roof.slab.density if roof.slab else 0.0,
         supports=_ends(project),
+        corners=_steel_corners(roof, values, modulus, stress),
     )
+
+
+def _steel_corners(
+    roof: Roof, values: Mapping[str, float], modulus: float, stress: float
+) -> Corners | None:
+    """Return the moment-curvature line of a girder that yields."""
+    if roof.bending == "elastic":
+        return None
+    names = ("second_moment", "section_modulus", "plastic_modulus")
+    second_moment, elastic, plastic = (values[name] for name in names)
+    return steel_corners(SteelSection(modulus, second_moment, elastic, plastic, stress))
 
 
 def _ends(project: ShedProject) -> str:
@@ -208,38 +225,65 @@ def _section_values(roof: Roof, where: Places, problems: list[Problem]) -> dict[
 
 
 def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> RoofPart | None:
-    """Return a metre of a slab, uncracked: E after EN 1992-1-1, table 3.1."""
+    """Return a metre of a slab."""
     roof = project.roof
-    strip = roof.concrete
-    if strip is None:
-        return None
     girder = ("section", "steel", "spacing", "number", "slab", "yield_stress", "mass", *_OWN)
     if given := [key for key in girder if getattr(roof, key) is not None]:
         text = f"roof: {', '.join(given)} belong to girders, and a slab of concrete is given"
         problems.append(Problem(where.of(("roof", given[0])), text, "leave one of both out"))
-    if strip.cover >= 0.5 * strip.thickness:
-        text = "roof.concrete: cover is half of the thickness or more: the bars are not below"
-        problems.append(Problem(where.of(("roof", "concrete", "cover")), text, "reduce it"))
+    corners = _concrete_corners(roof, where, problems)
+    if corners is None or roof.concrete is None:
         return None
-    modulus = 22e9 * ((strip.concrete_strength + 8e6) / 10e6) ** 0.3
-    steel = 0.25 * math.pi * strip.bar_diameter**2 / strip.bar_spacing
-    force = steel * strip.bar_yield_stress
-    lever = strip.thickness - strip.cover - 0.5 * force / (0.85 * strip.concrete_strength)
+    strip = roof.concrete
     return RoofPart(
         "concrete",
         f"concrete slab of {strip.thickness:g} m",
         area=strip.thickness,
         second_moment=strip.thickness**3 / 12.0,
         section_modulus=strip.thickness**2 / 6.0,
-        plastic_modulus=max(lever, 0.0) * steel,
+        plastic_modulus=corners.moments[-1] / strip.bar_yield_stress,
         height=strip.thickness,
         density=CONCRETE_DENSITY,
-        elastic_modulus=roof.elastic_modulus or modulus,
+        elastic_modulus=_concrete_modulus(roof),
         yield_stress=strip.bar_yield_stress,
         span=roof.span,
         spacing=1.0,
         supports=_ends(project),
+        corners=None if roof.bending == "elastic" else corners,
     )
+
+
+def _concrete_modulus(roof: Roof) -> float:
+    """Return Young's modulus of the concrete (Pa), after EN 1992-1-1, table 3.1."""
+    strength = roof.concrete.concrete_strength if roof.concrete else 0.0
+    return roof.elastic_modulus or 22e9 * ((strength + 8e6) / 10e6) ** 0.3
+
+
+def _concrete_corners(roof: Roof, where: Places, problems: list[Problem]) -> Corners | None:
+    """Return cracking, yield and ultimate of a metre of a slab.
+
+    Tensile strength after EN 1992-1-1, table 3.1: 0.3 f_ck^(2/3), in MPa.
+    """
+    strip = roof.concrete
+    if strip is None:
+        return None
+    if strip.cover >= 0.5 * strip.thickness:
+        text = "roof.concrete: cover is half of the thickness or more: the bars are not below"
+        problems.append(Problem(where.of(("roof", "concrete", "cover")), text, "reduce it"))
+        return None
+    steel = 0.25 * math.pi * strip.bar_diameter**2 / strip.bar_spacing
+    tensile = 0.3e6 * (strip.concrete_strength / 1e6) ** (2.0 / 3.0)
+    try:
+        return strip_corners(
+            Strip(1.0, strip.thickness, steel, strip.thickness - strip.cover),
+            Concrete(strip.concrete_strength, tensile, _concrete_modulus(roof)),
+            Bars(strip.bar_yield_stress),
+        )
+    except StripError as error:
+        text = f"roof.concrete: {error}"
+        remedy = "change bar_diameter, bar_spacing or thickness"
+        problems.append(Problem(where.of(("roof", "concrete")), text, remedy))
+        return None
 
 
 def foundation_part(

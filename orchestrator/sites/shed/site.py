@@ -169,6 +169,10 @@ class Roof(Data):
     number: Annotated[int, Field(ge=1, le=10_000, strict=True)] | None = field(
         "number of girders; as many as take part"
     )
+    bending: Literal["yielding", "elastic"] = field(
+        "yielding: with the moment-curvature line of the section; or elastic, whatever the stress",
+        "yielding",
+    )
     slab: RoofSlab | None = field("slab on the girders")
     concrete: ConcreteStrip | None = field("reinforced concrete, in the place of girders")
 
