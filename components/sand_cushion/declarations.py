@@ -24,6 +24,7 @@ FLAT, ROUND = 1, 2
 HELD, LINEAR = 1, 2
 LAST, MEAN = 1, 2
 DISC, LAYER = 1, 2
+AS_SETTLED, LEVELLED = 1, 2
 
 SIZES = {
     "discs": Size(370, 1, 1_000_000, "number of sand discs"),
@@ -280,6 +281,13 @@ LAYOUT = Layout(
             "solid_fraction",
             ("square", "hexagonal", "random", "prepared"),
             "square",
+        ),
+        choice(
+            "surface",
+            "surface of a prepared layer: as it settled; or levelled, discs that stand out being "
+            "put into hollows",
+            ("as_settled", "levelled"),
+            "as_settled",
         ),
         param(
             "lattice_shift",

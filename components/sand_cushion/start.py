@@ -8,7 +8,7 @@ from ..common.substeps import are_too_many
 from .bodies import bodies_of
 from .boundaries import describe_boundaries
 from .contact_search import clear_partners, divide, forget, is_stale, rebuild
-from .declarations import BEAM_DISCS, FLOOR, KIND, LAW, LAYOUT, PREPARED, SUM
+from .declarations import BEAM_DISCS, FLOOR, KIND, LAW, LAYOUT, LEVELLED, PREPARED, SUM
 from .faults import (
     BEAM_GAPS,
     BEAM_TOO_NARROW,
@@ -22,6 +22,7 @@ from .faults import (
 )
 from .forces import advance_discs, contact_forces, forget_forces
 from .laws import boundary_stiffness, sand_stiffness, set_laws, stable_step_of
+from .levelling import level
 from .motion import set_boundaries
 from .packing import mean_base, pack
 
@@ -191,12 +192,31 @@ def settle(w, x, k):
 
 
 @kernel
+def smooth(w, x, k):
+    """Level the surface of the layer; returns the status.
+
+    Parameters
+    ----------
+    w, x, k : ndarray
+        Variables, state and integers of the instance.
+
+    Returns
+    -------
+    int
+        Status.
+    """
+    level(w, x, k)
+    return OK if rebuild(w, x, k) else LIST_FULL
+
+
+@kernel
 def prepare(w, x, k):
     """Bring the layer to ``solid_fraction``.
 
     It settles as loosely as it can, with discs that hardly slide or roll, and then they slide more
     and more easily until it is dense enough. From there on it has the friction and the cohesion of
-    the sand.
+    the sand. A surface that is to be level is made so twice: while the layer is loose, and when it
+    is dense enough.
 
     Parameters
     ----------
@@ -217,6 +237,10 @@ def prepare(w, x, k):
     dt = _PREPARATION_STEP * w[V.stable_step]
     law[LAW.friction], law[LAW.rolling], law[LAW.pull] = _LOOSE_FRICTION, _LOOSE_ROLLING, 0.0
     status = come_to_rest(duration, dt, rate, _NEARLY_AT_REST, w, x, k)
+    if status == OK and w[V.surface] == LEVELLED:
+        status = smooth(w, x, k)
+        if status == OK:
+            status = come_to_rest(duration, dt, rate, _NEARLY_AT_REST, w, x, k)
     for s in range(int(duration / dt)):
         if status != OK or solid_fraction(w, x, k) >= w[V.solid_fraction]:
             break
@@ -225,6 +249,8 @@ def prepare(w, x, k):
         status, _, _ = advance(dt, w, x, k)
         slow_down(1.0 - rate * dt, x, k)
     law[LAW.friction], law[LAW.rolling], law[LAW.pull] = friction, rolling, pull
+    if status == OK and w[V.surface] == LEVELLED:
+        status = smooth(w, x, k)
     return status
 
 

@@ -177,6 +177,7 @@ def _sand(found: ShedLayout) -> dict[str, Value]:
         "thickness": cushion.effective_width,
         "disc.radius": found.disc_radius,
         "seed": found.seed,
+        "surface": "levelled",
         "kinematics": "linear",
         "forces": "mean",
         "internal_step": found.sand_step,

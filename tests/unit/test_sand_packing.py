@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from rockshed.components.common.component import ComponentError
 from tests.sand_discs import RADIUS, SMALL_BOX, cushion, masses, rows
@@ -158,6 +160,31 @@ def test_a_prepared_layer_has_the_solid_fraction_that_was_asked_for(share):
     assert math.pi * (rows(sand)[:, 5] ** 2).sum() / (0.2 * height) == pytest.approx(
         sand["layer.solid_fraction"]
     )
+
+
+@settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    width=st.floats(30.0, 60.0),
+    thickness=st.floats(16.0, 24.0),
+    share=st.floats(0.735, 0.745),
+    seed=st.integers(1, 10_000),
+)
+def test_a_levelled_layer_ends_near_the_thickness_that_its_discs_give(
+    width, thickness, share, seed
+):
+    """Lengths in mean radii. As settled, single discs stand out by up to 4."""
+    discs = round(share * width * thickness / (math.pi * (1.0 + 0.25**2 / 3.0)))
+    given = {"box.width": width * RADIUS, "solid_fraction": share, "seed": seed}
+    sand = cushion({**PREPARED, **given, "surface": "levelled"}, discs=discs)
+    highest = (rows(sand)[:, 1] + rows(sand)[:, 5]).max() / RADIUS
+    assert highest < thickness + 1.5
+    assert abs(sand["surface_level"] / RADIUS - thickness) < 1.2
+
+
+def test_levelling_is_for_prepared_layers_only():
+    lattice = {**BOX, "lattice_shift": 0.1}
+    plain, levelled = (rows(cushion({**lattice, **more})) for more in ({}, {"surface": "levelled"}))
+    np.testing.assert_array_equal(plain, levelled)
 
 
 def test_a_lattice_has_the_height_of_its_columns():

@@ -28,8 +28,9 @@ et al. (1993)."""
 ELEMENT_IN_DISCS = 2.0
 """Length of a beam element in diameters of sand discs, as there."""
 FEWEST_ELEMENTS = 21
-CLEARANCE = 2.5
-"""Way of the rock above the mean surface of an uneven layer, in diameters of its largest discs."""
+CLEARANCE = 1.0
+"""Way of the rock above the levelled surface, in diameters of the largest discs, of which the
+highest stands out by 0.6 at most."""
 SAND_STEPS = 4
 """Internal steps of sand and rock in an exchange."""
 _STEP_SHARE = 0.25
