@@ -43,7 +43,7 @@ CONTENTS = {
         "security",
         "limits",
     ),
-    "Physics": ("components/index", "formulas", "papers", "sonoda1993"),
+    "Physics": ("components/index", "formulas", "papers", "sonoda1993", "convergence"),
     "Reference": ("api/index", "api/components", "api/core", "api/analyses", "api/papers"),
     "Project": ("glossary", "contributing", "changelog"),
 }

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import formulas
     from .analyses.calibration.run import calibrate
+    from .analyses.convergence.run import converge
     from .analyses.pile.run import pile
     from .analyses.rockfall.run import rockfall
     from .components.common.component import ComponentError
@@ -44,6 +45,7 @@ _HOMES = {
     "UnknownName": "core.errors",
     "build_fmu": "runs.building",
     "calibrate": "analyses.calibration.run",
+    "converge": "analyses.convergence.run",
     "case": "runs.system",
     "component": "runs.subsystem",
     "list_cases": "runs.catalogue",
@@ -75,6 +77,7 @@ __all__ = [
     "calibrate",
     "case",
     "component",
+    "converge",
     "formulas",
     "list_cases",
     "list_components",

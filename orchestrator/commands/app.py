@@ -32,6 +32,7 @@ COMMANDS = {
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find E_bar of a sand from a spring constant or a load-penetration curve.",
+    "converge": "Compare a shed with coarser and finer sand discs and beam elements.",
     "rockfall": "Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.",
     "formula": "Impact force by formulas of practice: Japanese handbook, ASTRA, Labiouse, Hertz.",
     "pile": "Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph.",
