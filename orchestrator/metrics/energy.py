@@ -251,14 +251,20 @@ def weightless(run: StoredRun) -> list[str]:
 def _structure_energies(run: StoredRun, structure: str) -> Iterator[tuple[str, float]]:
     """Yield the largest energies (J) that the impact has put in, by the springs and by the strain.
 
-    That of the springs counts beyond the start, under dead load.
+    That of the springs counts beyond the start, under dead load. The strain tells the energy of a
+    structure only as long as it is elastic.
     """
     elastic = column(run, structure, Role.ELASTIC)
     if elastic is not None:
         yield names.BEAM_ENERGY, extreme(run, elastic)[0] - float(run.series[elastic][0])
     estimated = column(run, structure, Role.ESTIMATED)
-    if estimated is not None:
+    if estimated is not None and not _has_yielded(run, structure):
         yield names.BEAM_ENERGY_FROM_STRAIN, extreme(run, estimated)[0]
+
+
+def _has_yielded(run: StoredRun, structure: str) -> bool:
+    plastic = column(run, structure, Role.PLASTIC)
+    return plastic is not None and bool(run.series[plastic].any())
 
 
 _SHARES = {

@@ -162,6 +162,8 @@ def test_a_beam_that_yields_shows_what_stays_and_no_doubt_about_its_stress():
     run = at_rest(**corners)
     assert run.metrics["residual_midspan_deflection"].value > 0.0
     assert "plastic_work_in_the_beam" in run.metrics
+    by_strain = "peak_beam_energy_from_the_midspan_strain"  # eq. (7), of an elastic beam
+    assert (by_strain in run.metrics) == (run.metrics["plastic_work_in_the_beam"].value == 0.0)
     assert run.metrics["largest_curvature_curvature_of_the_last_corner"].value > 1.0
     texts = warnings(designed(run, stress=1.0))
     assert not any("stress past yield" in text for text in texts)
