@@ -23,8 +23,7 @@ COMMANDS = {
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU, a component or a system: ports, values, connections.",
-    "export": "Write a system as TOML, with its FMUs, to change and run it; or a run in another "
-    "format.",
+    "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
     "plot": "Draw a run again, also one that failed or was killed; or any variables of runs.",
     "animate": "Animate rock, sand with its force chains, and beam of a run.",

@@ -63,7 +63,7 @@ def command(
     coupling: CouplingScheme = None,
     model: ModelName = None,
 ) -> None:
-    """Write a system as TOML, with its FMUs, to change and run it; or a run in another format."""
+    """Write a system as TOML with its FMUs, or a run in another format."""
     problems: list[Problem] = []
     with opened() as screen:
         if format_ is not None:

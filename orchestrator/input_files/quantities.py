@@ -144,7 +144,7 @@ def doubt(value: float, unit: str, plausible: Plausible) -> str | None:
     str or None
         Continues the name of the value; None where it is within the range.
     """
-    if plausible.holds(value):
+    if plausible.holds(value) or not math.isfinite(value):  # refused elsewhere
         return None
     suffix = "" if unit == "1" else f" {unit}"
     usual = f"{plausible.low:g} to {plausible.high:g}{suffix}"

@@ -28,6 +28,8 @@ PICTURES = {
     "penetration.png",
     "beam.png",
     "moment.png",
+    "shear.png",
+    "pressure.png",
     "energy.png",
 }
 SHORT = ["--stop-time", "0.001", "--no-figures"]
@@ -460,7 +462,7 @@ REFUSED = [
     (
         ["lab-impact", "--stop-time", "1e6"],
         [
-            "output_interval: 10,000,000,001 rows of 311 columns are 3.1e+12 values",
+            "output_interval: 10,000,000,001 rows of 368 columns are 3.7e+12 values",
             "5 s or more will do",
             "state_interval: 2,000,000,001 states would be recorded",
             "100 s or more will do",

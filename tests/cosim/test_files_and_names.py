@@ -293,7 +293,7 @@ def test_a_profile_that_folds_back_is_told_without_what_follows_from_it(site):
     [
         ("start = { x = 1, velocity = [1, 2, 3] }", "start.velocity: has too many entries: 2 at most (given: [1, 2, 3])"),
         ("start = { x = 1, velocity = 3 }", "start.velocity: must be a list (given: 3)"),
-        ('start = { x = "a" }', "start.x: must be a number (given: 'a')"),
+        ('start = { x = "a" }', "start.x: must be a number, with a unit or in m (given: 'a')"),
         ("start = 1979-05-27", "start: must be a table (given: 1979-05-27)"),
         ("start = { x = true }", "start.x: must be a number (given: true)"),
     ],

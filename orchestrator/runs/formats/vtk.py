@@ -89,11 +89,9 @@ def _write_state(state: Any, stem: Path) -> Iterator[tuple[str, Path]]:
     yield "0", _write_grid(f"{stem}_grains", (x, y), _POINT, 1, pointData=data)
     beam = state.beam
     if beam.x.size > 1:
-        inside = slice(x.size, x.size + beam.x.size)
-        data = _point_data([beam])
-        data["force"] = _vectors(*(component[inside] for component in forces))
         place = beam.x, beam.y
-        yield "1", _write_grid(f"{stem}_beam", place, _CHAIN, beam.x.size, pointData=data)
+        moving = _point_data([beam])
+        yield "1", _write_grid(f"{stem}_beam", place, _CHAIN, beam.x.size, pointData=moving)
     contacts = state.contacts
     if contacts.x1.size:
         ends = (
