@@ -19,19 +19,19 @@ Every 700 objects, as Python does by itself, takes a twentieth of the start.
 """
 
 COMMANDS = {
-    "init": "Write a commented project file to begin with; nothing is overwritten.",
+    "init": "Write a commented project file; nothing is overwritten.",
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU, a component or a system: ports, values, connections.",
     "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
-    "plot": "Draw a run again, also one that failed or was killed; or any variables of runs.",
+    "plot": "Draw a run again, also one that failed; or variables of several.",
     "animate": "Animate rock, sand with its force chains, and beam of a run.",
-    "report": "Write a report that a reviewer can check, as an HTML page and a PDF.",
+    "report": "Write a report that a reviewer can check: HTML page and PDF.",
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find E_bar of a sand from a spring constant or a load-penetration curve.",
-    "converge": "Compare a shed with coarser and finer sand discs and beam elements.",
+    "converge": "Compare a shed with coarser and finer discs and elements.",
     "rockfall": "Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.",
     "formula": "Impact force by formulas of practice: Japanese handbook, ASTRA, Labiouse, Hertz.",
     "pile": "Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph.",

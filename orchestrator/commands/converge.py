@@ -38,7 +38,7 @@ def command(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Compare a shed with coarser and finer sand discs and beam elements.
+    """Compare a shed with coarser and finer discs and elements.
 
     Each mesh is computed with several packings of the sand.
     """

@@ -19,7 +19,7 @@ _NEXT = {"shed": "run", "slope": "rockfall", "pile": "pile"}
 
 
 def command(folder: _Folder, template: _Template = "shed") -> None:
-    """Write a commented project file to begin with; nothing is overwritten."""
+    """Write a commented project file; nothing is overwritten."""
     with opened() as screen:
         with options_named(("template",)):
             file = write_template(folder, template)

@@ -67,7 +67,7 @@ def command(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Draw a run again, also one that failed or was killed; or any variables of runs."""
+    """Draw a run again, also one that failed; or variables of several."""
     with opened(quiet, as_json) as screen, options_named(("folder", "variable")):
         _check(runs, variable, output_dir, {"--csv": csv, "--output": output})
         if variable:

@@ -44,7 +44,7 @@ def command(
     check: _Check = None,
     quiet: Quiet = False,
 ) -> None:
-    """Write a report that a reviewer can check, as an HTML page and a PDF."""
+    """Write a report that a reviewer can check: HTML page and PDF."""
     with opened(quiet) as screen, options_named(_ARGUMENTS):
         with screen.progress("writing the report") as progress:
             files = report(
