@@ -6,6 +6,7 @@ from functools import cache, lru_cache
 from textwrap import wrap
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import RendererAgg
@@ -102,9 +103,9 @@ def legend_columns(names: Sequence[str], width: float) -> int:
         max(width_of(line, LEGEND_SIZE) for line in name.splitlines() or [" "]) for name in names
     ]
     for columns in range(min(len(names), _MOST_COLUMNS), 1, -1):
-        rows = -(-len(names) // columns)
-        parts = [widths[first : first + rows] for first in range(0, len(names), rows)]
-        whole = sum(max(part) + _HANDLE * em for part in parts) + _BETWEEN * em * (columns - 1)
+        parts = np.array_split(widths, columns)  # as matplotlib shares them out
+        signs = columns * _HANDLE + (columns - 1) * _BETWEEN
+        whole = sum(float(part.max()) for part in parts) + signs * em
         if whole <= width:
             return columns
     return 1

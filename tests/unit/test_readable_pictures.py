@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 
 from rockshed.pictures import draw_all, sand
-from rockshed.pictures.sheet import Sheet
+from rockshed.pictures.sheet import LEGEND_SIZE, Sheet, legend_columns, width_of
 from tests.drawn_text import faults
 
 LONG = "a component with a name of which nobody can say that it is short " * 2
+
+
+def test_a_legend_has_no_more_columns_than_its_panel_has_room_for():
+    """Matplotlib shares four names in three columns out as 2, 1, 1."""
+    names = ["m" * 40] * 4
+    three = 3 * (width_of(names[0], LEGEND_SIZE) + 0.7)
+    assert legend_columns(names, three) == 3
+    assert legend_columns(names, 0.8 * three) == 2
 
 
 @pytest.fixture(scope="module")
