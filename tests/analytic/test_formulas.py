@@ -121,7 +121,7 @@ def test_a_blow_that_cannot_be_is_refused(changed):
 
 
 def test_a_table_shows_computed_values_as_deviations():
-    table = table_of(estimates(IMPACT), {FORCE: 700e3})
+    table = table_of(estimates(IMPACT), {"computed": {FORCE: 700e3}})
     first = next(iter(table))
     assert (first["value"], first["unit"], first["computed"]) == ("609", "kN", "+15 %")
     assert all(not row["computed"] for row in table if row["quantity"] != FORCE)

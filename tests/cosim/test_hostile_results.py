@@ -94,7 +94,7 @@ def run_read(folder: Path) -> None:
     assert repr(run) + run._repr_html_()
     assert [run.status, run.error, run.warnings]
     assert headlines(run) is not None
-    for picture in pictures._pictures(run):
+    for picture in pictures.pictures_of(run):
         picture.missing(run)
     for component in run.provenance["components"]:
         for _, state in run.states(component):

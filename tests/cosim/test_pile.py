@@ -159,9 +159,9 @@ SHAFT = "damping = 0.5\n[[shaft]]\nfrom = 5\nto = {to}\nresistance = 1e3"
             "toe.quake: must be a number (given: true)",
         ),
         (
-            ("quake = 2.5e-3", 'quake = "2"'),
-            'quake = "2"',
-            "toe.quake: must be a number (given: '2')",
+            ("quake = 2.5e-3", 'quake = "two"'),
+            'quake = "two"',
+            "toe.quake: must be a number, with a unit or in m (given: 'two')",
         ),
         (
             ("area = 5.8e-4", "area = -1"),

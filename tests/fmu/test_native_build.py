@@ -411,7 +411,7 @@ def test_a_compiler_that_fails_shows_its_message_and_leaves_the_old_file(
 SLOW_COMPILER = """#!/bin/sh
 exec sleep 60
 """
-BUILD = (
+BUILD_BY_THE_FACE = (
     "import sys, rockshed; rockshed.build_fmu('FallingRock', folder=sys.argv[1], runtime='native')"
 )
 
@@ -426,7 +426,7 @@ def test_a_compiler_ends_with_the_build_that_is_killed(native_fmus, tmp_path, wh
         (tmp_path / "cc").chmod(0o755)
         settings = {"CC": str(tmp_path / "cc"), "TMPDIR": str(tmp_path)}
     building = psutil.Popen(
-        [sys.executable, "-c", BUILD, tmp_path / "dist"], env=os.environ | settings
+        [sys.executable, "-c", BUILD_BY_THE_FACE, tmp_path / "dist"], env=os.environ | settings
     )
     deadline = time.monotonic() + 60.0
     while not (children := building.children()) and time.monotonic() < deadline:

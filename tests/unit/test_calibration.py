@@ -324,9 +324,9 @@ def test_a_calibration_that_was_interrupted_goes_on_where_it_was(monkeypatch, tm
         series = {
             "sand.penetration": curve.depth,
             "sand.rock.force.y": curve.load,
-            "sand.surface_height": np.array([0.1]),
-            "sand.surface_level": np.array([0.1]),
-            "sand.stable_step": np.array([1e-4]),
+            "sand.surface_height": np.full_like(curve.depth, 0.1),
+            "sand.surface_level": np.full_like(curve.depth, 0.1),
+            "sand.stable_step": np.full_like(curve.depth, 1e-4),
         }
         return Outcome(order.key, COMPLETE, series=series, options={"packing": "square"})
 

@@ -66,7 +66,7 @@ def test_the_description_of_a_changed_case_has_its_values():
     values = {"rock_mass": 2500.0, "rock.velocity0.y": -22.14}
     system = rockshed.case("girders-10", in_process=True, values=values)
     assert system.spec.description == (
-        "2.5 t at 22.1 m/s on 90 cm of sand on a beam of 10 m (changed from the case)"
+        "2.5 t at 22.1 m/s on 90.2 cm of sand on a beam of 10 m (changed from the case)"
     )
 
 

@@ -522,7 +522,7 @@ def test_claims(claim, verdict):
 # ------------------------------------------------------------------ stamps
 
 
-SHORT = Request("static-test", {}, options={"stop_time": 0.01}, in_process=True)
+SHORT = Request("lab-impact", {}, options={"stop_time": 0.0005}, in_process=True)
 
 
 def stamped(factor=1.0, seeds=(1, 2)):

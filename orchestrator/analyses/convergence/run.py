@@ -65,6 +65,15 @@ def converge(
     ------
     InputRefused
         Everything that is wrong with the arguments or the project.
+
+    Examples
+    --------
+    >>> import rockshed
+    >>> try:
+    ...     rockshed.converge("shed.toml", packings=1)
+    ... except rockshed.InputRefused as refusal:
+    ...     print(refusal)
+    packings: 1 shows no scatter of the packings; give two at least
     """
     show = progress or no_progress
     given = dict(values or {})
