@@ -359,7 +359,7 @@ def told(read, place: Path) -> None:
     except InputRefused as refusal:
         problems = refusal.problems or [None]
     assert all(problem.where and problem.what for problem in problems)
-    assert sum(len(str(problem)) for problem in problems) < 20_000
+    assert sum(len(str(problem)) for problem in problems) < 40_000
 
 
 def test_what_is_damaged_is_read_or_refused_in_words(kind, tmp_path):

@@ -180,6 +180,7 @@ def _started(workers: int | None, folder: str, security: "Security") -> "LocalCl
             host="127.0.0.1",
             memory_limit=0,
             dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
             silence_logs=logging.CRITICAL,
             local_directory=folder,
             security=security,
