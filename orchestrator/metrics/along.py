@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rockshed.components.common.roles import Role
 
 from ..core.results.reading import StoredRun
-from .roles import elements, members
+from .roles import elements, members_of
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def peak(run: StoredRun, component: str, role: Role) -> Peak | None:
 
 def _envelopes(run: StoredRun, component: str, role: Role) -> Iterator[Mapping[str, Any]]:
     """Yield the envelopes that a component declares of arrays with a role."""
-    named = {m.variable for m in members(run, role) if m.component == component}
+    named = {member.variable for member in members_of(run, component, role)}
     for picture in run.provenance["components"][component].get("pictures", ()):
         for panel in picture["panels"]:
             if "along" in panel and panel["variable"] in named:

@@ -14,7 +14,7 @@ from . import contents, names
 from .cushion import cushions, thickness_at_start
 from .energy import driven, structures
 from .headlines import headlines
-from .roles import column, members, owners, parameter, parameters, recorded
+from .roles import column, members, members_of, owners, parameter, parameters, recorded
 from .utilisation import exceeded
 
 _RESIDUAL_LIMIT = 0.01
@@ -219,7 +219,7 @@ def _other_weight(run: StoredRun, structure: str) -> Iterator[str]:
         if (name := column(run, cushion, Role.TRANSMITTED))
     ]
     assumed = float(parameter(run, structure, Role.CUSHION_WEIGHT) or 0.0)
-    named = [m.column for m in members(run, Role.CUSHION_WEIGHT) if m.component == structure]
+    named = [m.column for m in members_of(run, structure, Role.CUSHION_WEIGHT)]
     if len(pressing) != 1 or not assumed or abs(pressing[0] / assumed - 1.0) <= _WEIGHT_LIMIT:
         return
     yield (

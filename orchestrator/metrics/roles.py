@@ -70,6 +70,21 @@ def members(run: StoredRun, role: Role) -> list[Member]:
     ]
 
 
+def members_of(run: StoredRun, component: str, role: Role) -> list[Member]:
+    """Return the variables with a role that one component declares.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component : str
+        Name of the component in the system.
+    role : Role
+        The role that is asked for.
+    """
+    return [member for member in members(run, role) if member.component == component]
+
+
 def recorded(run: StoredRun, role: Role) -> list[Member]:
     """Return the scalar outputs with a role that the results have.
 
@@ -146,7 +161,7 @@ def all_samples(run: StoredRun, component: str, role: Role) -> NDArray[np.float6
     array of float, shape (outputs, rows)
         Of those that were recorded.
     """
-    columns = [member.column for member in members(run, role) if member.component == component]
+    columns = [member.column for member in members_of(run, component, role)]
     listed = [
         series
         for name in columns
@@ -182,7 +197,7 @@ def parameter(run: StoredRun, component: str, role: Role) -> Any:
         The role that is asked for.
     """
     values = parameters(run, component)
-    named = [m.variable for m in members(run, role) if m.component == component]
+    named = [member.variable for member in members_of(run, component, role)]
     return next((values[name] for name in named if name in values), None)
 
 
