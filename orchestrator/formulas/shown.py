@@ -40,7 +40,8 @@ def table_of(
     made = Table(columns, right=("value", *beside), title=title)
     for estimate in listed:
         unit, decimals = _SCALES[estimate.unit]
-        shown = f"{estimate.value / SCREEN_UNITS[unit]:,.{decimals}f}"
+        value = estimate.value / SCREEN_UNITS[unit]
+        shown = f"{value:,.{decimals}f}" if value >= 100.0 else f"{value:.3g}"
         against = [_deviation(estimate, of) for of in beside.values()]
         range_and_proof = (_WORDS[estimate.within_range], _WORDS[estimate.verified])
         made.add(estimate.quantity, estimate.name, shown, unit, *against, *range_and_proof)

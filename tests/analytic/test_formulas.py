@@ -128,6 +128,13 @@ def test_a_table_shows_computed_values_as_deviations():
     assert len(table.notes) == 5
 
 
+def test_a_small_force_keeps_its_digits():
+    """The ball of the laboratory: thousands of newtons, and no whole number of kilonewtons."""
+    first = next(iter(table_of(estimates(RockImpact(3.92, 0.0495, 8.0, thickness=0.1)))))
+    assert first["value"].count(".") == 1
+    assert len(first["value"]) == 4
+
+
 def test_formulas_are_reached_by_the_face():
     assert rockshed.formulas.estimates(IMPACT) == estimates(IMPACT)
     assert "formulas" in dir(rockshed)
