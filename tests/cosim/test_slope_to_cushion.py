@@ -73,7 +73,10 @@ def test_the_books_of_energy_close(run):
     assert np.abs(residual).max() < 0.005 * energy
     for bond in ("sand_rock", "sand_beam"):
         assert abs(run.metrics[f"coupling_{bond}_energy"].value) < 0.005 * energy
-    assert warnings(run) == []
+    told = warnings(
+        run
+    )  # the rock is the 95th percentile's, and a girder of 1993 is no match for it
+    assert [message.split(":")[0] for message in told] == ["stress past yield"]
 
 
 def test_it_has_its_table_and_pictures(run, tmp_path):
@@ -89,6 +92,7 @@ def test_it_has_its_table_and_pictures(run, tmp_path):
         "penetration",
         "beam",
         "moment",
+        "shear",
         "energy",
     }
     assert told == []
