@@ -12,7 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from shutil import copyfile, rmtree
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
+
+if TYPE_CHECKING:
+    import click
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ROOT / "build" / "pages"
@@ -257,7 +260,7 @@ def cell(text: str) -> str:
 
 
 def commands() -> str:
-    """Return the help of every command."""
+    """Return the help of every command and of its subjects."""
     import click
     import typer
 
@@ -265,13 +268,24 @@ def commands() -> str:
 
     group = typer.main.get_command(app)
     context = click.Context(group, info_name="rockshed", terminal_width=90)
-    parts = []
+    return "\n".join(
+        f"## {inner.command_path}\n\n```text\n{inner.command.get_help(inner)}\n```\n"
+        for inner in contexts(context)
+    )
+
+
+def contexts(context: "click.Context") -> "Iterator[click.Context]":
+    """Yield a context for every command of a group, and for those of groups in it."""
+    import click
+
+    group = cast("click.Group", context.command)
     for name in group.list_commands(context):
         command = group.get_command(context, name)
         if command is not None and not command.hidden:
             inner = click.Context(command, context, info_name=name, terminal_width=90)
-            parts.append(f"## rockshed {name}\n\n```text\n{command.get_help(inner)}\n```\n")
-    return "\n".join(parts)
+            yield inner
+            if hasattr(command, "list_commands"):
+                yield from contexts(inner)
 
 
 def old_names() -> str:

@@ -28,7 +28,11 @@ def options(name):
     """Return the options of a command."""
     group = typer.main.get_command(app)
     command = group.get_command(None, name)
-    named = {name for p in command.params for name in (*p.opts, *p.secondary_opts)}
+    commands = [command]
+    if hasattr(command, "list_commands"):
+        commands += [command.get_command(None, each) for each in command.list_commands(None)]
+    parameters = [parameter for each in commands for parameter in each.params]
+    named = {name for p in parameters for name in (*p.opts, *p.secondary_opts)}
     return named | {"--help"}
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import rockshed.commands.calibrate
+import rockshed.commands.calibrate_sand
 from rockshed.analyses.calibration import search as calibration
 from rockshed.analyses.calibration.fit import Push, Unreachable, fit
 from rockshed.analyses.calibration.measurement import Measurement, of_stiffness
@@ -228,7 +228,7 @@ def test_bad_input_is_refused(command, arguments, words):
 
 
 def test_the_command_says_that_kernels_are_compiled(command, sand, monkeypatch):
-    monkeypatch.setattr(rockshed.commands.calibrate, "is_cold", lambda names: True)
+    monkeypatch.setattr(rockshed.commands.calibrate_sand, "is_cold", lambda names: True)
     sand()
     assert "compiling kernels, first run only" in command("--stiffness", "38 kN/m").stderr
 
