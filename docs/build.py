@@ -46,7 +46,7 @@ CONTENTS = {
         "security",
         "limits",
     ),
-    "Physics": ("components/index", "formulas", "papers", "sonoda1993", "convergence"),
+    "Physics": ("components/index", "rockfall", "formulas", "papers", "sonoda1993", "convergence"),
     "Reference": ("api/index", "api/components", "api/core", "api/analyses", "api/papers"),
     "Project": ("glossary", "contributing", "changelog"),
 }

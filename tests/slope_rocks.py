@@ -9,7 +9,7 @@ from rockshed.components.catalogue import component
 from rockshed.components.common.counter_random import stream
 from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.events import begin, happen, world
-from rockshed.components.slope_rockfall.records import BARRIER, OUTCOME, PASSAGE, PEAK
+from rockshed.components.slope_rockfall.records import BARRIER, OUTCOME, PASSAGE, PEAK, ROCK
 from rockshed.components.slope_rockfall.trajectory import trials
 
 SLOPE = component("SlopeRockfall")
@@ -80,6 +80,7 @@ def run_trials(
     barriers=None,
     stations=0,
     station_distance=1.0,
+    rocks=None,
 ):
     """Passages, peaks and outcomes of consecutive trials."""
     lines = np.array(lines, float).reshape(-1, 4)
@@ -100,6 +101,7 @@ def run_trials(
         stops,
         instance["profile.x"],
         station_distance,
+        np.empty((0, len(ROCK))) if rocks is None else rocks,
         instance.w,
         instance.x,
         instance.k,

@@ -23,7 +23,7 @@ from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import kN, standard_gravity
 
-SPHERE, DISC, GIVEN = 1, 2, 3
+SPHERE, DISC, GIVEN, ELLIPSE = 1, 2, 3, 4
 PRINTED, NONE, CONSISTENT = 1, 2, 3
 RELATIVE, ABSOLUTE = 1, 2
 NORMAL, UNIFORM, LOGNORMAL, TRIANGULAR = 1, 2, 3, 4
@@ -52,11 +52,13 @@ to a facet), number of the cell it takes its material from."""
 Ground = namedtuple(
     "Ground",
     "strength stiffness hardening friction resistance tilt tilt_deviation roughness "
-    "roughness_deviation",
+    "roughness_deviation undulation by_coefficients normal_restitution tangential_restitution "
+    "scaling_speed",
 )
-GROUND = Ground(*range(9))
+GROUND = Ground(*range(14))
 """Columns of a cell's material: q_d, k, epsilon, mu, c_o, mean and deviation of K_s, mean and
-deviation of R_o."""
+deviation of R_o; height S of the undulation (m); 1 for impacts by coefficients, R_n, R_t and the
+speed of their scaling (m/s)."""
 
 Body = namedtuple(
     "Body",
@@ -140,6 +142,11 @@ def _material(name: str, description: str, rock: float, soil: float, unit: str =
     )
 
 
+def _undulation_or_coefficient(name: str, description: str, unit: str = "1", **rest):
+    """Return a parameter of every cell that is zero, with which nothing happens."""
+    return param(name, description, 0.0, unit, minimum=0.0, size="cells", **rest)
+
+
 _DISTRIBUTIONS = ("truncated_normal", "uniform", "lognormal", "triangular")
 _MODES = ("flight", "rolling", "sliding", "spinning", "rest", "received")
 _START = ("position0.x", "position0.y")
@@ -166,10 +173,18 @@ LAYOUT = Layout(
         ),
         choice(
             "shape",
-            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, or the "
-            "parameter moment_of_inertia",
-            ("sphere", "disc", "given"),
+            "what the moment of inertia follows from: sphere 2/5 m r2, disc 1/2 m r2, the "
+            "parameter moment_of_inertia, or an ellipse of semi-axes a and b, 1/5 m (a2 + b2)",
+            ("sphere", "disc", "given", "ellipse"),
             "sphere",
+        ),
+        param(
+            "elongation",
+            "a / b of an ellipse whose semi-axes are a = r sqrt(a/b) and b = r / sqrt(a/b); used "
+            "when shape is ellipse",
+            1.0,
+            minimum=1.0,
+            maximum=10.0,
         ),
         param(
             "moment_of_inertia",
@@ -375,6 +390,28 @@ LAYOUT = Layout(
             maximum=2.0,
         ),
         _material("roughness_deviation", "R_o, standard deviation", 0.03, 0.04),
+        _undulation_or_coefficient(
+            "undulation",
+            "S: height of the surface's undulation over the radius of the rock, which turns the "
+            "surface by up to arctan(S / r) at an impact, on flat cells too",
+            "m",
+        ),
+        _undulation_or_coefficient(
+            "by_coefficients",
+            "1: impacts have the coefficients of restitution below; 0: they follow DRSP",
+            maximum=1.0,
+        ),
+        _undulation_or_coefficient(
+            "normal_restitution", "R_n: coefficient of normal restitution", maximum=1.0
+        ),
+        _undulation_or_coefficient(
+            "tangential_restitution", "R_t: coefficient of tangential restitution", maximum=1.0
+        ),
+        _undulation_or_coefficient(
+            "scaling_speed",
+            "K: R_n is divided by 1 + (normal speed / K)2, 9.144 m/s in CRSP; 0: it is not",
+            "m/s",
+        ),
         # inputs
         inp("force.x", "force on the rock in the receiver without its weight, to the right", "N"),
         inp("force.y", "force on the rock in the receiver without its weight, upwards", "N"),

@@ -16,6 +16,7 @@ from .declarations import (
     ABSOLUTE,
     BODY,
     DISC,
+    ELLIPSE,
     ENTER,
     FLIGHT,
     GRIP,
@@ -38,8 +39,9 @@ from .declarations import (
 from .flight import landing, move, travel
 from .geometry import height_above, line_below, path_y
 from .receiver import departure, entrance, inside
-from .restitution import collide, restitution
+from .restitution import Approach, collide, rebound_by_coefficients, restitution, slowing
 from .sampling import normal_tail, variate
+from .shape import ellipse_contact
 from .sliding_rolling import Loads, Touch, law, slip_of, start
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -66,10 +68,11 @@ World = namedtuple(
     "World",
     "lines path ground radius mass ratio gravity area treatment capped absolute limit_mean "
     "limit_deviation limit_kind roughness_kind tilt_kind tail hypercube receiver left right "
-    "bottom top",
+    "bottom top elongation",
 )
 """Constants of a trial; ratio is I / (m r^2), area the loaded area A (m2), tail that of the
-truncated normal. hypercube: trials of a Latin hypercube, or 0."""
+truncated normal. hypercube: trials of a Latin hypercube, or 0. elongation: a / b of an ellipse,
+1 for any other shape."""
 
 
 @kernel
@@ -88,6 +91,9 @@ def inertia(w):
     """
     if w[V.shape] == SPHERE:
         return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]
+    if w[V.shape] == ELLIPSE:
+        longer = w[V.elongation] + 1.0 / w[V.elongation]
+        return 0.2 * w[V.mass] * w[V.radius] * w[V.radius] * longer
     return (
         0.5 * w[V.mass] * w[V.radius] * w[V.radius]
         if w[V.shape] == DISC
@@ -133,6 +139,7 @@ def world(w, x, k):
         w[V.receiver_right],
         w[V.receiver_bottom],
         w[V.receiver_top],
+        w[V.elongation] if w[V.shape] == ELLIPSE else 1.0,
     )
 
 
@@ -718,16 +725,16 @@ def strike(world, j, source, b):
     """
     before = kinetic(world, b)
     at = j * len(PATH)
-    tilt = sample_tilt(world, j, source, b)
-    sample_roughness(world, j, source, b)
+    tilt, lever = contact(world, j, source, b)
     u, v = components(world, j, b)
     s, c = math.sin(tilt), math.cos(tilt)
     if u * s + v * c >= 0.0:
-        s, c = 0.0, 1.0
+        s, c, lever = 0.0, 1.0, world.radius
     normal = max(0.0, world.path[at + PATH.cos] * c - world.path[at + PATH.sin] * s)
-    tilted_u, tilted_v, omega = bounce(
-        world, j, u * c - v * s, min(0.0, u * s + v * c), b[BODY.omega], world.gravity * normal
+    tilted = Approach(
+        u * c - v * s, min(0.0, u * s + v * c), b[BODY.omega], world.gravity * normal, lever
     )
+    tilted_u, tilted_v, omega = bounce(world, j, tilted)
     u = tilted_u * c + tilted_v * s
     v = max(0.0, tilted_v * c - tilted_u * s)
     b[BODY.omega] = omega
@@ -742,8 +749,11 @@ def strike(world, j, source, b):
 
 
 @kernel
-def bounce(world, j, u, v, omega, gravity):
-    """Return the velocities after an impact, in the frame of the (tilted) line.
+def contact(world, j, source, b):
+    """Return by how much the surface is turned at an impact, and the lever arm of the contact.
+
+    K_s turns the cell, the undulation S turns it by an angle uniform in +-arctan(S / r) (Pfeiffer
+    and Bowen 1989), and an ellipse touches the ground beside the foot of its centre.
 
     Parameters
     ----------
@@ -751,12 +761,71 @@ def bounce(world, j, u, v, omega, gravity):
         Constants of the trial.
     j : int
         Line of the path.
-    u, v : float
-        Velocity along the line and along its normal, v <= 0 (m/s).
-    omega : float
-        Angular velocity (rad/s).
-    gravity : float
-        Its component along the normal (m/s2).
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event; R_o is drawn too.
+
+    Returns
+    -------
+    tuple of float
+        Angle (rad), positive where the surface descends to the right more steeply, and distance
+        (m) of the contact point from the centre.
+    """
+    tilt = sample_tilt(world, j, source, b)
+    sample_roughness(world, j, source, b)
+    lean = undulation(world, j, source, b)
+    lever = world.radius
+    angle = world.path[j * len(PATH) + PATH.angle]
+    if world.elongation > 1.0:
+        lever, side = ellipse_contact(world.radius, world.elongation, b[BODY.angle] + angle)
+        lean -= side
+    if lean == 0.0 or abs(angle) >= _STEEPEST:
+        return tilt, lever
+    return min(max(angle + tilt + lean, -_STEEPEST), _STEEPEST) - angle, lever
+
+
+@kernel
+def undulation(world, j, source, b):
+    """Return by how much the undulation of line j turns its surface (rad) at an impact.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    source : int
+        Stream of random numbers of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event; a number is drawn only where there is an undulation.
+
+    Returns
+    -------
+    float
+        Angle (rad).
+    """
+    height = world.ground[ground_of(world, j) + GROUND.undulation]
+    if height == 0.0:
+        return 0.0
+    number = b[BODY.draws]
+    b[BODY.draws] = number + 1.0
+    u = stratified(world, number, draw(source, number), b)
+    return (2.0 * u - 1.0) * math.atan(height / world.radius)
+
+
+@kernel
+def bounce(world, j, tilted):
+    """Return the velocities after an impact, in the frame of the (turned) line.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    j : int
+        Line of the path.
+    tilted : Approach
+        Motion before it in that frame.
 
     Returns
     -------
@@ -765,12 +834,18 @@ def bounce(world, j, u, v, omega, gravity):
     """
     at = ground_of(world, j)
     g = world.ground
-    d = 1.0 if u >= 0.0 else -1.0
+    ratio = world.ratio
+    if tilted.lever != world.radius:
+        ratio *= world.radius * world.radius / (tilted.lever * tilted.lever)
+    if g[at + GROUND.by_coefficients] != 0.0:
+        normal = g[at + GROUND.normal_restitution] / slowing(tilted.v, g[at + GROUND.scaling_speed])
+        return rebound_by_coefficients(tilted, normal, g[at + GROUND.tangential_restitution], ratio)
+    d = 1.0 if tilted.u >= 0.0 else -1.0
     e, delta = restitution(
-        -v,
+        -tilted.v,
         world.mass,
         world.radius,
-        gravity,
+        tilted.gravity,
         g[at + GROUND.strength],
         g[at + GROUND.stiffness],
         g[at + GROUND.hardening],
@@ -778,15 +853,15 @@ def bounce(world, j, u, v, omega, gravity):
         world.treatment,
     )
     after_u, after_v, after_omega = collide(
-        d * u,
-        v,
-        d * omega,
+        d * tilted.u,
+        tilted.v,
+        d * tilted.omega,
         e,
-        delta,
+        min(delta, 2.0 * tilted.lever),
         world.capped,
         g[at + GROUND.friction],
-        world.radius,
-        world.ratio,
+        tilted.lever,
+        ratio,
     )
     return d * after_u, after_v, d * after_omega
 

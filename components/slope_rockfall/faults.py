@@ -10,8 +10,8 @@ FORCE_OUTSIDE, LEFT_BELOW, DIVERGED, RESTLESS, NEVER_RECEIVED = range(20, 25)
 RULES = {
     FOLDED: "its right node must lie to the right of its left node, a profile runs from left to "
     "right without folding back: order the nodes by x and remove repeated ones",
-    STEEP: "it is steeper than 89 degrees; a vertical face needs some horizontal length: move one "
-    "of its nodes",
+    STEEP: "it is steeper than 89.9 degrees; a vertical face needs some horizontal length: move "
+    "one of its nodes",
     ROUGH: "roughness with its deviation reaches 2, the whole rock: reduce one of them",
     LOCKED: "mu tan(phi) with the largest roughness is 1 or more, and a sliding rock has no "
     "equation of motion: reduce friction, roughness or its deviation",

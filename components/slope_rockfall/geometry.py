@@ -158,10 +158,13 @@ def takeover(i, other, cells, radius, w, k):
         low = max(low, node(i, w, k)[0] - radius)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
+        is_last = middle in (low, high)
         if centre_y(other, middle, cells, radius, w, k) >= centre_y(i, middle, cells, radius, w, k):
             high = middle
         else:
             low = middle
+        if is_last:
+            break
     return high
 
 

@@ -108,6 +108,11 @@ def lay_ground(w, x, k):
         ground[at + GROUND.tilt_deviation] = view(w, k, A.tilt_deviation)[c]
         ground[at + GROUND.roughness] = view(w, k, A.roughness)[c]
         ground[at + GROUND.roughness_deviation] = view(w, k, A.roughness_deviation)[c]
+        ground[at + GROUND.undulation] = view(w, k, A.undulation)[c]
+        ground[at + GROUND.by_coefficients] = view(w, k, A.by_coefficients)[c]
+        ground[at + GROUND.normal_restitution] = view(w, k, A.normal_restitution)[c]
+        ground[at + GROUND.tangential_restitution] = view(w, k, A.tangential_restitution)[c]
+        ground[at + GROUND.scaling_speed] = view(w, k, A.scaling_speed)[c]
 
 
 @kernel

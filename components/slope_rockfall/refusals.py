@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-_STEEPEST = math.tan(math.radians(1.0))
+_STEEPEST = math.tan(math.radians(0.1))
 _ROUGHEST = 1.999
 
 

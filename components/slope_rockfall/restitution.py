@@ -6,9 +6,15 @@ of rolling.
 """
 
 import math
+from collections import namedtuple
 
 from ..common.kernels import kernel
 from .declarations import CONSISTENT, PRINTED
+
+Approach = namedtuple("Approach", "u v omega gravity lever")
+"""A rock that meets the ground: velocity along the surface and along its normal, v <= 0 (m/s),
+angular velocity (rad/s), gravity along the normal (m/s2), distance of the contact point from the
+centre (m)."""
 
 _SERIES_BELOW = 0.02
 _LONGEST = 60
@@ -216,6 +222,54 @@ def collide(u, v, omega, e, delta, capped, friction, radius, ratio):
     ):
         after = rebound(u, v, omega, e, 0.0, 1.0, friction, radius, ratio)
     return after
+
+
+@kernel
+def slowing(speed, scaling):
+    """Return by what a normal restitution is divided at a speed (m/s), 1 + (speed / K)^2.
+
+    Source: Pfeiffer and Bowen 1989, with K = 30 ft/s = 9.144 m/s.
+
+    Parameters
+    ----------
+    speed : float
+        Normal speed (m/s).
+    scaling : float
+        K (m/s); 0 for coefficients that do not depend on the speed.
+
+    Returns
+    -------
+    float
+        Without unit, 1 or more.
+    """
+    return 1.0 + (speed / scaling) * (speed / scaling) if scaling > 0.0 else 1.0
+
+
+@kernel
+def rebound_by_coefficients(tilted, normal, tangential, ratio):
+    """Return u, v and omega after an impact with coefficients of restitution.
+
+    The velocity is that of programs with a lumped mass, -R_n v and R_t u. The rock then rolls, as
+    far as tangential and rotational energy before the impact suffice for that.
+
+    Parameters
+    ----------
+    tilted : Approach
+        Motion before the impact.
+    normal, tangential : float
+        R_n and R_t, from 0 to 1.
+    ratio : float
+        I / (m lever^2).
+
+    Returns
+    -------
+    tuple of float
+        u, v (m/s) and omega (rad/s).
+    """
+    u = tangential * tilted.u
+    spin = tilted.lever * tilted.omega
+    most = math.sqrt(max(0.0, spin * spin + (tilted.u * tilted.u - u * u) / ratio))
+    return u, -normal * tilted.v, -min(max(u, -most), most) / tilted.lever
 
 
 @kernel

@@ -10,17 +10,19 @@ from ..common.counter_random import stream
 from ..common.kernels import kernel, released
 from .declarations import BODY, LAYOUT, NEVER, PATH, REST
 from .events import begin, happen, world
-from .flight import passing
-from .geometry import height_above, line_below
+from .flight import move, passing
+from .geometry import build_path, height_above, line_below
 from .records import (
     BARRIER,
     BELOW,
+    KNOT,
     OUTCOME,
     PASSAGE,
     PASSED_LEFT,
     PASSED_RIGHT,
     PEAK,
     RESTED,
+    ROCK,
     STOPPED,
     UNFINISHED,
 )
@@ -113,6 +115,8 @@ def note_end(end, events, b, outcome):
     outcome : ndarray of float64, shape (len(OUTCOME),)
         Columns of the trial.
     """
+    if end == UNFINISHED:
+        place(0.0, b, outcome)
     outcome[OUTCOME.end] = end
     outcome[OUTCOME.events] = events
     outcome[OUTCOME.impacts] = b[BODY.impacts]
@@ -346,6 +350,7 @@ def note_passage(world, i, time, b, passages):
     passages[i, PASSAGE.time], passages[i, PASSAGE.x], passages[i, PASSAGE.y] = absolute, x, y
     passages[i, PASSAGE.height] = clearance(world, x, y)
     passages[i, PASSAGE.speed] = math.sqrt(vx * vx + vy * vy)
+    passages[i, PASSAGE.vx], passages[i, PASSAGE.vy] = vx, vy
     passages[i, PASSAGE.omega] = omega
     passages[i, PASSAGE.kinetic] = energy(world, vx * vx + vy * vy, omega)
 
@@ -531,7 +536,92 @@ def highest(world, wait, b):
     return peak
 
 
+# --- the way itself ---
+
+
+@kernel
+def trace(seed, number, left, right, lines, barriers, w, x, k, body, knots):
+    """Compute one trial, note its events, and return their number.
+
+    Parameters are those of :func:`trial`; a trial of more events than ``knots`` has rows is cut
+    off there.
+
+    Parameters
+    ----------
+    knots : ndarray of float64, shape (n, len(KNOT))
+        A row for the start, each event and the end; overwritten.
+
+    Returns
+    -------
+    int
+        Number of rows that are used.
+    """
+    constants = world(w, x, k)
+    source = stream(seed, number)
+    if not begin(constants, seed, number, w, body):
+        return 0
+    count = 0
+    end = UNFINISHED
+    while end == UNFINISHED and count < knots.shape[0] - 1:
+        note_knot(constants, body, knots[count])
+        count += 1
+        wait, end = stretch(left, right, body)
+        until, barrier = first_stop(constants, lines, barriers, wait, body)
+        if barrier >= 0:
+            wait, end = until, STOPPED
+        if end == UNFINISHED:
+            happen(constants, source, body)
+        elif wait > 0.0:
+            move(body, body[BODY.time] + wait)
+            note_knot(constants, body, knots[count])
+            count += 1
+    return count
+
+
+@kernel
+def note_knot(world, b, knot):
+    """Note the motion of the rock at its last event.
+
+    Parameters
+    ----------
+    world : World
+        Constants of the trial.
+    b : ndarray of float64, shape (len(BODY),)
+        The rock at its last event.
+    knot : ndarray of float64, shape (len(KNOT),)
+        Overwritten.
+    """
+    knot[KNOT.time], knot[KNOT.x], knot[KNOT.y] = b[BODY.time], b[BODY.x], b[BODY.y]
+    knot[KNOT.angle] = b[BODY.angle]
+    knot[KNOT.vx], knot[KNOT.vy], knot[KNOT.omega] = b[BODY.vx], b[BODY.vy], b[BODY.omega]
+    knot[KNOT.ax], knot[KNOT.ay], knot[KNOT.alpha] = b[BODY.ax], b[BODY.ay], b[BODY.alpha]
+    knot[KNOT.mode] = b[BODY.mode]
+    j = line_below(b[BODY.x], world.lines, world.path)
+    knot[KNOT.cell] = world.path[j * len(PATH) + PATH.cell] + 1.0
+
+
 # --- campaigns ---
+
+
+@kernel
+def set_rock(rock, w, x, k):
+    """Give an instance of its own another rock and start; the path is laid anew for another radius.
+
+    Parameters
+    ----------
+    rock : ndarray of float64, shape (len(ROCK),)
+        The rock.
+    w, x, k : ndarray
+        Buffers of the instance, which are changed.
+    """
+    is_other = w[V.radius] != rock[ROCK.radius]
+    w[V.mass], w[V.radius] = rock[ROCK.mass], rock[ROCK.radius]
+    w[V.moment_of_inertia], w[V.elongation] = rock[ROCK.moment_of_inertia], rock[ROCK.elongation]
+    w[V.position0_x], w[V.position0_y] = rock[ROCK.x], rock[ROCK.y]
+    w[V.velocity0_x], w[V.velocity0_y] = rock[ROCK.vx], rock[ROCK.vy]
+    w[V.angular_velocity0], w[V.angle0] = rock[ROCK.omega], rock[ROCK.angle]
+    if is_other:
+        build_path(w, x, k)
 
 
 @released
@@ -544,6 +634,7 @@ def trials(
     barriers,
     first_station,
     station_distance,
+    rocks,
     w,
     x,
     k,
@@ -556,8 +647,16 @@ def trials(
 
     Parameters are those of :func:`trial`, but passages, peaks and outcomes have a row for each
     trial.
+
+    Parameters
+    ----------
+    rocks : ndarray of float64, shape (trials, len(ROCK)) or (0, len(ROCK))
+        Rock of each trial; then w, x and k must be the thread's own. Without rows it is that of
+        the instance.
     """
     for i in range(outcomes.shape[0]):
+        if rocks.shape[0] > 0:
+            set_rock(rocks[i], w, x, k)
         trial(
             seed,
             first + i,

@@ -10,6 +10,8 @@ MISSING = "is missing"
 
 _ALTERNATIVES = ("bool", "int", "float", "str")
 """Names of the alternatives of a type, which pydantic puts into the path of a value."""
+AS_NUMBER, AS_DISTRIBUTION = "as a number", "as a distribution"
+"""Alternatives of a quantity, likewise; no key is called so."""
 _WORDS: Mapping[str, str] = {
     "extra_forbidden": UNKNOWN_KEY,
     "missing": MISSING,
@@ -44,6 +46,7 @@ _BOUNDS = {
 
 def location(path: tuple[Any, ...]) -> tuple[Any, ...]:
     """Return the keys of a value, without the names of the alternatives of its type."""
+    path = tuple(part for part in path if part not in (AS_NUMBER, AS_DISTRIBUTION))
     last = path[-1] if path else None
     is_alternative = isinstance(last, str) and (
         last in _ALTERNATIVES or last.startswith(("constrained-", "function-"))

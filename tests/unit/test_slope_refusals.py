@@ -29,7 +29,7 @@ def problems(points=LEVEL, **values):
         ([(0, 0), (10, 0), (8, -5), (30, -6)], 2, "folding back"),
         ([(0, 0), (10, 0), (10, -5), (30, -6)], 2, "right node must lie to the right"),
         ([(0, 0), (10, 0), (10, 0), (30, -6)], 2, "remove repeated ones"),
-        ([(0, 0), (10, 0), (10.001, -5), (30, -6)], 2, "steeper than 89 degrees"),
+        ([(0, 0), (10, 0), (10.001, -5), (30, -6)], 2, "steeper than 89.9 degrees"),
     ],
 )
 def test_profiles_that_fold_back_or_are_vertical(points, cell, reason):

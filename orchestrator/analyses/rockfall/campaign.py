@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.slope_rockfall.declarations import BODY
-from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK
+from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK, ROCK
 from rockshed.components.slope_rockfall.trajectory import trials
 
 from ...core.errors import InputRefused, Problem
 from ...sites.rockfall.checks import reach
 from ...sites.rockfall.preparation import PreparedSlope
 from ...sites.rockfall.profile import Node, surface
+from ...sites.rockfall.rocks import RockSampler
 from ...sites.rockfall.site import Barrier, Line
 from ..frame import Count, FloatArray
 
@@ -56,6 +57,8 @@ class Campaign:
         x (m) of the envelopes, evenly spaced.
     names : sequence of str
         Of the lines.
+    rocks : RockSampler or None
+        Rock and start of each trial; None where they are those of the buffers.
     """
 
     seed: int
@@ -69,6 +72,7 @@ class Campaign:
     barriers: FloatArray
     stations: FloatArray
     names: Sequence[str]
+    rocks: RockSampler | None = None
 
     @property
     def bytes_per_trial(self) -> int:
@@ -118,6 +122,7 @@ def campaign_of(slope: PreparedSlope) -> Campaign:
         barriers=np.array(holding, np.float64).reshape(-1, 2),
         stations=np.linspace(nodes[0].x, right, site.stations),
         names=tuple(entry.name for entry in entries),
+        rocks=slope.rocks if slope.rocks.varies else None,
     )
     _check_memory(campaign, slope.source.places.of(("trials",)))
     return campaign
@@ -220,6 +225,7 @@ def compute(campaign: Campaign, first: int, count: int) -> TrialRecords:
     """
     records = empty_records(campaign, count)
     peaks = np.empty(records.peaks.shape)
+    w, x, k, rocks = own_buffers(campaign, first, count)
     trials(
         campaign.seed,
         first,
@@ -229,9 +235,10 @@ def compute(campaign: Campaign, first: int, count: int) -> TrialRecords:
         campaign.barriers,
         float(campaign.stations[0]),
         float(campaign.stations[1] - campaign.stations[0]),
-        campaign.w,
-        campaign.x,
-        campaign.k,
+        rocks,
+        w,
+        x,
+        k,
         np.zeros(len(BODY)),
         records.passages,
         peaks,
@@ -239,6 +246,31 @@ def compute(campaign: Campaign, first: int, count: int) -> TrialRecords:
     )
     records.peaks[:] = peaks
     return records
+
+
+def own_buffers(
+    campaign: Campaign, first: int, count: int
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
+    """Return buffers for consecutive trials, and their rocks.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        To which the trials belong.
+    first, count : int
+        Number of the first trial, and of trials.
+
+    Returns
+    -------
+    w, x, k : array
+        Those of the campaign; copies, where the rocks differ and are set in them.
+    rocks : array of float, shape (count or 0, len(ROCK))
+        No rows, where all rocks are that of the buffers.
+    """
+    if campaign.rocks is None:
+        return campaign.w, campaign.x, campaign.k, np.empty((0, len(ROCK)))
+    rocks = campaign.rocks.sample(first, count)
+    return campaign.w.copy(), campaign.x.copy(), campaign.k.copy(), rocks
 
 
 def fill(records: TrialRecords, first: int, block: TrialRecords) -> int:

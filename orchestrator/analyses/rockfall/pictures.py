@@ -10,11 +10,12 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
+from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 
 from rockshed.components.common.units import kJ
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSED_RIGHT, RESTED, STOPPED
+from rockshed.components.slope_rockfall.records import ROCK as COLUMNS
 
 from ...animations.writing import FRAMES_PER_SECOND, write_animation
 from ...pictures.marks import Mark, name_marks
@@ -86,14 +87,31 @@ def caption(result: "RockfallResult") -> list[str]:
     """Return in short lines what a campaign has computed."""
     site = result.slope.site
     campaign = result.campaign
-    mass = result.slope.instance["mass"]
-    rock = f"rock: r = {digits(site.rock.radius)} m, m = {digits(mass, 4)} kg, {site.rock.shape}"
+    rock = _rock_in_words(result)
     chance = f"Latin hypercube of {site.hypercube}" if site.hypercube else "independent trials"
     return [
         ": ".join(filter(None, (literal(result.name), literal(site.description)))),
         f"{campaign.trials} trials, seed {campaign.seed}, {chance}; {rock}; "
         f"V_lim {digits(site.limit_speed.mean)} ± {digits(site.limit_speed.deviation)} m/s",
     ]
+
+
+def _rock_in_words(result: "RockfallResult") -> str:
+    """Return mass, size and shape of the rock, or their range over the trials."""
+    shape = result.slope.site.rock.shape
+    if result.rocks is None:
+        mass, radius = result.slope.instance["mass"], result.slope.instance["radius"]
+        return f"rock: r = {digits(radius)} m, m = {digits(mass, 4)} kg, {shape}"
+    mass, radius = (_range(result.rocks[:, c]) for c in (COLUMNS.mass, COLUMNS.radius))
+    words = f"rocks: r = {radius} m, m = {mass} kg, {shape}"
+    if shape == "ellipse":
+        words += f" of elongation {_range(result.rocks[:, COLUMNS.elongation])}"
+    return words
+
+
+def _range(values: NDArray[np.float64]) -> str:
+    low, high = digits(float(values.min())), digits(float(values.max()))
+    return low if low == high else f"{low} to {high}"
 
 
 def drawings(result: "RockfallResult") -> dict[str, Drawing]:
@@ -126,7 +144,7 @@ def _slope(result: "RockfallResult", axes: Axes) -> None:
     nodes = result.slope.nodes
     x = np.array([node.x for node in nodes])
     y = np.array([node.y for node in nodes])
-    radius = result.slope.site.rock.radius
+    radius = result.slope.instance["radius"]
     rise = max(y.max() - y.min(), _LEVEL * (x[-1] - x[0]), _FEWEST_RADII * radius)
     bottom = y.min() - 0.04 * rise
     names = [str(node.material) for node in nodes[:-1]]
@@ -326,7 +344,7 @@ def ends(result: "RockfallResult") -> Figure:
         axes.set(xlabel="x (m)", ylabel="trials that end here")
         reached = axes.twinx()
         reached.plot(
-            [result.slope.site.start.x, *np.sort(x)],
+            [result.slope.instance["position0.x"], *np.sort(x)],
             100.0 * (1.0 - np.arange(len(x) + 1) / len(x)),
             color=INK,
             linewidth=1.1,
@@ -432,9 +450,10 @@ def _stage(
     slope, energy = figure.subplots(2, 1, height_ratios=[2.4, 1])
     _slope(result, slope)
     slope.set(xlabel="x (m)", aspect="equal")
-    rock = Circle(
+    rock = Ellipse(
         (trial.x[0], trial.y[0]),
-        result.slope.site.rock.radius,
+        2.0 * trial.radius * trial.elongation**0.5,
+        2.0 * trial.radius / trial.elongation**0.5,
         facecolor=ROCK,
         edgecolor=INK,
         linewidth=0.5,
@@ -454,6 +473,7 @@ def _stage(
     def draw(i: int) -> None:
         path.set_data(trial.x[: i + 1], trial.y[: i + 1])
         rock.set_center((trial.x[i], trial.y[i]))
+        rock.set_angle(np.degrees(trial.angle[i]))
         spot.set_data(trial.x[i : i + 1], trial.y[i : i + 1])
         mark.set_data(trial.time[i : i + 1], trial.energy[i : i + 1] / kJ)
         words.set_text(_instant(trial, i))

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockshed.components.slope_rockfall.records import OUTCOME
+from rockshed.components.common.component import Instance
+from rockshed.components.slope_rockfall.records import OUTCOME, ROCK
 
 from ...core.errors import InputRefused, Problem
 from ...sites.rockfall.preparation import PreparedSlope
@@ -26,6 +27,20 @@ _OUTPUTS = {
     "energy": "energy.kinetic",
 }
 
+PARAMETERS = {
+    "mass": ROCK.mass,
+    "radius": ROCK.radius,
+    "moment_of_inertia": ROCK.moment_of_inertia,
+    "elongation": ROCK.elongation,
+    "position0.x": ROCK.x,
+    "position0.y": ROCK.y,
+    "velocity0.x": ROCK.vx,
+    "velocity0.y": ROCK.vy,
+    "angular_velocity0": ROCK.omega,
+    "angle0": ROCK.angle,
+}
+"""Parameters of the component that a rock sets, and its columns."""
+
 
 @dataclass(frozen=True)
 class Replay:
@@ -42,6 +57,8 @@ class Replay:
     x, y, angle, vx, vy, mode, height, energy : array of float, shape (n,)
         Place (m), angle (rad) and velocity (m/s) of the centre, number of the mode of motion,
         height (m) above the slope, kinetic energy (J).
+    radius, elongation : float
+        sqrt(a b) (m) and a / b of its semi-axes.
     """
 
     number: int
@@ -55,6 +72,8 @@ class Replay:
     mode: NDArray[np.float64]
     height: NDArray[np.float64]
     energy: NDArray[np.float64]
+    radius: float
+    elongation: float
 
     @property
     def speed(self) -> NDArray[np.float64]:
@@ -87,6 +106,25 @@ def check(campaign: Campaign, numbers: Iterable[int]) -> None:
         raise InputRefused(problems)
 
 
+def set_rock_of(campaign: Campaign, number: int, rock: Instance) -> None:
+    """Give an instance the rock and the start of a trial.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        To which the trial belongs.
+    number : int
+        Of the trial.
+    rock : Instance
+        Not yet initialised.
+    """
+    if campaign.rocks is None:
+        return
+    drawn = campaign.rocks.sample(number, 1)[0]
+    for name, column in PARAMETERS.items():
+        rock[name] = drawn[column]
+
+
 def replay(slope: PreparedSlope, campaign: Campaign, number: int, interval: float) -> Replay:
     """Compute a trial step by step.
 
@@ -109,6 +147,7 @@ def replay(slope: PreparedSlope, campaign: Campaign, number: int, interval: floa
     outcome = compute(campaign, number, 1).outcomes[0]
     rock = slope.instance.component.instance(**slope.instance.sizes)
     rock.w[:] = campaign.w
+    set_rock_of(campaign, number, rock)
     rock["trial"] = number
     rock.initialise()
     end = float(outcome[OUTCOME.time])
@@ -120,4 +159,6 @@ def replay(slope: PreparedSlope, campaign: Campaign, number: int, interval: floa
         rock.step(times[i - 1], times[i] - times[i - 1])
         rows[i] = rock.w[places]
     curves = dict(zip(_OUTPUTS, rows.T, strict=True))
-    return Replay(number, ENDS[int(outcome[OUTCOME.end])], times, **curves)
+    long = float(rock["elongation"]) if slope.site.rock.shape == "ellipse" else 1.0
+    words = ENDS[int(outcome[OUTCOME.end])]
+    return Replay(number, words, times, **curves, radius=float(rock["radius"]), elongation=long)

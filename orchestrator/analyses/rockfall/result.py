@@ -12,7 +12,7 @@ from rockshed.components.slope_rockfall.records import OUTCOME
 from ...core.results.metric import Metric
 from ...sites.rockfall.preparation import PreparedSlope
 from ...tables import Table
-from ..frame import Result
+from ..frame import FloatArray, Result
 from .campaign import Campaign, TrialRecords
 from .files import Envelopes, envelope_table, envelopes, trial_table, write_facts, write_tables
 from .passages import ENDS, LinePassages, line_passages
@@ -70,6 +70,12 @@ class RockfallResult(Result):
     def lines(self) -> list[LinePassages]:
         """Passages of the search lines and barriers, in the order of the site."""
         return line_passages(self.campaign, self.records)
+
+    @cached_property
+    def rocks(self) -> FloatArray | None:
+        """Rock and start of each trial, shape (trials, len(ROCK)); None where all are the same."""
+        rocks = self.campaign.rocks
+        return None if rocks is None else rocks.sample(0, self.campaign.trials)
 
     @cached_property
     def envelopes(self) -> Envelopes:

@@ -2,12 +2,15 @@
 
 from collections.abc import Iterator, Sequence
 
+from rockshed.components.slope_rockfall.records import ROCK
+
 from ...core.errors import Problem
 from ...core.input_text import shown
 from ...core.results.metric import identifier
 from ...core.system.names import nearest
 from ...input_files.places import Key, Places
 from .profile import Node
+from .rocks import rock_problems, rock_sampler, start_range
 from .site import Barrier, Line, SlopeSite
 
 MODEL = {
@@ -42,7 +45,7 @@ def site_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iter
     Problem
         Faults of rock, model, search lines, barriers, and places that are off the profile.
     """
-    yield from _rock_problems(site, where)
+    yield from rock_problems(site, nodes, where)
     for name in (name for name in site.model if name not in MODEL):
         text = f"model.{name}: there is no such key"
         yield Problem(where.of(("model", name)), text, nearest(name, MODEL))
@@ -59,16 +62,6 @@ def site_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iter
             yield Problem(where.of(("barrier", i)), text, remedy)
     if len(nodes) > 1:
         yield from _range_problems(site, nodes, where)
-
-
-def _rock_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
-    place = where.of(("rock",))
-    if (site.rock.mass is None) == (site.rock.density is None):
-        text = "a rock has a mass, or the density of a sphere"
-        yield Problem(place, text, "give one of the two")
-    if (site.rock.shape == "given") != (site.rock.moment_of_inertia is not None):
-        text = 'a moment_of_inertia and shape = "given" belong together'
-        yield Problem(place, text, "give both or none")
 
 
 def _name_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
@@ -106,14 +99,14 @@ def _range_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> It
         if not left <= x <= right:
             text = f"x = {x:g} m is beside the profile"
             yield Problem(where.of(key), text, f"give an x from {left:g} to {right:g} m")
-    if end is not None and end <= site.start.x <= right:
-        text = f"the trial ends at {end:g} m, and the rock starts at {site.start.x:g} m"
+    starts = max((x for _, x in start_range(site)), default=left)
+    if end is not None and end <= starts <= right:
+        text = f"the trial ends at {end:g} m, and the rock starts at {starts:g} m"
         yield Problem(where.of(("profile", "end")), text, "let it end farther to the right")
 
 
 def _places_along(site: SlopeSite) -> Iterator[tuple[Key, float]]:
     """Yield key and value of every x (m) that must lie on the profile."""
-    yield ("start", "x"), site.start.x
     for i, barrier in enumerate(site.barrier):
         yield ("barrier", i, "x"), barrier.x
     for i, line in enumerate(site.line):
@@ -131,14 +124,34 @@ def free_border(barrier: Barrier, site: SlopeSite) -> float:
     barrier : Barrier
         Of the site.
     site : SlopeSite
-        With the rock, whose radius is the default.
+        With the rock, whose radius, or the middle one, is the default.
 
     Returns
     -------
     float
         Height (m), for the rock's centre.
     """
-    return site.rock.radius if barrier.free_border is None else barrier.free_border
+    return radius_of(site) if barrier.free_border is None else barrier.free_border
+
+
+def radius_of(site: SlopeSite) -> float:
+    """Return the radius (m) of the rock, or that in the middle of its distribution.
+
+    Parameters
+    ----------
+    site : SlopeSite
+        With the rock; of one with faults, a number is returned nevertheless.
+
+    Returns
+    -------
+    float
+        Radius (m).
+    """
+    boulders = site.rock.boulders or []
+    try:
+        return float(rock_sampler(site, [], boulders).middle()[ROCK.radius])
+    except (KeyError, TypeError, ValueError):  # told as a fault of the rock
+        return 0.0
 
 
 def reach(barrier: Barrier, site: SlopeSite) -> float:

@@ -1,7 +1,7 @@
 """Materials by name: those that ship, and those of a site, which may build on them."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,8 +11,16 @@ from ...core.system.names import nearest
 from ...input_files.places import Places
 from .site import Material, Scatter
 
-QUANTITIES = ("strength", "stiffness", "hardening", "friction", "resistance", "tilt", "roughness")
-"""Names of the values that a complete material has."""
+DRSP = ("strength", "stiffness", "hardening")
+"""Values of the impact law DRSP."""
+COEFFICIENTS = ("normal_restitution", "tangential_restitution")
+"""Values of the impact law by coefficients of restitution."""
+COMMON = ("friction", "resistance", "tilt", "roughness")
+"""Values that every material has."""
+OPTIONAL = ("undulation", "scaling_speed")
+"""Values that are zero where they are not given."""
+QUANTITIES = (*DRSP, *COMMON, *COEFFICIENTS, *OPTIONAL)
+"""Names of all values."""
 OWN = "given with the site"
 """Source of a value that the site's file gives."""
 
@@ -51,8 +59,10 @@ def materials(
             text = f"there is no material {material.like!r}"
             problems.append(Problem(place, text, nearest(material.like, shipped())))
             continue
+        problems += _mixed(name, material, where)
         complete = _completed(material, base)
-        missing = [quantity for quantity in QUANTITIES if getattr(complete, quantity) is None]
+        wanted = (*(COEFFICIENTS if by_coefficients(complete) else DRSP), *COMMON)
+        missing = [quantity for quantity in wanted if getattr(complete, quantity) is None]
         if missing:
             remedy = 'give them, or name with like = "..." the material that has them'
             text = f"material {name} has no {', '.join(missing)}"
@@ -61,15 +71,38 @@ def materials(
     return every
 
 
+def by_coefficients(material: Material) -> bool:
+    """Tell whether impacts on a material have coefficients of restitution, instead of DRSP."""
+    return any(getattr(material, quantity) is not None for quantity in COEFFICIENTS)
+
+
+def _mixed(name: str, material: Material, where: Places) -> Iterator[Problem]:
+    """Yield a fault where a material gives values of both impact laws."""
+    drsp = [quantity for quantity in DRSP if getattr(material, quantity) is not None]
+    other = [quantity for quantity in COEFFICIENTS if getattr(material, quantity) is not None]
+    if drsp and other:
+        text = f"{', '.join(drsp)} belong to DRSP, {', '.join(other)} to another law of impact"
+        place = where.of(("material", name, other[0]))
+        yield Problem(place, text, "give the values of one law")
+
+
 def _completed(material: Material, base: Material | None) -> Material:
-    """Return a material with the values of the one it is like, and the sources of all of them."""
+    """Return a material with the values of the one it is like, and the sources of all of them.
+
+    Values of the impact law that it has not come from there only if that one has the same law.
+    """
     values: dict[str, Any] = {}
     source: dict[str, str] = {}
+    unused: tuple[str, ...] = ()
+    if by_coefficients(material):
+        unused = DRSP
+    elif any(getattr(material, quantity) is not None for quantity in DRSP):
+        unused = COEFFICIENTS
     for quantity in QUANTITIES:
         if getattr(material, quantity) is not None:
             values[quantity] = getattr(material, quantity)
             source[quantity] = source_of(material, quantity) or OWN
-        elif base is not None:
+        elif base is not None and quantity not in unused:
             values[quantity] = getattr(base, quantity)
             source[quantity] = source_of(base, quantity)
     return Material(description=material.description, source=source, **values)
@@ -99,20 +132,20 @@ def parameters(material: Material) -> dict[str, float]:
     Parameters
     ----------
     material : Material
-        With all :data:`QUANTITIES`.
+        With all values of its impact law.
 
     Returns
     -------
     dict of str to float
         In SI units; a quantity that scatters gives two, ``tilt`` and ``tilt_deviation``.
     """
-    values: dict[str, float] = {}
+    values: dict[str, float] = {"by_coefficients": float(by_coefficients(material))}
     for quantity in QUANTITIES:
         value = getattr(material, quantity)
         if isinstance(value, Scatter):
             values[quantity] = value.mean
             values[f"{quantity}_deviation"] = value.deviation
-        else:
+        elif value is not None:
             values[quantity] = value
     return values
 
@@ -122,5 +155,9 @@ def described(material: Material) -> dict[str, Any]:
     return {
         "description": material.description,
         **parameters(material),
-        "source": {quantity: source_of(material, quantity) for quantity in QUANTITIES},
+        "source": {
+            quantity: source_of(material, quantity)
+            for quantity in QUANTITIES
+            if getattr(material, quantity) is not None
+        },
     }

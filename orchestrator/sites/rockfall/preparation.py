@@ -12,6 +12,7 @@ import numpy as np
 from rockshed.components.catalogue import component
 from rockshed.components.common.component import ComponentError, Instance
 from rockshed.components.slope_rockfall.faults import FOLDED
+from rockshed.components.slope_rockfall.records import ROCK
 
 from ...core.errors import InputRefused, Problem
 from ...input_files.fields import doubts, explained
@@ -20,14 +21,15 @@ from ...input_files.places import Key, Places
 from ...input_files.setting import Setting, setter
 from ..source import SiteLike, SiteSource, site_source
 from . import materials as ground
+from .boulders import read_boulders
 from .checks import MODEL, site_problems
 from .profile import Node, unfolded, with_ground
 from .reading import read_nodes
+from .rocks import RockSampler, rock_sampler
 from .site import Material, Profile, SlopeSite
+from .start_check import start_faults
 
 COMPONENT = "SlopeRockfall"
-_UNIT_SPHERE = 4.0 / 3.0 * np.pi
-"""Volume of a sphere / r3."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +48,12 @@ class PreparedSlope:
         Those in use, complete.
     instance : Instance
         Of the component, initialised.
+    rocks : RockSampler
+        Rocks and starts of the trials; the instance has the one in the middle.
     warnings : tuple of str
         Values beyond what is usual.
+    notes : tuple of str
+        What the profile has been changed into.
     """
 
     source: SiteSource
@@ -55,7 +61,9 @@ class PreparedSlope:
     nodes: Sequence[Node]
     materials: Mapping[str, Material]
     instance: Instance
+    rocks: RockSampler
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -91,7 +99,10 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
         _check_profile_alone(source, problems)
         raise InputRefused(first(problems))
     known = ground.materials(data.material, where, problems)
-    nodes = unfolded(read_nodes(data.profile, source.folder, where, known, problems), problems)
+    data = _with_boulders(data, source, problems)
+    notes: list[str] = []
+    nodes = read_nodes(data.profile, source.folder, where, known, problems)
+    nodes = unfolded(nodes, problems, notes)
     nodes = with_ground(nodes, data.ground, where, known, problems)
     problems += site_problems(data, nodes, where)
     instance = _instance(data, nodes, known, where, problems) if len(nodes) > 1 else None
@@ -99,7 +110,26 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
     if problems or instance is None:
         raise InputRefused(first(explained(problems, doubted)))
     used = {str(node.material): known[str(node.material)] for node in nodes[:-1]}
-    return PreparedSlope(source, data, nodes, used, instance, doubted)
+    rocks = rock_sampler(data, nodes, data.rock.boulders or [])
+    if rocks.varies:
+        problems += start_faults(rocks, nodes, data, where)
+    if problems:
+        raise InputRefused(first(problems))
+    return PreparedSlope(source, data, nodes, used, instance, rocks, doubted, tuple(notes))
+
+
+def _with_boulders(site: SlopeSite, source: SiteSource, problems: list[Problem]) -> SlopeSite:
+    """Return a site with the boulders of its file in it."""
+    if site.rock.file is None:
+        return site
+    path = source.folder / site.rock.file
+    if not path.is_file():
+        place = source.places.of(("rock", "file"))
+        problems.append(Problem(place, f"there is no file {path}", "correct the path"))
+        return site
+    boulders = read_boulders(path, site.rock.shape == "ellipse", problems)
+    rock = site.rock.model_copy(update={"file": None, "boulders": boulders})
+    return site.model_copy(update={"rock": rock})
 
 
 def _check_profile_alone(source: SiteSource, problems: list[Problem]) -> None:
@@ -111,7 +141,7 @@ def _check_profile_alone(source: SiteSource, problems: list[Problem]) -> None:
         if shape is not None:
             known = {*ground.shipped(), *own}
             nodes = read_nodes(shape, source.folder, source.places, known, problems)
-            unfolded(nodes, problems)
+            unfolded(nodes, problems, [])
 
 
 def _instance(
@@ -129,7 +159,7 @@ def _instance(
         problems += [Problem(where.of(("profile",)), text) for text in error.problems]
         return None
     setting = setter(instance, where, problems)
-    for name, value, key in _settings(site):
+    for name, value, key in _settings(site, nodes):
         setting(name, value, key)
     for name in sorted({str(node.material) for node in nodes[:-1]} & known.keys()):
         _set_material(instance, name, known[name], nodes, setting)
@@ -163,9 +193,9 @@ def _slope_problems(instance: Instance, nodes: Sequence[Node], where: Places) ->
         yield Problem(where.of(("limit_speed",)), instance.message(fault))
 
 
-def _settings(site: SlopeSite) -> Iterator[tuple[str, Any, Key]]:
+def _settings(site: SlopeSite, nodes: Sequence[Node]) -> Iterator[tuple[str, Any, Key]]:
     """Yield name, value and place of every scalar parameter that the site sets."""
-    yield from _rock_settings(site)
+    yield from _rock_settings(site, nodes)
     yield "seed", site.seed, ("seed",)
     yield "hypercube", site.hypercube, ("hypercube",)
     limit = site.limit_speed
@@ -179,24 +209,30 @@ def _settings(site: SlopeSite) -> Iterator[tuple[str, Any, Key]]:
             yield MODEL[name], value, ("model", name)
 
 
-def _rock_settings(site: SlopeSite) -> Iterator[tuple[str, Any, Key]]:
-    """Yield name, value and place of the parameters of rock and start."""
+def _rock_settings(site: SlopeSite, nodes: Sequence[Node]) -> Iterator[tuple[str, Any, Key]]:
+    """Yield name, value and place of the parameters of rock and start; the middle ones if drawn."""
     rock = site.rock
     start = site.start
-    yield "radius", rock.radius, ("rock", "radius")
+    sampler = rock_sampler(site, nodes, rock.boulders or [])
+    try:
+        middle = sampler.middle()
+    except (KeyError, TypeError, ValueError):  # told as a fault of the rock
+        return
+    yield "radius", middle[ROCK.radius], ("rock", "radius")
     yield "shape", rock.shape, ("rock", "shape")
-    if rock.mass is not None:
-        yield "mass", rock.mass, ("rock", "mass")
-    elif rock.density is not None:
-        yield "mass", _UNIT_SPHERE * rock.radius**3 * rock.density, ("rock", "density")
+    given = "density" if rock.mass is None and rock.density is not None else "mass"
+    yield "mass", middle[ROCK.mass], ("rock", given)
+    if rock.shape == "ellipse":
+        yield "elongation", middle[ROCK.elongation], ("rock", "elongation")
     if rock.moment_of_inertia is not None:
         yield "moment_of_inertia", rock.moment_of_inertia, ("rock", "moment_of_inertia")
-    yield "position0.x", start.x, ("start", "x")
-    yield "on_slope", start.y is None, ("start",)
-    yield "position0.y", start.y or 0.0, ("start", "y")
-    yield "velocity0.x", start.velocity[0], ("start", "velocity", 0)
-    yield "velocity0.y", start.velocity[1], ("start", "velocity", 1)
-    yield "angular_velocity0", start.angular_velocity, ("start", "angular_velocity")
+    yield "position0.x", middle[ROCK.x], ("start", "x")
+    yield "on_slope", start.y is None and start.line is None, ("start",)
+    yield "position0.y", middle[ROCK.y], ("start", "y")
+    yield "velocity0.x", middle[ROCK.vx], ("start", "velocity", 0)
+    yield "velocity0.y", middle[ROCK.vy], ("start", "velocity", 1)
+    yield "angular_velocity0", middle[ROCK.omega], ("start", "angular_velocity")
+    yield "angle0", middle[ROCK.angle], ("start", "angle")
 
 
 def _set_material(
@@ -205,7 +241,7 @@ def _set_material(
     """Set the parameters of all cells of a material; a value out of range is told once."""
     cells = np.array([node.material == name for node in nodes[:-1]])
     for parameter, value in ground.parameters(material).items():
-        quantity, _, deviation = parameter.partition("_")
-        key: Key = ("material", name, quantity, *(("deviation",) if deviation else ()))
+        quantity = parameter.removesuffix("_deviation")
+        key: Key = ("material", name, quantity, *(("deviation",) if quantity != parameter else ()))
         if setting(parameter, value, key):
             instance[parameter][cells] = value

@@ -1,5 +1,6 @@
 """The profile of a slope: its nodes, and the material of each cell between two of them."""
 
+import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -30,10 +31,20 @@ class Node:
     where: str
 
 
-def unfolded(nodes: list[Node], problems: list[Problem]) -> list[Node]:
-    """Return the nodes of a profile that runs from left to right, and none of another one.
+STEEPEST = math.radians(89.9)
+"""Steepest cell (rad) of the component; vertical ones become as steep as that."""
+_LEAN = math.cos(STEEPEST) / math.sin(STEEPEST) * (1.0 + 1e-6)
+"""Length / height of such a cell, not less than the component accepts."""
+_ON = 1e-9
+"""Least length (m) of a cell between two nodes of one height."""
 
-    What else would be wrong with a profile that folds back follows from that, and is not told.
+
+def unfolded(nodes: list[Node], problems: list[Problem], notes: list[str]) -> list[Node]:
+    """Return a profile that runs from left to right, as rocks from above see it.
+
+    An overhang is seen as a vertical face at its lip, and a vertical face becomes a cell of 89.9
+    degrees. Of a profile that folds back otherwise nothing is returned: what else would be wrong
+    with it follows from that, and is not told.
 
     Parameters
     ----------
@@ -41,24 +52,91 @@ def unfolded(nodes: list[Node], problems: list[Problem]) -> list[Node]:
         As they were read.
     problems : list of Problem
         The nodes at which the profile folds back are appended.
+    notes : list of str
+        Overhangs are appended.
 
     Returns
     -------
     list of Node
         Empty where it folds back.
     """
-    folded = [
-        Problem(
-            after.where,
-            f"the profile folds back from x = {node.x:.6g} m to {after.x:.6g} m: its right node "
-            "must lie to the right of its left node",
-            "order the nodes by x, remove repeated ones, and give an overhang as a steep cell",
-        )
-        for node, after in pairwise(nodes)
-        if after.x <= node.x
-    ]
+    folded = [_folding(node, after) for node, after in pairwise(nodes) if _folds(node, after)]
     problems += folded
-    return [] if folded else nodes
+    if folded:
+        return []
+    seen = _from_above(nodes, problems, notes)
+    return _leaning(seen)
+
+
+def _folds(node: Node, after: Node) -> bool:
+    """Tell whether a cell goes back by more than an overhang of 45 degrees does."""
+    back = node.x - after.x
+    return back > abs(after.y - node.y) or (back == 0.0 and after.y == node.y)
+
+
+def _folding(node: Node, after: Node) -> Problem:
+    return Problem(
+        after.where,
+        f"the profile folds back from x = {node.x:.6g} m to {after.x:.6g} m: its right node "
+        "must lie to the right of its left node",
+        "order the nodes by x and remove repeated ones; a face may be vertical, and overhang by up "
+        "to 45 degrees",
+    )
+
+
+def _from_above(nodes: list[Node], problems: list[Problem], notes: list[str]) -> list[Node]:
+    """Return a profile without what lies below overhangs."""
+    seen = nodes[:1]
+    lip: Node | None = None
+    for before, after in pairwise(nodes):
+        if lip is not None and after.x <= lip.x:
+            continue
+        if lip is not None:
+            seen += [_between(before, after, lip.x), after]
+            lip = None
+        elif after.x >= before.x:
+            seen.append(after)
+        elif after.y < before.y:
+            lip = before
+        else:
+            while len(seen) > 1 and seen[-2].x >= after.x:
+                seen.pop()
+            foot = _between(seen[-2], seen[-1], after.x) if len(seen) > 1 else before
+            seen = [*seen[:-1], replace(foot, material=before.material), after]
+        if after.x < before.x:
+            notes.append(_overhang(before, after))
+    if lip is not None:
+        text = f"the profile ends below the overhang that begins at x = {lip.x:.6g} m"
+        problems.append(Problem(nodes[-1].where, text, "let it end beyond the overhang"))
+        return []
+    return seen
+
+
+def _overhang(before: Node, after: Node) -> str:
+    lip = before if after.y < before.y else after
+    return (
+        f"the overhang of {before.x - after.x:.3g} m at x = {lip.x:.6g} m is a vertical face at "
+        "its lip here: no rock comes below it"
+    )
+
+
+def _between(node: Node, after: Node, x: float) -> Node:
+    """Return the point of a cell at x (m), with the cell's material."""
+    part = (x - node.x) / (after.x - node.x)
+    return replace(node, x=x, y=node.y + part * (after.y - node.y))
+
+
+def _leaning(nodes: Sequence[Node]) -> list[Node]:
+    """Return a profile in which no cell is steeper than :data:`STEEPEST`."""
+    leaning = list(nodes[:1])
+    for after in nodes[1:]:
+        node = leaning[-1]
+        least = node.x + abs(after.y - node.y) * _LEAN
+        if after.x < least or after.x <= node.x:
+            leaning.append(replace(after, x=max(least, node.x + _ON)))
+        else:
+            leaning.append(after)
+    return leaning
 
 
 # --- materials of the cells ---

@@ -7,7 +7,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from ...input_files.chance import Chance
 from ...input_files.fields import (
+    Angle,
     AngularVelocity,
     Density,
     Distance,
@@ -27,32 +29,44 @@ MOST_TRIALS = 2**31 - 1
 
 
 class Rock(Data):
-    """A rock with its mass (kg), or the density (kg/m3) of a sphere.
+    """A rock with two of radius (m), mass (kg) and density (kg/m3), or measured boulders.
 
-    ``shape`` says what the moment of inertia (kg m2) follows from; radius in m.
+    These come from a ``file`` (CSV), or ``boulders`` lists mass, radius and elongation of each.
+
+    ``shape`` says what the moment of inertia (kg m2) follows from, and an ellipse how the rock
+    touches the ground: its semi-axes are r sqrt(elongation) and r / sqrt(elongation). Each quantity
+    is a number or a distribution.
     """
 
-    radius: Length = field("radius", ..., usual=(0.01, 10.0), likely=("cm", "mm"))
-    density: Density | None = field(
+    radius: Chance[Length] | None = field("radius", usual=(0.01, 10.0), likely=("cm", "mm"))
+    density: Chance[Density] | None = field(
         "density", usual=(1000.0, 9000.0), likely=("t/m3", "kN/m3", "g/m3")
     )
-    mass: Mass | None = field("mass", usual=(0.01, 2e6), likely=("t",))
-    shape: Literal["sphere", "disc", "given"] = "sphere"
+    mass: Chance[Mass] | None = field("mass", usual=(0.01, 2e6), likely=("t",))
+    file: str | None = None
+    boulders: list[tuple[Positive, Positive, Positive]] | None = None
+    shape: Literal["sphere", "disc", "given", "ellipse"] = "sphere"
+    elongation: Chance[Positive] | None = None
     moment_of_inertia: Positive | None = None
 
 
 class RockStart(Data):
-    """State of the rock's centre at the start (m, m/s, rad/s).
+    """State of the rock's centre at the start (m, m/s, rad/s), numbers or distributions.
 
-    Without y the rock starts in contact with the slope.
+    Without y the rock starts in contact with the slope. Instead of x and y: ``line``, anywhere on
+    the straight line between two points, or ``along``, on the slope between two x, evenly along its
+    length. ``angle`` is that of the long axis of an ellipse, by default any.
     """
 
-    x: Place
-    y: Place | None = None
-    velocity: tuple[Velocity, Velocity] = field(
+    x: Chance[Place] | None = None
+    y: Chance[Place] | None = None
+    line: tuple[tuple[Place, Place], tuple[Place, Place]] | None = None
+    along: tuple[Place, Place] | None = None
+    velocity: tuple[Chance[Velocity], Chance[Velocity]] = field(
         "velocity", (0.0, 0.0), usual=(1e-3, 150.0), likely=("mm/s", "km/h")
     )
-    angular_velocity: AngularVelocity = field("angular velocity", 0.0, usual=(1e-3, 200.0))
+    angular_velocity: Chance[AngularVelocity] = field("angular velocity", 0.0, usual=(1e-3, 200.0))
+    angle: Chance[Angle] | None = None
 
 
 class Profile(Data):
@@ -86,7 +100,8 @@ class Scatter(Data):
 class Material(Data):
     """Ground of a cell; with ``like``, only the values that differ from that material.
 
-    Names and units are those of the component SlopeRockfall.
+    Names and units are those of the component SlopeRockfall. Impacts follow DRSP with strength,
+    stiffness and hardening, or coefficients of restitution where those are given instead.
     """
 
     like: str | None = None
@@ -98,6 +113,10 @@ class Material(Data):
     resistance: Number | None = None
     tilt: Scatter | None = None
     roughness: Scatter | None = None
+    undulation: NotNegative | None = None
+    normal_restitution: NotNegative | None = None
+    tangential_restitution: NotNegative | None = None
+    scaling_speed: NotNegative | None = None
     source: dict[str, str] = Field(default_factory=dict)
 
 
