@@ -3,12 +3,14 @@
 import json
 import math
 
+import numpy as np
 import pytest
 
 from rockshed.analyses.convergence import run as study
-from rockshed.analyses.convergence.figures import QUANTITIES
+from rockshed.analyses.convergence.figures import QUANTITIES, common_cut_off, measured
 from rockshed.analyses.convergence.meshes import DISCS, ELEMENTS, meshes, tasks
 from rockshed.core.errors import InputRefused
+from rockshed.metrics import names
 from rockshed.runs.outcome import Outcome
 
 PROJECT = {
@@ -85,6 +87,27 @@ def test_a_figure_is_converged_only_where_its_departure_and_its_error_are_small(
     if not scatter:
         assert of_discs[0].share == pytest.approx(error, abs=1e-4)
         assert all(entry.share == 0.0 for entry in result.departures if entry.refined == ELEMENTS)
+
+
+def test_settled_forces_of_all_meshes_are_filtered_alike():
+    """A force with a fast part: the finer mesh's own, higher cut-off would let it pass."""
+    time = np.linspace(0.0, 1.0, 2001)
+    force = 1e5 * np.sin(np.pi * time) ** 2 * (1.0 + np.sin(2.0 * np.pi * 60.0 * time))
+    series = {"time": time, "sand.rock.force.y": force, "sand.transmitted_force": force}
+    coarse, fine = (
+        Outcome(
+            "run",
+            "complete",
+            metrics={names.SETTLED_CUT_OFF: cut_off, names.SETTLED_ROCK: own},
+            series=series,
+        )
+        for cut_off, own in ((20.0, 1.0e5), (200.0, 2.0e5))
+    )
+    mesh = meshes(PROJECT, {}, 2.0)[1]
+    alone = measured(mesh, [fine]).estimates[names.SETTLED_ROCK]
+    together = measured(mesh, [fine], common_cut_off([coarse])).estimates[names.SETTLED_ROCK]
+    assert alone.mean == 2.0e5
+    assert together.mean == pytest.approx(1.0e5, rel=0.01)
 
 
 def test_a_study_is_saved_with_its_table_and_figure(monkeypatch, tmp_path):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from rockshed.components.common.units import cm, kN, mm
 
 from ...metrics import names
+from ...metrics.filtering import low_pass
 from ...runs.batch import COMPLETE, Outcome
 from .meshes import DISCS, ELEMENTS, Resolution
 
@@ -47,6 +48,13 @@ QUANTITIES = (
     Quantity(names.DEFLECTION, "mm", mm, "m"),
 )
 """Figures that are followed, in the order of the table."""
+
+
+SETTLED = {
+    names.SETTLED_ROCK: "sand.rock.force.y",
+    names.SETTLED_TRANSMITTED: "sand.transmitted_force",
+}
+"""Column of a project's run from which a settled maximum is taken, by the figure's name."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +131,29 @@ class Departure:
         return "not converged"
 
 
-def measured(mesh: Resolution, outcomes: Sequence[Outcome]) -> Measured:
+def common_cut_off(outcomes: Sequence[Outcome]) -> float | None:
+    """Return the cut-off frequency of the settled forces of a mesh.
+
+    A run takes half the natural frequency of its own discs, which are faster the finer they are:
+    its settled maxima would differ from mesh to mesh though the forces were the same.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Of the project's own mesh.
+
+    Returns
+    -------
+    float or None
+        In Hz; None where no run has one.
+    """
+    known = [outcome.metrics.get(names.SETTLED_CUT_OFF) for outcome in outcomes]
+    return next((cut_off for cut_off in known if cut_off), None)
+
+
+def measured(
+    mesh: Resolution, outcomes: Sequence[Outcome], cut_off: float | None = None
+) -> Measured:
     """Return what the runs of a mesh gave.
 
     Parameters
@@ -132,8 +162,14 @@ def measured(mesh: Resolution, outcomes: Sequence[Outcome]) -> Measured:
         The mesh.
     outcomes : sequence of Outcome
         Of its runs.
+    cut_off : float, optional
+        Of the settled forces of all meshes (Hz); by default each run's own.
     """
-    whole = [outcome.metrics for outcome in outcomes if outcome.status == COMPLETE]
+    whole = [
+        {**outcome.metrics, **_settled(outcome, cut_off)}
+        for outcome in outcomes
+        if outcome.status == COMPLETE
+    ]
     estimates = {}
     for quantity in QUANTITIES:
         values = [metrics[quantity.name] for metrics in whole if quantity.name in metrics]
@@ -142,6 +178,18 @@ def measured(mesh: Resolution, outcomes: Sequence[Outcome]) -> Measured:
             estimates[quantity.name] = PackingMean(statistics.fmean(values), error)
     failed = [outcome.error for outcome in outcomes if outcome.status != COMPLETE]
     return Measured(mesh, estimates, failed, len(whole))
+
+
+def _settled(outcome: Outcome, cut_off: float | None) -> dict[str, float]:
+    """Return the settled maxima of a run by a given cut-off, as far as its rows can tell them."""
+    if cut_off is None:
+        return {}
+    series = outcome.series
+    recorded = {name: column for name, column in SETTLED.items() if column in series}
+    curves = {
+        name: low_pass(series["time"], series[column], cut_off) for name, column in recorded.items()
+    }
+    return {name: float(curve.max()) for name, curve in curves.items() if curve is not None}
 
 
 def departures(found: Sequence[Measured]) -> Iterator[Departure]:

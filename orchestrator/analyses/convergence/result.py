@@ -75,6 +75,8 @@ class ConvergenceResult(Result):
         return [
             f"means over {self.packings} packings of the sand, ± standard error; the sizes of the "
             "discs are refined with the project's elements, and the elements with its discs",
+            "settled maxima of all meshes: without what is faster than the cut-off frequency of "
+            "the project's own discs",
             "a figure counts as converged where its departure from the finest mesh and the "
             "standard error of that together are at most 3 %",
         ]

@@ -11,7 +11,7 @@ from ...runs.building import Note, silent
 from ...runs.kept import FINISHED, KeptRuns
 from ...sites.shed.preparation import is_field, prepare
 from ..frame import StageProgress, counter, no_progress
-from .figures import measured
+from .figures import common_cut_off, measured
 from .meshes import DISC_FIELD, ELEMENT_FIELD, SEED_FIELD, meshes, tasks
 from .result import ConvergenceResult
 
@@ -88,7 +88,9 @@ def converge(
     outcomes = run_all(wanted, workers, note, counter(show, "runs"), kept)
     if any(outcome.status == INTERRUPTED for outcome in outcomes.values()):
         raise KeyboardInterrupt
-    figures = [measured(mesh, [outcomes[task.key] for task in runs[mesh]]) for mesh in found]
+    ended = {mesh: [outcomes[task.key] for task in runs[mesh]] for mesh in found}
+    cut_off = common_cut_off(next(ended[mesh] for mesh in found if mesh.fineness == 1.0))
+    figures = [measured(mesh, ended[mesh], cut_off) for mesh in found]
     file = str(source) if isinstance(source, Path) else ""
     result = ConvergenceResult(shed.name, figures, packings, file)
     if folder:
