@@ -4,17 +4,22 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from .convergence import TABLES as CONVERGENCE
 from .kept import NotKeptError
 from .other_papers import TABLES as OTHERS
 from .sonoda1993 import TABLES as SONODA
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ("README.md", "docs/sonoda1993.md")
+PAGES = ("README.md", "docs/sonoda1993.md", "docs/convergence.md")
 """Pages with blocks."""
 BLOCK = re.compile(r"^<!-- table: ([\w.-]+)/([\w-]+) -->\n(.*?)^<!-- end -->$", re.M | re.S)
 """Paper, name, text."""
 
-TABLES: Mapping[str, Mapping[str, Callable[[], str]]] = {"sonoda1993": SONODA, "others": OTHERS}
+TABLES: Mapping[str, Mapping[str, Callable[[], str]]] = {
+    "sonoda1993": SONODA,
+    "others": OTHERS,
+    "convergence": CONVERGENCE,
+}
 """Functions that write a block, by paper and name."""
 
 

@@ -15,6 +15,7 @@ from .cushion import still_in_contact, still_sinking
 from .doubts import warnings as warnings
 from .energy import driven, impact_energy, weightless
 from .headlines import headlines
+from .mesh import mesh_in_words
 from .reported import reported
 
 
@@ -283,8 +284,8 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     -------
     list of str
         Why something is not compared, weights that are left out, where references that are only
-        about right (≈) come from, what the end of the run has cut off, and why a settled force is
-        above the peak.
+        about right (≈) come from, what the end of the run has cut off, why a settled force is
+        above the peak, and how far the results hang on the mesh.
     """
     remarks = list(_references(run).remarks)
     remarks += [
@@ -300,7 +301,8 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
         if reference.note
     ]
     still = [_STILL] if still_in_contact(run) else []
-    return [*remarks, *dict.fromkeys(origins), *still, *_overshooting(run)]
+    mesh = [text] if (text := mesh_in_words(run)) else []
+    return [*remarks, *dict.fromkeys(origins), *still, *_overshooting(run), *mesh]
 
 
 def _overshooting(run: StoredRun) -> list[str]:

@@ -7,9 +7,9 @@ import tomli_w
 
 from rockshed.components.catalogue import NAMES, component
 
+from ..core.results.facts import table_of, tables_of
 from ..core.results.reading import StoredRun
 from ..tables import Table, digits
-from .facts import table_of, tables_of
 
 _LONGEST = 300
 """Letters of a value in a table, at most."""

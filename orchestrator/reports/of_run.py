@@ -5,6 +5,7 @@ from typing import Any
 
 from rockshed.components.common.units import ms, tonne
 
+from ..core.results.facts import number_of, table_of, tables_of
 from ..core.results.reading import StoredRun
 from ..metrics import contents
 from ..metrics.caption import models
@@ -17,7 +18,6 @@ from ..runs.run import Run
 from ..tables import Table, digits
 from . import inputs, origin
 from .charts import charts_of
-from .facts import number_of, table_of, tables_of
 from .film import film_of
 from .form import Chapter, Chart, Document, Film, Illustration
 from .step_halving import StepHalving, in_words

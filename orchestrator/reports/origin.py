@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ..core.results.facts import number_of, table_of
 from ..core.results.reading import StoredRun
 from ..tables import Table, digits
-from .facts import number_of, table_of
 from .inputs import value_text
 
 

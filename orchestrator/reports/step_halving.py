@@ -16,6 +16,7 @@ from rockshed.components.common.units import ms
 
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
+from ..core.results.facts import number_of, table_of
 from ..core.results.own_files import add_files, read_data
 from ..core.results.reading import StoredRun
 from ..core.system.system import SystemSpec, system_from
@@ -29,7 +30,6 @@ from ..runs.request import Request
 from ..runs.simulation import simulate
 from ..runs.system import System
 from ..tables import Table, digits
-from .facts import number_of, table_of
 
 FILE = "step_halving.json"
 """File of the check in the folder of a run."""

@@ -13,6 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.process import BaseProcess
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
@@ -305,12 +306,27 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     try:
         yield pool
     except BaseException:
-        for child in active_children():  # only a terminal tells Ctrl-C to all processes
-            with suppress(OSError):
-                os.kill(child.pid or 0, signal.SIGINT)
+        pool.shutdown(wait=False, cancel_futures=True)
+        _end(active_children())
         raise
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _end(children: Sequence[BaseProcess]) -> None:
+    """Interrupt the runs of processes, and kill those that do not hear it.
+
+    Only a terminal tells Ctrl-C to all processes. A kernel that prepares a large layer hears
+    nothing for minutes.
+    """
+    for child in children:
+        with suppress(OSError):
+            os.kill(child.pid or 0, signal.SIGINT)
+    last = time.monotonic() + _DEAF
+    for child in children:
+        child.join(max(last - time.monotonic(), 0.0))
+        if child.is_alive():
+            child.kill()
 
 
 def _begin_process() -> None:
@@ -327,6 +343,8 @@ def _begin_process() -> None:
 
 _RUNNING = Event()
 """Whether this process carries out a run."""
+_DEAF = 5.0
+"""Time (s) after which a process that was interrupted and goes on is killed."""
 _LONGEST_END = 20.0
 """Time (s) after which a run that has been interrupted is no longer waited for."""
 

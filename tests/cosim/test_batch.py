@@ -4,6 +4,8 @@ import json
 import subprocess
 import sys
 import time
+from contextlib import suppress
+from multiprocessing import active_children
 
 import numpy as np
 import psutil
@@ -97,3 +99,21 @@ def test_processes_of_a_batch_end_when_their_parent_is_killed_and_what_has_ended
     assert not [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
     assert len(list((tmp_path / "runs").glob("run-*.npz"))) == 1
     assert not [path for path in scratch.iterdir() if path.name.startswith("rockshed-")]
+
+
+def interrupted_while_deaf():
+    """Raise what Ctrl-C raises, while a process sleeps; it carries that process."""
+    with batch._processes(1) as pool:
+        pool.submit(time.monotonic).result()  # it has begun
+        pool.submit(time.sleep, 600.0)
+        raise KeyboardInterrupt(*active_children())
+
+
+def test_a_process_that_hears_no_interrupt_is_killed(monkeypatch):
+    """As a kernel that prepares a large layer of sand; between two runs a process hears nothing."""
+    monkeypatch.setattr(batch, "_DEAF", 0.5)
+    with pytest.raises(KeyboardInterrupt) as reason:
+        interrupted_while_deaf()
+    (child,) = reason.value.args
+    with suppress(psutil.NoSuchProcess):  # raises TimeoutExpired where it goes on
+        psutil.Process(child.pid).wait(60.0)

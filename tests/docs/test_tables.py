@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from docs.tables import kept
+from docs.tables import convergence, kept
 from docs.tables.filling import BLOCK, PAGES, TABLES, filled
 from docs.tables.forms import beside, number
 from docs.tables.kept import Kept, NotKeptError, outdated, take
@@ -46,6 +46,11 @@ def test_a_table_of_an_older_kernel_is_refused_with_the_study_and_the_remedy():
 @pytest.mark.parametrize("picture", PICTURES)
 def test_pictures_of_pages_are_drawn_with_the_present_kernels(picture):
     assert json.loads(STAMPS.read_text(encoding="utf-8"))[picture] == stamp(PICTURES[picture])
+
+
+def test_the_kept_study_of_convergence_comes_from_the_present_kernels():
+    """Otherwise: `rockshed converge`, then `python -m docs.tables.convergence FOLDER`."""
+    assert convergence.trial()[convergence.STAMP] == convergence.stamp()
 
 
 def test_every_picture_of_a_run_of_the_sand_has_a_stamp():
