@@ -106,7 +106,7 @@ def test_every_table_stands_on_a_page():
 
 
 def test_the_number_of_seeds_in_the_text_is_that_of_the_rows():
-    for page in PAGES:
+    for page in ("README.md", "docs/sonoda1993.md"):
         text = (ROOT / page).read_text(encoding="utf-8")
         told = re.findall(r"seeds \((\d+) in the laboratory, (\d+) at full scale\)", text)
         assert told == [(str(len(laboratory.SEEDS)), str(len(full_scale.SEEDS)))]
