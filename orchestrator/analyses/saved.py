@@ -10,12 +10,12 @@ from ..core.results.run_folder import RUN
 from .frame import Result
 
 
-def saved_result(folder: Path) -> Result | None:
+def saved_result(folder: str | Path) -> Result | None:
     """Read the results of an analysis.
 
     Parameters
     ----------
-    folder : Path
+    folder : path
         Of the results.
 
     Returns
@@ -28,6 +28,7 @@ def saved_result(folder: Path) -> Result | None:
     InputRefused
         The files are damaged.
     """
+    folder = Path(folder)
     if not (folder / RUN).is_file():
         return None
     with undamaged(folder / RUN):

@@ -5,13 +5,22 @@ from typing import Annotated
 
 import typer
 
+from ..analyses.rockfall.replay import check
+from ..analyses.rockfall.result import RockfallResult
+from ..analyses.saved import saved_result
+from ..animations.formats import animation_format
+from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..runs.run import read_run
 from .analysis import in_options, options_named
+from .drawing import refuse_foreign_file
 from .options import Json, Quiet
-from .screen import opened
+from .screen import Screen, opened
 
 _Folder = Annotated[
-    Path, typer.Argument(metavar="RUN", help="Folder of a run with recorded states of sand.")
+    Path,
+    typer.Argument(
+        metavar="RUN", help="Folder of a run with recorded states of sand, or of a campaign."
+    ),
 ]
 _Output = Annotated[
     Path | None,
@@ -22,17 +31,32 @@ _Output = Annotated[
     ),
 ]
 
-_OPTIONS = ("state_interval",)
+_Trials = Annotated[
+    list[int] | None,
+    typer.Option(
+        metavar="NUMBER",
+        help="Of the results of `rockfall`: this trial, from what is stored. May be repeated.",
+    ),
+]
+
+_OPTIONS = ("state_interval", "trial")
 """Arguments of the library that are options of ``rockshed run``."""
 
 
 def command(
-    run: _Folder, output: _Output = None, as_json: Json = False, quiet: Quiet = False
+    run: _Folder,
+    trial: _Trials = None,
+    output: _Output = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
-    """Animate rock, sand with its force chains, and beam of a run."""
+    """Animate rock, sand with its force chains, and beam of a run; trials of a campaign."""
     from ..pictures.sand_animation import is_coarse  # imports matplotlib
 
     with opened(quiet, as_json) as screen, options_named(_OPTIONS):
+        if trial:
+            _replay(run, trial, output, screen)
+            return
         found = read_run(run)
         if advice := is_coarse(found):
             screen.note(in_options(advice, _OPTIONS))
@@ -42,3 +66,29 @@ def command(
             screen.dump({"animation": str(file)})
         else:
             screen.say(str(file))
+
+
+def _replay(folder: Path, trials: list[int], output: Path | None, screen: Screen) -> None:
+    """Animate trials of a campaign that has been saved, each by itself."""
+    result = saved_result(folder)
+    if not isinstance(result, RockfallResult):
+        text = "holds no results of a rockfall campaign, and --trial is for those"
+        raise InputRefused([Problem(str(folder), text, "name the folder of a campaign")])
+    check(result.campaign, trials)
+    if output is not None and len(trials) > 1:
+        text = "is one file, and there are several trials"
+        raise InputRefused([Problem("--output", text, "leave it out, or take one trial")])
+    form = animation_format(output.suffix[1:] if output else None)
+    files = [output or folder / "figures" / f"trial-{number}.{form}" for number in trials]
+    for number, file in zip(trials, files, strict=True):
+        if output is not None:  # those in the folder of the campaign are its own
+            refuse_foreign_file(file)
+        with refusing_unwritable(file.parent):
+            file.parent.mkdir(parents=True, exist_ok=True)
+        with screen.counting("frames") as count:
+            result.pictures_module().animate_trial(result, number, file, count)
+    if screen.as_json:
+        screen.dump({"animations": [str(file) for file in files]})
+        return
+    for file in files:
+        screen.say(str(file))

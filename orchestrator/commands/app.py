@@ -25,7 +25,7 @@ COMMANDS = {
     "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
     "plot": "Draw a run again, also one that failed; or variables of several.",
-    "animate": "Animate rock, sand with its force chains, and beam of a run.",
+    "animate": "Animate rock, sand with its force chains, and beam of a run; trials of a campaign.",
     "report": "Write a report that a reviewer can check: HTML page and PDF.",
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",

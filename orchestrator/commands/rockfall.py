@@ -1,7 +1,7 @@
 """The command ``rockshed rockfall``: a campaign of trials on a slope."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -24,6 +24,7 @@ _OPTIONS = (
     "trials",
     "seed",
     "replay",
+    "trajectories",
     "animation",
     "workers",
     "scheduler",
@@ -43,6 +44,13 @@ _Preset = Annotated[str | None, typer.Option(metavar="paper", help="paper: 200 t
 _Seed = Annotated[int | None, typer.Option(min=0, help="Another sample.")]
 _Replay = Annotated[
     list[int] | None, typer.Option(metavar="TRIAL", help="Animate this trial. May be repeated.")
+]
+_Trajectories = Annotated[
+    str | None,
+    typer.Option(
+        metavar="N|all",
+        help="Save the trajectories of the first N trials as data, trajectories.parquet.",
+    ),
 ]
 _Animation = Annotated[
     str | None, typer.Option(metavar="mp4|gif", help="Default: mp4 if it can be written.")
@@ -77,6 +85,7 @@ def command(
     preset: _Preset = None,
     seed: _Seed = None,
     replay: _Replay = None,
+    trajectories: _Trajectories = None,
     animation: _Animation = None,
     output_dir: _Folder = None,
     workers: _Threads = None,
@@ -93,9 +102,7 @@ def command(
     Percentiles have confidence intervals.
     """
     with opened(quiet, as_json) as screen:
-        folder = output_dir or folder_of_site(site, "rockfall", screen)
-        tell_leftovers(folder, screen)
-        _tell(screen, bool(replay) and animation is None)
+        folder = _begun(site, output_dir, bool(replay) and animation is None, screen)
         try:
             with options_named(_OPTIONS), stages(screen) as progress:
                 result = rockfall(
@@ -106,6 +113,7 @@ def command(
                     scheduler=scheduler,
                     certificates=_certificates(tls_ca, tls_cert, tls_key),
                     replay=replay or [],
+                    trajectories=_number_or_word(trajectories),
                     animation=animation,
                     folder=folder,
                     pictures=not no_figures,
@@ -117,12 +125,15 @@ def command(
         show(screen, result)
 
 
-def _tell(screen: Screen, animates: bool) -> None:
-    """Note what makes the first campaign slow, and how animations come."""
+def _begun(site: Path, folder: Path | None, animates: bool, screen: Screen) -> Path:
+    """Return the folder of the results; note what is slow at first, and how animations come."""
+    folder = folder or folder_of_site(site, "rockfall", screen)
+    tell_leftovers(folder, screen)
     if is_cold(["SlopeRockfall"]):
         screen.note(COLD_START)
     if animates and not can_write_mp4():
         screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
+    return folder
 
 
 def _certificates(
@@ -137,6 +148,13 @@ def _certificates(
         return None
     remedy = f"give {', '.join(given)} together"
     raise InputRefused([Problem(option, "is missing", remedy) for option in missing])
+
+
+def _number_or_word(text: str | None) -> Any:
+    """Return a number where a text is one; the analysis refuses other words than ``all``."""
+    if text is None:
+        return 0
+    return int(text) if text.isdecimal() else text
 
 
 def _count(trials: int | None, preset: str | None) -> int | None:

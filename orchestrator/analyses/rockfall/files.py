@@ -5,6 +5,7 @@ run.json              name, status, site, materials with their sources, versions
 summary.json          list of {name, value, unit}, as of any run: ends, lines, barriers
 trials.parquet        a row for each trial: end, largest values, first passage of each line
 envelopes.parquet     largest values and percentiles along the profile; the same as envelopes.csv
+trajectories.parquet  on request: a row for each event of a trial, with the accelerations after it
 figures/              pictures
 ====================  ==========================================================================
 """
@@ -18,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK
+from rockshed.components.slope_rockfall.records import KNOT, OUTCOME, PASSAGE, PEAK, ROCK
 
 from ...core.results.columns import ArrowColumn, result_column, result_table
 from ...core.results.metric import Metric
@@ -137,13 +138,31 @@ AT_PASSAGE = (
     ("y", PASSAGE.y, "m"),
     ("height", PASSAGE.height, "m"),
     ("speed", PASSAGE.speed, "m/s"),
+    ("velocity.x", PASSAGE.vx, "m/s"),
+    ("velocity.y", PASSAGE.vy, "m/s"),
     ("angular_velocity", PASSAGE.omega, "rad/s"),
     ("energy", PASSAGE.kinetic, "J"),
 )
 """Name, column of the passages and unit of the values at a line."""
 
 
-def trial_table(campaign: Campaign, records: TrialRecords) -> Any:
+OF_THE_ROCK = (
+    ("rock.mass", ROCK.mass, "kg"),
+    ("rock.radius", ROCK.radius, "m"),
+    ("rock.elongation", ROCK.elongation, "1"),
+    ("start.x", ROCK.x, "m"),
+    ("start.y", ROCK.y, "m"),
+    ("start.velocity.x", ROCK.vx, "m/s"),
+    ("start.velocity.y", ROCK.vy, "m/s"),
+    ("start.angular_velocity", ROCK.omega, "rad/s"),
+    ("start.angle", ROCK.angle, "rad"),
+)
+"""Name, column of the rocks and unit of the values that differ from trial to trial."""
+
+
+def trial_table(
+    campaign: Campaign, records: TrialRecords, rocks: NDArray[np.float64] | None = None
+) -> Any:
     """Return a row for each trial.
 
     Parameters
@@ -152,6 +171,8 @@ def trial_table(campaign: Campaign, records: TrialRecords) -> Any:
         With the names of the lines.
     records : TrialRecords
         Of all its trials.
+    rocks : array of float, shape (trials, len(ROCK)), optional
+        Rock of each trial, where they differ.
 
     Returns
     -------
@@ -164,9 +185,17 @@ def trial_table(campaign: Campaign, records: TrialRecords) -> Any:
         columns.append(result_column(name, outcomes[:, column], unit, words))
     for name, column, words in NUMBERS:
         columns.append(result_column(name, outcomes[:, column].astype(np.int64), "1", words))
+    if rocks is not None:
+        columns += _rock_columns(rocks)
     for i, name in enumerate(campaign.names):
         columns += _passage_columns(name, records.passages[:, i])
     return result_table(columns)
+
+
+def _rock_columns(rocks: NDArray[np.float64]) -> Iterator[ArrowColumn]:
+    for name, column, unit in OF_THE_ROCK:
+        words = name.replace(".", " ").replace("_", " ")
+        yield result_column(name, rocks[:, column], unit, f"{words} of this trial")
 
 
 def _end_columns(campaign: Campaign, outcomes: NDArray[np.float64]) -> Iterator[ArrowColumn]:
@@ -230,3 +259,60 @@ def envelope_table(
             words = f"{name}: {part} of the rocks that come by"
             columns.append(result_column(f"{name}.{which}", values, unit, words))
     return result_table(columns)
+
+
+# --- the table of the trajectories ---
+
+TRAJECTORIES = "trajectories.parquet"
+AT_EVENT = (
+    ("time", KNOT.time, "s", "time of the event"),
+    ("position.x", KNOT.x, "m", "place of the centre, to the right"),
+    ("position.y", KNOT.y, "m", "the same, upwards"),
+    ("angle", KNOT.angle, "rad", "angle, counter-clockwise"),
+    ("velocity.x", KNOT.vx, "m/s", "velocity just after the event, to the right"),
+    ("velocity.y", KNOT.vy, "m/s", "the same, upwards"),
+    ("angular_velocity", KNOT.omega, "rad/s", "angular velocity, counter-clockwise"),
+    ("acceleration.x", KNOT.ax, "m/s2", "acceleration until the next event, to the right"),
+    ("acceleration.y", KNOT.ay, "m/s2", "the same, upwards"),
+    ("angular_acceleration", KNOT.alpha, "rad/s2", "angular acceleration until the next event"),
+)
+"""Name, column, unit and description of the values of an event."""
+
+
+def trajectory_table(knots: Sequence[NDArray[np.float64]], modes: Sequence[str]) -> Any:
+    """Return a row for each event of trials 0, 1, ...
+
+    Parameters
+    ----------
+    knots : sequence of array of float, shape (n, len(KNOT))
+        Events of each trial.
+    modes : sequence of str
+        Modes of motion in words.
+
+    Returns
+    -------
+    pyarrow.Table
+        Between two rows the accelerations are constant: x(t) = x + v t + a t^2 / 2.
+    """
+    import pyarrow as pa
+
+    every = np.concatenate(knots)
+    numbers = np.repeat(np.arange(len(knots)), [len(rows) for rows in knots])
+    kinds = pa.DictionaryArray.from_arrays(
+        pa.array(every[:, KNOT.mode].astype(np.int32) - 1), list(modes)
+    )
+    columns = [result_column("trial", numbers, "1", "number of the trial")]
+    for name, column, unit, words in AT_EVENT:
+        columns.append(result_column(name, every[:, column], unit, words))
+    columns.append(result_column("mode", kinds, "1", "motion until the next event"))
+    cells = every[:, KNOT.cell].astype(np.int64)
+    columns.append(result_column("cell", cells, "1", "number of the cell below, from 1"))
+    return result_table(columns)
+
+
+def write_trajectories(table: Any, folder: Path) -> Path:
+    """Write the table of the trajectories into a folder that exists, and return the file."""
+    import pyarrow.parquet
+
+    pyarrow.parquet.write_table(table, folder / TRAJECTORIES, compression="zstd")
+    return folder / TRAJECTORIES

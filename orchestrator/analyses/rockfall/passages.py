@@ -1,7 +1,7 @@
 """Rocks that pass the search lines and barriers of a campaign."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from rockshed.components.slope_rockfall.records import (
 )
 
 from .campaign import Campaign, TrialRecords
-from .statistics import SHARES, Percentile, percentile, proportion
+from .statistics import SHARES, Percentile, percentile, proportion, rank
 
 ENDS = {
     RESTED: "at rest",
@@ -87,6 +87,8 @@ class LinePassages:
     barrier : mapping of str to int or None
         Numbers of rocks that are ``stopped``, ``overtopped`` and ``broken_through``; None for a
         search line.
+    numbers : mapping of str to array of int, shape (count,)
+        Trials to which ``values`` belong, by name of the quantity.
     """
 
     name: str
@@ -94,6 +96,7 @@ class LinePassages:
     count: int
     values: Mapping[str, NDArray[np.float64]]
     barrier: Mapping[str, int] | None = None
+    numbers: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
 
     @property
     def share(self) -> float:
@@ -109,6 +112,10 @@ class LinePassages:
         """Return the percentiles of a quantity over the rocks that pass; none if no rock does."""
         values = self.values[quantity]
         return [percentile(values, share) for share in SHARES] if self.count else []
+
+    def trial_of(self, quantity: str, share: float) -> int:
+        """Return the number of the trial that has a percentile of a quantity."""
+        return int(self.numbers[quantity][rank(self.count, share)])
 
 
 def line_passages(campaign: Campaign, records: TrialRecords) -> list[LinePassages]:
@@ -133,13 +140,20 @@ def _of_line(campaign: Campaign, records: TrialRecords, i: int) -> LinePassages:
     passed = records.passages[:, i, PASSAGE.count] > 0.0
     rows = records.passages[passed, i]
     is_barrier = campaign.barriers[i, 0] >= 0.0
+    trials = np.flatnonzero(passed)
     return LinePassages(
         name=campaign.names[i],
         trials=campaign.trials,
         count=int(passed.sum()),
         values={q.name: np.sort(np.abs(rows[:, q.column])) for q in QUANTITIES},
+        numbers={q.name: trials[_order(rows[:, q.column])] for q in QUANTITIES},
         barrier=_at_barrier(campaign, records, i, passed) if is_barrier else None,
     )
+
+
+def _order(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the order of values by size; of equal ones the earlier trial comes first."""
+    return np.argsort(np.abs(values), kind="stable")
 
 
 def _at_barrier(

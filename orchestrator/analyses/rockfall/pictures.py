@@ -14,7 +14,13 @@ from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 
 from rockshed.components.common.units import kJ
-from rockshed.components.slope_rockfall.records import OUTCOME, PASSED_RIGHT, RESTED, STOPPED
+from rockshed.components.slope_rockfall.records import (
+    OUTCOME,
+    PASSED_RIGHT,
+    RESTED,
+    STOPPED,
+    UNFINISHED,
+)
 from rockshed.components.slope_rockfall.records import ROCK as COLUMNS
 
 from ...animations.writing import FRAMES_PER_SECOND, write_animation
@@ -38,6 +44,7 @@ from ..drawing import drawn
 from ..frame import Count, Drawing, StageProgress, counter
 from .passages import QUANTITIES, LinePassages, PassageQuantity
 from .replay import MODES, Replay, replay
+from .statistics import fitting
 
 if TYPE_CHECKING:
     from .result import RockfallResult
@@ -66,6 +73,7 @@ _ENDS = (
     (RESTED, "at rest", SAND),
     (STOPPED, "stopped by a barrier", BEAM),
     (PASSED_RIGHT, "beyond the right end", ROCK),
+    (UNFINISHED, "not finished: where they were", TRANSMITTED),
 )
 """Ends of trials that are drawn, with name and colour."""
 _MARK: dict[str, Any] = {"textcoords": "offset points", "fontsize": 7.5}
@@ -77,6 +85,14 @@ _LEVEL = 0.05
 """Height of a picture of a level profile / its length."""
 _FEWEST_RADII = 20.0
 """Height of a picture of a level profile / radius of the rock, at least."""
+_PANEL_WIDTH = 6.2
+"""Width (inch) of a panel, about."""
+_PROFILE_HEIGHTS = (1.8, 7.0)
+"""Heights (inch) of the panel with the profile."""
+_ENVELOPE_HEIGHT = 1.5
+"""Height (inch) of a panel below it."""
+_SKY = 0.08
+"""Part of the panel above the profile that may be cut off to draw it to scale."""
 _TO_SCALE = 0.02
 """Part by which heights may be drawn larger than lengths and still be to scale."""
 _ALIKE = 1e-9
@@ -204,8 +220,10 @@ def envelopes(result: "RockfallResult") -> Figure:
     campaign = result.campaign
     count = min(PATHS, campaign.trials)
     words = f"Above: the first {count} trials. Below: of the rocks that come by."
-    with drawn([*caption(result), words], WIDTH, 8.6) as figure:
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=[2.2, 1, 1, 1])
+    height = _profile_height(result)
+    with drawn([*caption(result), words], WIDTH, height + 5.4) as figure:
+        ratios = [height, *[_ENVELOPE_HEIGHT] * 3]
+        panels = figure.subplots(4, 1, sharex=True, height_ratios=ratios)
         _slope(result, panels[0])
         for number in range(count):
             path = replay(result.slope, campaign, number, _INTERVAL)
@@ -217,8 +235,27 @@ def envelopes(result: "RockfallResult") -> Figure:
         panels[-1].set(xlabel="x (m)")
         figure.fit()
         name_marks(panels[0], _marks(result))
+        _bring_to_scale(panels[0])
         _tell_scale(panels[0])
     return figure
+
+
+def _profile_height(result: "RockfallResult") -> float:
+    """Return the height (inch) of a panel with the profile to scale, within what a page holds."""
+    nodes = result.slope.nodes
+    heights = [node.y for node in nodes]
+    rise = 1.35 * (max(heights) - min(heights)) / (nodes[-1].x - nodes[0].x)
+    low, high = _PROFILE_HEIGHTS
+    return min(max(_PANEL_WIDTH * rise, low), high)
+
+
+def _bring_to_scale(axes: Axes) -> None:
+    """Draw lengths and heights at one scale, where the panel is high enough for that."""
+    box = axes.get_window_extent()
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    needed = (right - left) * box.height / box.width
+    if needed >= (top - bottom) * (1.0 - _SKY):
+        axes.set_ylim(bottom, bottom + needed)
 
 
 def _tell_scale(axes: Axes) -> None:
@@ -267,13 +304,14 @@ def histograms(result: "RockfallResult") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Energy, height, speed and angular speed, with the normal curve of the same mean and
-        deviation.
+        Energy, height, speed and angular speed, with the curve of a distribution that no test
+        rejects.
     """
     lines = [line for line in result.lines if line.count > 1]
     words = (
-        "First passage of each rock. Curves: normal distribution of the same mean and standard "
-        "deviation; grey bar: 95 % percentile with its 95 % confidence interval (order statistics)."
+        "First passage of each rock. Curves: normal or lognormal distribution, only where a test "
+        "(Anderson-Darling, 5 %) does not reject it; grey bar: 95 % percentile with its 95 % "
+        "confidence interval (order statistics)."
     )
     with drawn([*caption(result), words], 10.4, 2.1 * len(lines) + 0.9) as figure:
         rows = figure.subplots(len(lines), len(QUANTITIES), squeeze=False)
@@ -294,12 +332,13 @@ def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
     mean = float(values.mean())
     deviation = float(values.std(ddof=1))
     axes.ticklabel_format(axis="x", useOffset=False)
-    if deviation > 0.0:
-        x = np.linspace(*axes.get_xlim(), 200)
-        curve = np.exp(-0.5 * ((x - mean) / deviation) ** 2) / (deviation * np.sqrt(2.0 * np.pi))
-        axes.plot(x, curve, color=TRANSMITTED, linewidth=1.0)
+    kind = fitting(values)
+    if kind:
+        left, right = axes.get_xlim()
+        x = np.linspace(max(left, 1e-9) if kind == "lognormal" else left, right, 200)
+        axes.plot(x, _density(kind, values, x), color=TRANSMITTED, linewidth=1.0)
     axes.annotate(
-        f"{digits(mean)} ± {digits(deviation)}",
+        f"{digits(mean)} ± {digits(deviation)}" + (f"\n{kind}" if kind else ""),
         (1.0, 1.0),
         xycoords="axes fraction",
         xytext=(-2, -2),
@@ -308,6 +347,17 @@ def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
         color=TRANSMITTED,
         **_MARK,
     )
+
+
+def _density(kind: str, values: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the density of the normal or lognormal distribution fitted to a sample."""
+    sample, place, stretch = (
+        (values, x, 1.0) if kind == "normal" else (np.log(values), np.log(x), x)
+    )
+    deviation = sample.std(ddof=1)
+    z = (place - sample.mean()) / deviation
+    curve: NDArray[np.float64] = np.exp(-0.5 * z**2) / (deviation * np.sqrt(2.0 * np.pi)) / stretch
+    return curve
 
 
 def _interval(axes: Axes, line: LinePassages, quantity: PassageQuantity) -> None:

@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.common.component import Instance
-from rockshed.components.slope_rockfall.records import OUTCOME, ROCK
+from rockshed.components.slope_rockfall.declarations import BODY
+from rockshed.components.slope_rockfall.records import KNOT, OUTCOME, ROCK
+from rockshed.components.slope_rockfall.trajectory import MOST_EVENTS, set_rock, trace
 
 from ...core.errors import InputRefused, Problem
 from ...sites.rockfall.preparation import PreparedSlope
-from .campaign import Campaign, compute
+from .campaign import Campaign, compute, own_buffers
 from .passages import ENDS
 
 MODES = ("in flight", "rolling", "sliding", "spinning", "at rest", "handed over")
@@ -40,6 +42,8 @@ PARAMETERS = {
     "angle0": ROCK.angle,
 }
 """Parameters of the component that a rock sets, and its columns."""
+_FEWEST_KNOTS = 1000
+"""Events for which there is room at first."""
 
 
 @dataclass(frozen=True)
@@ -162,3 +166,31 @@ def replay(slope: PreparedSlope, campaign: Campaign, number: int, interval: floa
     long = float(rock["elongation"]) if slope.site.rock.shape == "ellipse" else 1.0
     words = ENDS[int(outcome[OUTCOME.end])]
     return Replay(number, words, times, **curves, radius=float(rock["radius"]), elongation=long)
+
+
+def events_of(campaign: Campaign, number: int) -> NDArray[np.float64]:
+    """Compute a trial, and return the motion at its start, its events and its end.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        To which the trial belongs.
+    number : int
+        Of the trial.
+
+    Returns
+    -------
+    array of float, shape (n, len(KNOT))
+        Between two rows the accelerations are constant.
+    """
+    w, x, k, rocks = own_buffers(campaign, number, 1)
+    if len(rocks):
+        set_rock(rocks[0], w, x, k)
+    knots = np.empty((_FEWEST_KNOTS, len(KNOT)))
+    while True:
+        lines, barriers = campaign.lines, campaign.barriers
+        where = (campaign.left, campaign.right, lines, barriers)
+        count = trace(campaign.seed, number, *where, w, x, k, np.zeros(len(BODY)), knots)
+        if count < len(knots) or len(knots) >= MOST_EVENTS:
+            return knots[:count]
+        knots = np.empty((8 * len(knots), len(KNOT)))

@@ -1,22 +1,32 @@
 """The result of a rockfall campaign."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rockshed.components.slope_rockfall.records import OUTCOME
+from rockshed.components.slope_rockfall.records import BELOW, OUTCOME, UNFINISHED
+from rockshed.components.slope_rockfall.trajectory import MOST_EVENTS
 
 from ...core.results.metric import Metric
 from ...sites.rockfall.preparation import PreparedSlope
 from ...tables import Table
 from ..frame import FloatArray, Result
 from .campaign import Campaign, TrialRecords
-from .files import Envelopes, envelope_table, envelopes, trial_table, write_facts, write_tables
+from .files import (
+    Envelopes,
+    envelope_table,
+    envelopes,
+    trajectory_table,
+    trial_table,
+    write_facts,
+    write_tables,
+    write_trajectories,
+)
 from .passages import ENDS, LinePassages, line_passages
-from .replay import Replay, check, replay
+from .replay import MODES, Replay, check, events_of, replay
 from .summary import metrics_of
 from .tables import line_tables, notes
 
@@ -38,6 +48,8 @@ class RockfallResult(Result):
         Number of workers, and the scheduler.
     animated : sequence of int
         Trials of which :meth:`save` writes animations, in the format ``animation``.
+    trajectories : int
+        Number of trials, from the first on, whose trajectories it writes.
     """
 
     kind = "rockfall"
@@ -60,6 +72,7 @@ class RockfallResult(Result):
         self._along = along
         self.animated: tuple[int, ...] = ()
         self.animation = "gif"
+        self.trajectories = 0
 
     @property
     def name(self) -> str:
@@ -99,15 +112,30 @@ class RockfallResult(Result):
 
     @property
     def warnings(self) -> list[str]:
-        """Values of the site that are not usual, a sentence each."""
-        return list(self.slope.warnings)
+        """Values of the site that are not usual, and trials that mean nothing, a sentence each."""
+        return [*self.slope.warnings, *self._doubtful_ends()]
+
+    def _doubtful_ends(self) -> Iterator[str]:
+        unfinished, below = self.ends[ENDS[UNFINISHED]], self.ends[ENDS[BELOW]]
+        if unfinished:
+            yield (
+                f"{unfinished} of {self.campaign.trials} trials are not finished after "
+                f"{MOST_EVENTS} events; they count as ended where they were then, and are shown "
+                "there: give the ground some roughness, or hardening below 1"
+            )
+        if below:
+            yield (
+                f"{below} of {self.campaign.trials} rocks start inside the slope and have no "
+                "trajectory: start them higher"
+            )
 
     @property
     def notes(self) -> list[str]:
         """Ends of the trials, and the meaning of the intervals."""
         effort = f"{self.campaign.trials} trials in {self.wall_time:.2f} s"
         heading = f"{effort}, seed {self.campaign.seed}: {self._listed_ends()}"
-        return [heading, *notes(bool(self.lines), self.slope.site.hypercube > 0)]
+        remarks = notes(bool(self.lines), self.slope.site.hypercube > 0)
+        return [heading, *self.slope.notes, *remarks]
 
     def _listed_ends(self) -> str:
         return ", ".join(f"{number} {words}" for words, number in self.ends.items() if number)
@@ -130,7 +158,7 @@ class RockfallResult(Result):
         pyarrow.Table
             End, largest values, and the first passage of each line; null where there is none.
         """
-        return trial_table(self.campaign, self.records)
+        return trial_table(self.campaign, self.records, self.rocks)
 
     def animate(self, trials: Sequence[int], animation: str) -> None:
         """Choose the trials of which :meth:`save` writes animations.
@@ -164,11 +192,34 @@ class RockfallResult(Result):
         check(self.campaign, [trial])
         return replay(self.slope, self.campaign, trial, interval)
 
+    def to_trajectories(self, count: int | None = None) -> Any:
+        """Return the events of the first trials, between which accelerations are constant.
+
+        Parameters
+        ----------
+        count : int, optional
+            Number of trials; all by default.
+
+        Returns
+        -------
+        pyarrow.Table
+            A row for each event: time, place, velocities, accelerations, mode and cell.
+        """
+        number = self.campaign.trials if count is None else min(count, self.campaign.trials)
+        knots = [events_of(self.campaign, trial) for trial in range(number)]
+        return trajectory_table(knots, MODES)
+
     def write_files(self, folder: Path) -> list[Path]:
         """Write trials, envelopes, summary and ``run.json`` into a folder, and return them."""
         along = envelope_table(self.slope, self.campaign, self.records, self.envelopes)
         facts = {"wall_time": self.wall_time, **self.executor}
+        paths = (
+            [write_trajectories(self.to_trajectories(self.trajectories), folder)]
+            if self.trajectories
+            else []
+        )
         return [
             *write_tables(self.to_arrow(), along, folder),
+            *paths,
             *write_facts(self.slope, self.metric_list(), facts, folder),
         ]

@@ -5,6 +5,7 @@ import time
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
+from typing import Literal
 
 from rockshed.components.catalogue import component
 
@@ -14,7 +15,7 @@ from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
-from .campaign import Executor, campaign_of, threads
+from .campaign import Campaign, Executor, campaign_of, threads
 from .cluster import Certificates, dask_workers
 from .replay import check
 from .result import RockfallResult
@@ -29,6 +30,7 @@ def rockfall(
     scheduler: str | None = None,
     certificates: Certificates | None = None,
     replay: Sequence[int] = (),
+    trajectories: int | Literal["all"] = 0,
     animation: str | None = None,
     folder: str | Path | None = None,
     pictures: bool = False,
@@ -51,6 +53,8 @@ def rockfall(
         Of a running scheduler that knows its users by them (``tls://HOST:PORT``).
     replay : sequence of int
         Trials of which animations are written.
+    trajectories : int or "all"
+        Number of trials, from the first on, whose trajectories are saved as data.
     animation : str, optional
         ``mp4`` or ``gif``; by default MP4 where it can be written.
     folder : path, optional
@@ -95,6 +99,7 @@ def rockfall(
     slope = prepare(site, trials, seed)
     campaign = campaign_of(slope)
     check(campaign, replay)
+    paths = _path_count(campaign, trajectories)
     with ExitStack() as opened:
         place = opened.enter_context(RockfallResult.opened(folder)) if folder else None
         show("trials", 0, campaign.trials)
@@ -105,10 +110,22 @@ def rockfall(
             wall_time = time.perf_counter() - began
         result = RockfallResult(slope, campaign, records, wall_time, executor.facts)
         result.animate(replay, form)
+        result.trajectories = paths
         if place is not None:
             result.write(place, pictures, show)
     result.folder = Path(folder) if folder else None
     return result
+
+
+def _path_count(campaign: Campaign, trajectories: int | str) -> int:
+    """Return the number of trials whose trajectories are saved."""
+    if trajectories == "all":
+        return campaign.trials
+    if isinstance(trajectories, str) or not 0 <= trajectories <= campaign.trials:
+        text = f"{trajectories} is neither all nor a number of trials"
+        remedy = f"give all, or a number up to {campaign.trials}"
+        raise InputRefused([Problem("trajectories", text, remedy)])
+    return trajectories
 
 
 def _executor(

@@ -70,7 +70,12 @@ def _bound(value: float) -> float | None:
 
 def _not_exceeded(ordered: NDArray[np.floating], share: float) -> float:
     """Return the smallest value that at least this share of an ordered sample does not exceed."""
-    return ordered[max(0, math.ceil(len(ordered) * share - 1e-9) - 1)]
+    return ordered[rank(len(ordered), share)]
+
+
+def rank(count: int, share: float) -> int:
+    """Return the place, from 0, of the smallest value that a share of so many does not exceed."""
+    return max(0, math.ceil(count * share - 1e-9) - 1)
 
 
 def proportion(hits: int, count: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
@@ -121,3 +126,48 @@ def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
             for name, share in names.items():
                 curves[name][i] = _not_exceeded(here, share)
     return curves
+
+
+# --- distributions that may be drawn ---
+
+_CRITICAL = 0.752
+"""Largest A2* at which normality is not rejected at 5 %, mean and deviation being fitted.
+
+Source: Stephens 1986, in D'Agostino and Stephens, Goodness-of-fit techniques, table 4.7."""
+_FEWEST = 8
+"""Values from which on the test means something."""
+
+
+def fitting(values: NDArray[np.float64]) -> str:
+    """Return the distribution that a test does not reject at 5 %: normal, else lognormal.
+
+    The test is that of Anderson and Darling, with mean and deviation of the sample.
+
+    Parameters
+    ----------
+    values : array of float, shape (n,)
+        A sample.
+
+    Returns
+    -------
+    str
+        ``normal``, ``lognormal``, or empty if both are rejected, or the sample is too small.
+    """
+    if len(values) < _FEWEST:
+        return ""
+    if _is_normal(values):
+        return "normal"
+    return "lognormal" if values.min() > 0.0 and _is_normal(np.log(values)) else ""
+
+
+def _is_normal(values: NDArray[np.float64]) -> bool:
+    from scipy.special import log_ndtr
+
+    deviation = float(values.std(ddof=1))
+    if deviation <= 1e-9 * float(np.abs(values).max()):
+        return False
+    z = (np.sort(values) - values.mean()) / deviation
+    n = len(z)
+    weights = 2.0 * np.arange(1, n + 1) - 1.0
+    square = -n - float((weights * (log_ndtr(z) + log_ndtr(-z[::-1]))).sum()) / n
+    return square * (1.0 + 0.75 / n + 2.25 / n**2) <= _CRITICAL

@@ -67,6 +67,8 @@ def _of_quantity(prefix: str, line: LinePassages, quantity: PassageQuantity) -> 
     for found in line.percentiles(quantity.name):
         name = f"{prefix}.p{100 * found.share:.0f}"
         yield Metric(name, found.value, quantity.unit)
+        if line.numbers:
+            yield Metric(f"{name}.trial", line.trial_of(quantity.name, found.share))
         if found.low is not None:
             yield Metric(f"{name}.low", found.low, quantity.unit)
         if found.high is not None:
