@@ -37,6 +37,7 @@ COMPONENT = Component(
                         Curve("energy.bending", "of it in bending", dashed=True),
                         Curve("energy.axial", "of it axial"),
                         Curve("energy.strain_estimate", "from the midspan strain: its eq. (7)"),
+                        Curve("energy.plastic", "dissipated by yielding"),
                     ),
                     second_unit="kgf cm",
                     references="peak_beam_energy_from_the_midspan_strain",

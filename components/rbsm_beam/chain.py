@@ -12,7 +12,9 @@ support. With it every disc has the same formula, and the end half-bar has the a
   force (m/s/N);
 * ``load.x``, ``load.y``, shape (n): held forces with the couples of the torques (N);
 * ``support.height``, shape (supports): heights of the supports (m); ``reaction``: forces of the
-  beam on them (N, upwards).
+  beam on them (N, upwards);
+* ``end.height``, ``end.rate``, ``end.force``, shape (2): of the ends on elastic supports (m, m/s)
+  and what accelerates them (N, upwards); on others the ends are the supports.
 
 A section that yields has more of them: :mod:`.yielding`.
 """
@@ -20,7 +22,7 @@ A section that yields has more of them: :mod:`.yielding`.
 from collections import namedtuple
 
 from ..common.kernels import kernel, view
-from .declarations import FIXED, LAYOUT, YIELDING
+from .declarations import FIXED, LAYOUT, SPRUNG, YIELDING
 from .yielding import locked_and_elastic_energy, rate_energy, relieve, slip
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -34,11 +36,17 @@ BEARING = 16.0
 
 What it yields is of the third order in R, below the error of the chain."""
 
+PLATE = 0.5
+"""Mass of the end on an elastic support, as a part of that of a disc without the box: that of the
+half-bar. It has no weight."""
+
 Chain = namedtuple(
-    "Chain", "n supports fixed spacing bending axial bearing drag viscosity gravity yielding"
+    "Chain",
+    "n supports fixed spacing bending axial bearing spring plate drag viscosity gravity yielding",
 )
 """Constants: numbers of discs and supports, whether the outer ones are fixed, R (m), EI/R2 (N),
-EA/R (N/m), stiffness of an inner support (N/m), Rayleigh factors of mass (1/s) and stiffness (s),
+EA/R (N/m), stiffness of an inner support (N/m), of the spring under an end (N/m, 0: rigid) and the
+mass of that end (kg), Rayleigh factors of mass (1/s) and stiffness (s),
 gravity (m/s2), whether the section yields."""
 
 
@@ -56,11 +64,25 @@ def chain(w, k):
         bending,
         w[V.elastic_modulus] * w[V.section_area] / spacing,
         BEARING * bending / spacing,
+        w[V.support_stiffness] if w[V.supports] == SPRUNG else 0.0,
+        PLATE * disc_mass(w, spacing),
         w[V.damping_mass],
         w[V.damping_stiffness],
         w[V.gravity],
         w[V.section_bending] == YIELDING,
     )
+
+
+@kernel
+def disc_mass(w, spacing):
+    """Return the mass of beam and deck on the length of a disc (kg), without the box."""
+    return (w[V.density] * w[V.section_area] + w[V.deck_mass]) * spacing
+
+
+@kernel
+def springs_fit_supports(w):
+    """Return whether there is a stiffness for elastic supports, and for no others."""
+    return (w[V.supports] == SPRUNG) == (w[V.support_stiffness] > 0.0)
 
 
 @kernel
@@ -77,7 +99,7 @@ def distribute(c, w, x, k):
         Integer state.
     """
     mass = view(x, k, A.mass)
-    own = (w[V.density] * w[V.section_area] + w[V.deck_mass]) * c.spacing
+    own = disc_mass(w, c.spacing)
     for i in range(c.n):
         mass[i] = own + w[V.box_mass] * box_share(c, i, w)
 
@@ -179,6 +201,8 @@ def _shape_bending(c, displacement_factor, rate_factor, w, x, k):
     n = c.n
     _shape_discs(n, displacement_factor, rate_factor, view(x, k, A.v), view(x, k, A.v_rate), v)
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
+    if c.spring > 0.0:
+        height, speed = view(x, k, A.end_height), view(x, k, A.end_rate)
     v[0] = 2.0 * (displacement_factor * height[0] + rate_factor * speed[0]) - v[1]
     v[n + 1] = 2.0 * (displacement_factor * height[1] + rate_factor * speed[1]) - v[n]
 
@@ -282,14 +306,32 @@ def follow(c, w, x, k):
 def react(c, w, x, k):
     """Set the forces of the beam on the outer supports, in the present shape.
 
-    They follow from the moment equilibrium of the end half-bars. Those on inner supports are set
-    with the shape.
+    They follow from the moment equilibrium of the end half-bars; on elastic supports those forces
+    and the springs move the ends. The forces on inner supports are set with the shape.
     """
     moment, torque = view(x, k, A.hinge_moment), view(w, k, A.torque)
     reaction = view(x, k, A.reaction)
     n = c.n
     reaction[0] = -(moment[1] - moment[0] + torque[0]) / c.spacing
     reaction[1] = (moment[n + 1] - moment[n] + torque[n - 1]) / c.spacing
+    if c.spring > 0.0:
+        _press(c, x, k)
+
+
+@kernel
+def _press(c, x, k):
+    """Let the springs under the ends bear what they are pressed together for; they never pull."""
+    reaction, net = view(x, k, A.reaction), view(x, k, A.end_force)
+    for s in range(2):
+        borne = -c.spring * settlement(c, s, x, k)
+        net[s] = reaction[s] - borne
+        reaction[s] = borne
+
+
+@kernel
+def settlement(c, s, x, k):
+    """Return the way by which the spring under an end is pressed together (m)."""
+    return max(view(x, k, A.support_height)[s] - view(x, k, A.end_height)[s], 0.0)
 
 
 @kernel
@@ -323,6 +365,8 @@ def potential(c, w, x, k):
     u, v = view(x, k, A.u), view(x, k, A.v)
     load_x, load_y = view(x, k, A.load_x), view(x, k, A.load_y)
     torque, height = view(w, k, A.torque), view(x, k, A.support_height)
+    if c.spring > 0.0:
+        height = view(x, k, A.end_height)
     total = (torque[c.n - 1] * height[1] - torque[0] * height[0]) / c.spacing
     for i in range(c.n):
         total += load_x[i] * u[i + 1] + load_y[i] * v[i + 1]
@@ -384,6 +428,17 @@ def move(c, dt, w, x, k):
     height, speed = view(x, k, A.support_height), view(w, k, A.support_velocity_y)
     for s in range(c.supports):
         height[s] += dt * speed[s]
+    if c.spring > 0.0:
+        _move_ends(c, dt, keep, x, k)
+
+
+@kernel
+def _move_ends(c, dt, keep, x, k):
+    """Advance the ends on elastic supports by a step dt (s)."""
+    height, rate, net = view(x, k, A.end_height), view(x, k, A.end_rate), view(x, k, A.end_force)
+    for s in range(2):
+        rate[s] = keep * rate[s] + dt / c.plate * net[s]
+        height[s] += dt * rate[s]
 
 
 @kernel
@@ -412,12 +467,25 @@ def _move_discs(n, dt, kick, keep, fall, stiffness, field, load, rate, displacem
 
 @kernel
 def kinetic_energy(c, x, k):
-    """Return the kinetic energy of the discs (J); their rotation is no freedom and carries none."""
+    """Return the kinetic energy of the discs (J), and of ends on springs.
+
+    Their rotation is no freedom and carries none.
+    """
     u_rate, v_rate, mass = view(x, k, A.u_rate), view(x, k, A.v_rate), view(x, k, A.mass)
     total = 0.0
     for i in range(c.n):
         total += mass[i] * (u_rate[i + 1] * u_rate[i + 1] + v_rate[i + 1] * v_rate[i + 1])
+    if c.spring > 0.0:
+        rate = view(x, k, A.end_rate)
+        total += c.plate * (rate[0] * rate[0] + rate[1] * rate[1])
     return 0.5 * total
+
+
+@kernel
+def spring_energy(c, x, k):
+    """Return the energy of the springs under elastic supports (J)."""
+    left, right = settlement(c, 0, x, k), settlement(c, 1, x, k)
+    return 0.5 * c.spring * (left * left + right * right)
 
 
 @kernel

@@ -7,7 +7,7 @@ from ..common.roles import Role
 from ..common.stepping import internal_step, stable_step
 from ..common.units import cm, cm2, cm4, kgf
 
-SIMPLE, FIXED = 1, 2
+SIMPLE, FIXED, SPRUNG = 1, 2, 3
 ELASTIC, YIELDING = 1, 2
 SLIDERS = 3
 """Elements in parallel that slip, one for each corner of the moment-curvature line."""
@@ -35,6 +35,7 @@ _AT_REST = (
     "span",
     "axis.y",
     "supports",
+    "support.stiffness",
     "support.element",
     "elastic_modulus",
     "section.area",
@@ -94,10 +95,18 @@ LAYOUT = Layout(
         choice(
             "supports",
             "simple: both ends turn freely, the right one slides along the axis; fixed: neither "
-            "turns nor slides",
-            ("simple", "fixed"),
+            "turns nor slides; elastic: as simple, on springs that only push",
+            ("simple", "fixed", "elastic"),
             "simple",
             source=_SONODA,
+        ),
+        param(
+            "support.stiffness",
+            "stiffness of the spring under either end, if supports are elastic",
+            0.0,
+            "N/m",
+            minimum=0.0,
+            plausible=Plausible(1e4, 1e12, ("kN/m", "kN/mm")),
         ),
         param(
             "support.element",
@@ -347,6 +356,13 @@ LAYOUT = Layout(
             size="support_count",
         ),
         out(
+            "support.settlement",
+            "way by which the spring under the support is pressed together; of elastic supports",
+            "m",
+            size="support_count",
+            initial_dependencies=_AT_REST,
+        ),
+        out(
             "support.work",
             "work that the moving support has done on the beam",
             "J",
@@ -406,6 +422,13 @@ LAYOUT = Layout(
             source="Sonoda et al. 1993, eq. (5)",
             role=Role.ELASTIC,
             label="beam, kinetic and elastic",
+        ),
+        out(
+            "energy.support",
+            "elastic energy of the springs under elastic supports",
+            "J",
+            role=Role.ELASTIC,
+            label="elastic supports",
         ),
         out(
             "energy.axial",
@@ -474,7 +497,7 @@ LAYOUT = Layout(
             "J",
             role=Role.RESIDUAL,
         ),
-        out("energy.start", "kinetic + elastic + gravity at the start", "J"),
+        out("energy.start", "kinetic + elastic + supports + gravity at the start", "J"),
     ),
     (
         State("u", _padded),
@@ -490,6 +513,9 @@ LAYOUT = Layout(
         State("load.y", lambda sizes: sizes["elements"]),
         State("support.height", _supports),
         State("reaction", _supports),
+        State("end.height", lambda sizes: 2),
+        State("end.rate", lambda sizes: 2),
+        State("end.force", lambda sizes: 2),
         State("jump", _supports),
         State("influence", lambda sizes: _supports(sizes) ** 2),
         State("rest.load", lambda sizes: sizes["elements"]),

@@ -2,7 +2,7 @@
 
 from ..common.stepping import STEPPING_FAULTS
 
-DIVERGED, BOX_OFF_BEAM, NO_PLACE, BAD_CORNERS, NO_REST = range(1, 6)
+DIVERGED, BOX_OFF_BEAM, NO_PLACE, BAD_CORNERS, NO_REST, BAD_SPRING = range(1, 7)
 
 FAULTS = {
     **STEPPING_FAULTS,
@@ -18,6 +18,8 @@ FAULTS = {
     "{section.corner3.curvature} 1/m, then section.hardening_ratio = {section.hardening_ratio}; "
     "give section.corner1.moment > 0 and, for every further corner, a larger curvature and no "
     "smaller moment, so that the slope never rises (0 and 0 leave a corner out)",
+    BAD_SPRING: "elastic supports and support.stiffness belong together, and support.stiffness is "
+    "{support.stiffness} N/m: give supports = elastic and a stiffness above 0, or none",
     NO_REST: "the section yields under the weights at the start and does not come to rest with "
     "them: section.corner1.moment is {section.corner1.moment} N.m, and past the last corner "
     "section.hardening_ratio = {section.hardening_ratio}; give a stronger section, or less "

@@ -22,11 +22,14 @@ from .chain import (
     potential,
     react,
     set_kicks,
+    settlement,
+    spring_energy,
+    springs_fit_supports,
     supports_have_places,
     wall_moments,
 )
 from .declarations import LAYOUT
-from .faults import BAD_CORNERS, BOX_OFF_BEAM, DIVERGED, NO_PLACE, NO_REST
+from .faults import BAD_CORNERS, BAD_SPRING, BOX_OFF_BEAM, DIVERGED, NO_PLACE, NO_REST
 from .statics import rest, set_midspan_influence, stable_step
 from .yielding import curvature_ratio, residual_deflection, set_lengths, set_sliders, unslip
 
@@ -47,12 +50,14 @@ def initialise(w, x, k):
     Returns
     -------
     int
-        Status: OK, BOX_OFF_BEAM, NO_PLACE or BAD_CORNERS.
+        Status: OK, BOX_OFF_BEAM, NO_PLACE, BAD_SPRING or BAD_CORNERS.
     """
     if not box_stands_on_beam(w):
         return BOX_OFF_BEAM
     if not supports_have_places(w, k):
         return NO_PLACE
+    if not springs_fit_supports(w):
+        return BAD_SPRING
     c = chain(w, k)
     if c.yielding and not set_sliders(w, x, k):
         return BAD_CORNERS
@@ -286,11 +291,12 @@ def _publish_shears(c, w, x, k):
     for i in range(c.n):
         couple = 0.5 * (torque[max(i - 1, 0)] + torque[i])
         shear[i] = (moment[i + 1] - moment[i] + couple) / c.spacing
-    at_support[0], at_support[1] = -reaction[0], reaction[1]
+    net = view(x, k, A.end_force)
+    at_support[0], at_support[1] = -(reaction[0] + net[0]), reaction[1] + net[1]
     for s in range(2, c.supports):
         disc = int(element[s]) - 1
         left = shear[disc]
-        right = reaction[1] if disc == c.n - 1 else shear[disc + 1]
+        right = at_support[1] if disc == c.n - 1 else shear[disc + 1]
         at_support[s] = left if abs(left) > abs(right) else right
 
 
@@ -311,6 +317,9 @@ def _publish_places(c, w, x, k):
     _publish_axis(c.n, 0.0, 0.0, view(x, k, A.hinge_moment), view(w, k, A.moment))
     _publish_support_moments(c, w, x, k)
     _publish_slopes(c.n, 0.5 / c.spacing, view(x, k, A.v_shape), view(w, k, A.angle))
+    sunk = view(w, k, A.support_settlement)
+    for s in range(2):
+        sunk[s] = settlement(c, s, x, k) if c.spring > 0.0 else 0.0
 
 
 @kernel
@@ -383,10 +392,12 @@ def _publish_energies(c, w, x, k):
     w[V.energy_kinetic] = kinetic_energy(c, x, k)
     w[V.energy_axial], w[V.energy_bending] = axial_energy(c, x, k), bending_energy(c, x, k)
     w[V.energy_elastic] = w[V.energy_axial] + w[V.energy_bending]
+    w[V.energy_support] = spring_energy(c, x, k) if c.spring > 0.0 else 0.0
     w[V.energy_gravity] = c.gravity * lifted
     w[V.energy_residual] = (
         w[V.energy_kinetic]
         + w[V.energy_elastic]
+        + w[V.energy_support]
         + w[V.energy_gravity]
         + w[V.energy_damping]
         + w[V.energy_plastic]

@@ -38,6 +38,8 @@ def rest(c, w, x, k):
     """
     u, u_rate = view(x, k, A.u), view(x, k, A.u_rate)
     v_rate, height = view(x, k, A.v_rate), view(x, k, A.support_height)
+    end_rate = view(x, k, A.end_rate)
+    end_rate[0] = end_rate[1] = 0.0
     for i in range(c.n + 2):
         u[i] = u_rate[i] = v_rate[i] = 0.0
     load = view(x, k, A.rest_load)
@@ -109,7 +111,7 @@ def set_midspan_influence(c, w, x, k):
 
 @kernel
 def _sag(c, load, height, rise, plastic, x, k):
-    """Set moments and deflections of the chain under loads at rest, its ends where they are.
+    """Set moments and deflections of the chain under loads at rest, its supports where they are.
 
     Parameters
     ----------
@@ -127,9 +129,25 @@ def _sag(c, load, height, rise, plastic, x, k):
         Integer state.
     """
     moment = view(x, k, A.hinge_moment)
+    if c.spring > 0.0:
+        left, right = _end_loads(c, load)
+        height -= left / c.spring
+        rise -= (right - left) / c.spring
+        end = view(x, k, A.end_height)
+        end[0], end[1] = height, height + rise
     _load_moments(c, load, moment)
     _add_redundant_moments(c, rise, plastic, moment, view(x, k, A.offset))
     _deflect(c, rise, height, plastic, x, k)
+
+
+@kernel
+def _end_loads(c, load):
+    """Return what the left and the right support bear of loads at rest (N, downwards)."""
+    left, total = 0.0, 0.0
+    for i in range(c.n):
+        left += load[i] * (c.n - i - 0.5) / c.n
+        total += load[i]
+    return left, total - left
 
 
 @kernel
@@ -267,7 +285,8 @@ def stable_step(c, w, x, k):
     both roots stay in the unit circle for dt <= 4 / (a + sqrt(a2 + 4 omega2)). The highest
     frequency decides: that of a chain of discs as light as the lightest one, which more mass can
     only lower. It is exact without a box or with one that leaves no disc free. An inner support
-    raises its square by no more than its stiffness over that mass.
+    raises its square by no more than its stiffness over that mass. With an end on a spring, the
+    row of that end bounds it: the sum of its stiffnesses over its mass, above that of all others.
 
     Parameters
     ----------
@@ -287,6 +306,8 @@ def stable_step(c, w, x, k):
     bending = (
         _fixed_frequency2(c, mass, w, x, k) if c.fixed else 16.0 * c.bending / (mass * c.spacing)
     )
+    if c.spring > 0.0:
+        bending = (12.0 * c.bending / c.spacing + c.spring) / c.plate
     if c.supports > 2:
         bending += c.bearing / mass
     omega2 = max(_axial_frequency2(c, mass), bending)

@@ -219,7 +219,7 @@ def _name(key: Key) -> str:
 def _numbers(data: BaseModel, key: Key) -> Iterator[tuple[Key, float, FieldInfo]]:
     """Yield key, value and field of every number of a form that is given and has a usual range."""
     for name, entry in type(data).model_fields.items():
-        if name not in data.model_fields_set:
+        if name not in data.model_fields_set:  # those that are refused are not in it
             continue
         yield from _within(getattr(data, name), (*key, entry.alias or name), entry)
 

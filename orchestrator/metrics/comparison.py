@@ -101,6 +101,7 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
     names.BEAM_SHARE: ("peak beam energy (5), (6) / E0", (Scale("%", 2),)),
     names.BEAM_SHARE_FROM_STRAIN: ("peak beam energy (7) / E0", (Scale("%", 2),)),
+    names.GRAVITY_SHARE: ("given by gravity until the end / E0", (Scale("%", 1),)),
     names.DISSIPATED_SHARE: ("dissipated at the end / E0", (Scale("%", 1),)),
     names.REBOUND_SHARE: ("kinetic energy of the rock at the end / E0", (Scale("%", 1),)),
     names.RESIDUAL_SHARE: ("energy residual / E0", (Scale("%", 3, "+"),)),

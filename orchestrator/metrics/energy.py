@@ -258,11 +258,20 @@ def _structure_energies(run: StoredRun, structure: str) -> Iterator[tuple[str, f
     if elastic is not None:
         yield names.BEAM_ENERGY, extreme(run, elastic)[0] - float(run.series[elastic][0])
     estimated = column(run, structure, Role.ESTIMATED)
-    if estimated is not None and not _has_yielded(run, structure):
+    if estimated is not None and not has_yielded(run, structure):
         yield names.BEAM_ENERGY_FROM_STRAIN, extreme(run, estimated)[0]
 
 
-def _has_yielded(run: StoredRun, structure: str) -> bool:
+def has_yielded(run: StoredRun, structure: str) -> bool:
+    """Tell whether anything has yielded in a structure.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    structure : str
+        Name of the component in the system.
+    """
     plastic = column(run, structure, Role.PLASTIC)
     return plastic is not None and bool(run.series[plastic].any())
 

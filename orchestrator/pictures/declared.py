@@ -10,12 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from rockshed.components.common.roles import Role
 from rockshed.components.common.units import SCREEN_UNITS, ms
 
 from ..core.results.metric import identifier
 from ..core.results.reading import StoredRun
-from ..metrics.energy import load_at_rest
+from ..metrics.energy import has_yielded, load_at_rest
 from ..metrics.names import without_component
+from ..metrics.roles import members_of
 from ..tables import digits
 from .envelope import draw_envelope
 from .references import KnownMetrics, draw_references
@@ -207,7 +209,7 @@ def curves_of(run: StoredRun, panel: DeclaredPanel) -> Iterator[DeclaredCurve]:
         for curve in panel.told["curves"]:
             colour = colour if curve["dashed"] and colour else next(colours)
             name = f"{component}.{curve['variable']}"
-            if name not in run.series:
+            if name not in run.series or means_nothing(run, component, curve["variable"]):
                 continue
             values = curve["factor"] * run.series[name]
             if curve["from_start"]:
@@ -219,6 +221,23 @@ def curves_of(run: StoredRun, panel: DeclaredPanel) -> Iterator[DeclaredCurve]:
                 colour,
                 curve["dashed"],
             )
+
+
+def means_nothing(run: StoredRun, component: str, variable: str) -> bool:
+    """Tell whether a curve of a structure says nothing about this run.
+
+    That is an elastic energy as its strain tells it where it has yielded, and the energy that it
+    dissipates by yielding where it has not.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    component, variable : str
+        Of the curve.
+    """
+    unwanted = Role.ESTIMATED if has_yielded(run, component) else Role.PLASTIC
+    return any(member.variable == variable for member in members_of(run, component, unwanted))
 
 
 def label_of(panel: DeclaredPanel, owner: str) -> str:

@@ -40,6 +40,10 @@ _BARS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 DEFLECTION_SCALES = (30.0, 20.0, 10.0, 5.0, 3.0, 2.0, 1.0)
 """Deflections of the beam's axis are drawn so many times too large: the largest of these that keeps
 them within a disc."""
+_MOMENTS = 3
+"""Instants of the overview."""
+_APART = 0.1
+"""Distance of two of them at least, as a part of the time in which something happens."""
 _INTERESTING = 0.25
 """The frames end when the transmitted force has fallen below this part of its peak for good."""
 _CHAINS = LinearSegmentedColormap.from_list("chains", ["#e8c98f", "#e08a2e", "#c23b22", "#5a0f3c"])
@@ -101,12 +105,25 @@ def _evenly(run: StoredRun, cushion: str) -> list[float]:
 
 
 def _moments(run: StoredRun, cushion: str) -> list[float]:
-    """Return the times (s) of half the peak force, of the peak, and of the greatest depth."""
-    transmitted = str(column(run, cushion, Role.TRANSMITTED))
+    """Return the times (s) of three instants that differ.
+
+    Of the peak forces on base and rock, the greatest depth, half of the peak before and after it,
+    and the end of what happens, in this order.
+    """
+    time = run.series["time"]
+    transmitted, on_body, depth = (
+        str(column(run, cushion, role))
+        for role in (Role.TRANSMITTED, Role.ON_BODY, Role.PENETRATION)
+    )
     force = np.abs(run.series[transmitted])
-    half = float(run.series["time"][np.flatnonzero(force >= 0.5 * force.max())[0]])
-    deepest = extreme(run, str(column(run, cushion, Role.PENETRATION)))
-    return [half, extreme(run, transmitted)[1], deepest[1]]
+    high, end = force >= 0.5 * force.max(), _evenly(run, cushion)[-1]
+    wanted = [extreme(run, name)[1] for name in (transmitted, on_body, depth)]
+    before, after = time[high][:1], time[~high & (time > wanted[0])][:1]
+    chosen: list[float] = []
+    for at in map(float, (*wanted, *before, *after, end)):
+        if all(abs(at - other) >= _APART * (end - time[0]) for other in chosen):
+            chosen.append(at)
+    return chosen[:_MOMENTS]
 
 
 def snapshots(run: StoredRun, cushion: str, file: Path) -> None:

@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from contextlib import suppress
 from copy import deepcopy
 
 import pytest
@@ -27,6 +28,22 @@ PROJECT = {
     "cushion": {"thickness": "1.2 m"},
     "roof": {"section": "H-400x400x13x21", "span": "9 m", "spacing": "1.5 m"},
 }
+COMPLETE = {
+    "rock": {"mass": "2.5 t", "density": 2600.0, "drop_height": "25 m", "spin": 1.0, "place": 4.0},
+    "cushion": {
+        "thickness": "1.2 m",
+        "width": "8 m",
+        "material": "own",
+        "effective_width": "spheres",
+    },
+    "material": {"own": {"like": "poured sand", "modulus": "40 kgf/cm2"}},
+    "roof": {"section": "HE 400 B", "steel": "S355", "span": "9 m", "spacing": 1.5, "number": 9}
+    | {"slab": {"thickness": 0.2}, "bending": "elastic"},
+    "supports": {"kind": "elastic", "stiffness": "60 kN/mm"},
+    "criteria": {"deflection": "30 mm", "stress": "200 MPa"},
+    "numerics": {"clearance": "20 cm", "seed": 3, "elements": 35},
+}
+"""A project with fields of every table."""
 
 
 def changed(**tables):
@@ -128,11 +145,85 @@ def test_everything_wrong_is_told_at_once_with_line_and_column(tmp_path):
         encoding="utf-8",
     )
     told = refusals(file)
-    assert len(told) == 6
+    assert len(told) == 7
     assert "line 2, column 1: rock.mass: must be a mass, in kg (given: '2.5 m'" in told[0]
-    assert "there is no unit 'kgff'; did you mean" in told[2]
-    assert "cushion.thicknes: there is no such key; did you mean thickness" in told[3]
-    assert "line 8, column 1: roof.span: must be greater than 0" in told[5] + told[4]
+    assert "cushion.thicknes: there is no such key; did you mean thickness" in told[2]
+    assert "there is no unit 'kgff'; did you mean" in told[3]
+    assert "roof: spacing is missing" in told[4]
+    assert "line 8, column 1: roof.span: must be greater than 0" in told[5]
+
+
+FAULTS = """
+[rock]
+mass = "2.5 m"                      # another kind of unit
+drop_height = "25 m"
+velocity = "22 m/s"                 # two ways to say one thing
+angle = "95 deg"                    # strikes nothing
+[cushion]
+thickness = -1.2                    # impossible
+material = "compact sand"           # unknown
+effective_width = "girder spacin"   # no rule
+[material.own]
+like = "poured sandd"               # unknown
+modulus = "3 kg"
+[roof]
+section = "H-400x400x13x22"         # not in the tables
+area = "90 cm2"                     # beside a section
+steel = "S335"                      # unknown
+span = "9 m"
+spacng = "1.5 m"                    # no such key
+number = 2.5                        # not whole
+[supports]
+kind = "elastic"                    # without a stiffness
+file = "no.toml"                    # of another kind
+[criteria]
+deflection = "30 kgff"              # no unit
+[numerics]
+elements = 2                        # too few
+"""
+TOLD = {
+    3: "rock.mass: must be a mass, in kg (given: '2.5 m', which is a length)",
+    5: "two ways to say one thing",
+    6: "it does not strike",
+    8: "cushion.thickness: must be greater than 0",
+    9: "there is no material 'compact sand'; did you mean compacted sand",
+    10: "effective_width is neither a rule nor a length",
+    12: "there is no material 'poured sandd'; did you mean poured sand",
+    13: "material.own.modulus: must be a pressure",
+    15: "there is no section 'H-400x400x13x22' in the tables; did you mean H-400x400x13x21",
+    16: "has its own area",
+    17: "there is no steel 'S335'; did you mean S355",
+    19: "roof.spacng: there is no such key; did you mean spacing",
+    20: "roof.number: must be a whole number",
+    21: "supports: stiffness is missing",
+    23: "supports.file: is for piles supports",
+    25: "there is no unit 'kgff'",
+    27: "numerics.elements: must be greater than or equal to 3",
+}
+"""What is told by line: of each kind of fault one."""
+
+
+def test_a_fault_of_the_form_hides_no_other_and_no_other_follows_from_it(tmp_path):
+    """A key that was meant for another is not missing; a value that is refused contradicts none."""
+    file = tmp_path / "wrong.toml"
+    file.write_text(FAULTS, encoding="utf-8")
+    told = refusals(file)
+    for (line, text), problem in zip(TOLD.items(), told, strict=True):
+        assert problem.startswith(f"{file}, line {line}, column 1: "), problem
+        assert text in problem
+
+
+@given(st.data())
+def test_whatever_is_of_the_wrong_form_is_refused_and_never_ends_in_an_error_of_ours(data):
+    """Each value of a complete project in turn as something else."""
+    project = deepcopy(COMPLETE)
+    fields = [(table, key) for table, entries in project.items() for key in entries]
+    wrong = st.sampled_from([None, [], {}, True, -1, "", "5 furlongs", "0.1 kg.m", "nan", {"a": 1}])
+    chosen = data.draw(st.lists(st.sampled_from(fields), min_size=1, max_size=4, unique=True))
+    for table, key in chosen:
+        project[table][key] = data.draw(wrong)
+    with suppress(InputRefused):
+        prepare(project)
 
 
 @pytest.mark.parametrize(

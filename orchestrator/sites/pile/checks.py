@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import Problem
+from ...input_files.form import if_formed, told_if_formed
 from ...input_files.places import Key, Places
-from .site import PileSite
+from .site import PileSite, ShaftLayer
 
 MOST_ROWS = 20_000_000
 """Largest number of rows of the traces of all blows, a GiB and a half."""
@@ -14,10 +15,8 @@ LEAST_TRAVELS = 4.0
 """Travel times that a blow takes at least: to the toe and back, twice."""
 
 
-def site_problems(
-    site: PileSite, where: Places, time: float, step: float, travel_time: float
-) -> Iterator[Problem]:
-    """Yield what is wrong with a pile of the right form.
+def site_problems(site: PileSite, where: Places) -> Iterator[Problem]:
+    """Yield what is wrong with a pile, as far as its form is right.
 
     Parameters
     ----------
@@ -25,34 +24,36 @@ def site_problems(
         Data of the pile.
     where : Places
         Of the values of the site.
-    time : float
-        Of a blow (s).
-    step : float
-        Of the exchange (s).
-    travel_time : float
-        Of a wave from head to toe (s).
 
     Yields
     ------
     Problem
-        Faults of depths, resistances and times.
+        Faults of depths and resistances.
     """
-    yield from _depth_problems(site, where)
-    yield from _weight_problems(site, where)
-    yield from _time_problems(site, where.of(("time",)), time, step, travel_time)
+    for i, layer in enumerate(if_formed(getattr, site, "shaft") or ()):
+        yield from told_if_formed(_layer_problems, site, i, layer, where)
+    yield from told_if_formed(_gauge_problems, site, where)
+    yield from told_if_formed(_weight_problems, site, where)
 
 
-def _depth_problems(site: PileSite, where: Places) -> Iterator[Problem]:
-    """Yield the faults of soil and gauge that are not on the rod."""
-    length = sum(section.length for section in site.rod)
-    for i, layer in enumerate(site.shaft):
-        if layer.bottom <= layer.top:
-            text = f"the layer goes from {layer.top:g} m to {layer.bottom:g} m"
-            yield Problem(where.of(("shaft", i)), text, "let it end below its beginning")
-        elif layer.bottom > length * (1.0 + 1e-9):
-            text = f"{layer.bottom:g} m is below the toe, at {length:g} m"
-            remedy = "end the layer there, or lengthen the rod"
-            yield Problem(where.of(("shaft", i, "to")), text, remedy)
+def _length(site: PileSite) -> float:
+    """Return the length of a rod (m)."""
+    return sum(section.length for section in site.rod)
+
+
+def _layer_problems(site: PileSite, i: int, layer: ShaftLayer, where: Places) -> Iterator[Problem]:
+    """Yield a layer of soil that is upside down or not on the rod."""
+    if layer.bottom <= layer.top:
+        text = f"the layer goes from {layer.top:g} m to {layer.bottom:g} m"
+        yield Problem(where.of(("shaft", i)), text, "let it end below its beginning")
+    elif layer.bottom > _length(site) * (1.0 + 1e-9):
+        text = f"{layer.bottom:g} m is below the toe, at {_length(site):g} m"
+        remedy = "end the layer there, or lengthen the rod"
+        yield Problem(where.of(("shaft", i, "to")), text, remedy)
+
+
+def _gauge_problems(site: PileSite, where: Places) -> Iterator[Problem]:
+    length = _length(site)
     if site.gauge > length:
         text = f"the gauge at {site.gauge:g} m is below the toe"
         yield Problem(where.of(("gauge",)), text, f"give at most {length:g} m")
@@ -79,10 +80,24 @@ def _resistances(site: PileSite) -> Iterator[tuple[float, Key]]:
         yield resistance, ("bearing", "resistances", i)
 
 
-def _time_problems(
+def time_problems(
     site: PileSite, place: str, time: float, step: float, travel_time: float
 ) -> Iterator[Problem]:
-    """Yield the faults of a time that is too long to be kept, or too short for a blow."""
+    """Yield the faults of a time that is too long to be kept, or too short for a blow.
+
+    Parameters
+    ----------
+    site : PileSite
+        Data of the pile.
+    place : str
+        Of the time in the file.
+    time, step, travel_time : float
+        Of a blow, of the exchange, of a wave from head to toe (s).
+
+    Yields
+    ------
+    Problem
+    """
     rows = site.blows * time / step
     if rows > MOST_ROWS:
         text = (

@@ -3,7 +3,7 @@
 Everything that is wrong with a site is collected before it is refused.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -18,13 +18,15 @@ from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
 from ...input_files.fields import doubts, explained
-from ...input_files.form import first, formed
+from ...input_files.form import first, formed, if_formed, told_if_formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import setter
 from ..source import SiteLike, SiteSource, site_source
-from .checks import site_problems
+from .checks import site_problems, time_problems
 from .site import QUAKE, SHAFT_DAMPING, PileSite, Section
 
+Settings = Callable[[PileSite], Iterator[tuple[str, Any, Key]]]
+"""Yields name, value and place of the parameters of a component."""
 SHORTEST, TRAVELS = 0.1, 20.0
 """Time of a blow where the site has none: the longer of this (s) and so many travel times."""
 
@@ -185,12 +187,12 @@ def prepare(site: SiteLike, blows: int | None = None) -> PreparedPile:
     where = source.places
     problems: list[Problem] = []
     data = formed(PileSite, source.content, where, problems)
-    if data is None:
-        raise InputRefused(first(problems))
     doubted = tuple(doubts(data, where))
     pile = PreparedPile(source, data, doubted)
-    problems += _value_problems(data, where)
-    problems += site_problems(data, where, pile.time, pile.step, pile.travel_time)
+    for of_component in (("Hammer", _hammer_settings), ("PileRod", _rod_settings)):
+        if_formed(_check_values, data, *of_component, where, problems)
+    problems += site_problems(data, where)
+    problems += told_if_formed(_time_problems, pile)
     if not problems:
         problems += _refusals(pile)
     if problems:
@@ -237,14 +239,16 @@ def _rod_settings(site: PileSite) -> Iterator[tuple[str, Any, Key]]:
     yield "exchange", "sequential", ("rod",)
 
 
-def _value_problems(site: PileSite, where: Places) -> list[Problem]:
-    """Return the values that the components do not accept."""
-    problems: list[Problem] = []
-    setting = setter(component("Hammer").instance(), where, problems)
-    for name, value, key in _hammer_settings(site):
-        setting(name, value, key)
-    setting = setter(component("PileRod").instance(), where, problems)
-    for name, value, key in _rod_settings(site):
-        if "[" not in name:
-            setting(name, value, key)
-    return problems
+def _check_values(
+    site: PileSite, name: str, settings: Settings, where: Places, problems: list[Problem]
+) -> None:
+    """Append the values that a component does not accept."""
+    setting = setter(component(name).instance(), where, problems)
+    for parameter, value, key in settings(site):
+        if "[" not in parameter:
+            setting(parameter, value, key)
+
+
+def _time_problems(pile: PreparedPile) -> Iterator[Problem]:
+    place = pile.source.places.of(("time",))
+    yield from time_problems(pile.site, place, pile.time, pile.step, pile.travel_time)

@@ -8,6 +8,7 @@ from ...core.errors import Problem
 from ...core.input_text import shown
 from ...core.results.metric import identifier
 from ...core.system.names import nearest
+from ...input_files.form import if_formed, told_if_formed
 from ...input_files.places import Key, Places
 from .profile import Node
 from .rocks import rock_problems, rock_sampler, start_range
@@ -29,7 +30,7 @@ RESERVED = "largest"
 
 
 def site_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iterator[Problem]:
-    """Yield what is wrong with a slope of the right form.
+    """Yield what is wrong with a slope, as far as its form is right.
 
     Parameters
     ----------
@@ -45,23 +46,33 @@ def site_problems(site: SlopeSite, nodes: Sequence[Node], where: Places) -> Iter
     Problem
         Faults of rock, model, search lines, barriers, and places that are off the profile.
     """
-    yield from rock_problems(site, nodes, where)
+    yield from told_if_formed(rock_problems, site, nodes, where)
+    for check in (_model_problems, _name_problems):
+        yield from told_if_formed(check, site, where)
+    for i, line in enumerate(if_formed(getattr, site, "line") or ()):
+        yield from told_if_formed(_line_problems, line, ("line", i), where)
+    for i, barrier in enumerate(if_formed(getattr, site, "barrier") or ()):
+        yield from told_if_formed(_barrier_problems, site, i, barrier, where)
+    if len(nodes) > 1:
+        yield from told_if_formed(_range_problems, site, nodes, where)
+
+
+def _barrier_problems(
+    site: SlopeSite, i: int, barrier: Barrier, where: Places
+) -> Iterator[Problem]:
+    if reach(barrier, site) <= 0.0:
+        text = (
+            f"height = {barrier.height:g} m is not above its free border, "
+            f"{free_border(barrier, site):g} m: it would hold no rock"
+        )
+        remedy = "raise height, or set free_border (by default the rock's radius)"
+        yield Problem(where.of(("barrier", i)), text, remedy)
+
+
+def _model_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
     for name in (name for name in site.model if name not in MODEL):
         text = f"model.{name}: there is no such key"
         yield Problem(where.of(("model", name)), text, nearest(name, MODEL))
-    yield from _name_problems(site, where)
-    for i, line in enumerate(site.line):
-        yield from _line_problems(line, ("line", i), where)
-    for i, barrier in enumerate(site.barrier):
-        if reach(barrier, site) <= 0.0:
-            text = (
-                f"height = {barrier.height:g} m is not above its free border, "
-                f"{free_border(barrier, site):g} m: it would hold no rock"
-            )
-            remedy = "raise height, or set free_border (by default the rock's radius)"
-            yield Problem(where.of(("barrier", i)), text, remedy)
-    if len(nodes) > 1:
-        yield from _range_problems(site, nodes, where)
 
 
 def _name_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:

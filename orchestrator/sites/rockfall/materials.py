@@ -8,6 +8,7 @@ from typing import Any
 
 from ...core.errors import Problem
 from ...core.system.names import nearest
+from ...input_files.form import if_formed
 from ...input_files.places import Places
 from .site import Material, Scatter
 
@@ -49,26 +50,35 @@ def materials(
     Returns
     -------
     dict of str to Material
-        Those that ship and those of the site.
+        Those that ship and those of the site that have a form.
     """
     every = dict(shipped())
     for name, material in own.items():
-        base = shipped().get(material.like or "")
-        if material.like is not None and base is None:
-            place = where.of(("material", name, "like"))
-            text = f"there is no material {material.like!r}"
-            problems.append(Problem(place, text, nearest(material.like, shipped())))
-            continue
-        problems += _mixed(name, material, where)
-        complete = _completed(material, base)
-        wanted = (*(COEFFICIENTS if by_coefficients(complete) else DRSP), *COMMON)
-        missing = [quantity for quantity in wanted if getattr(complete, quantity) is None]
-        if missing:
-            remedy = 'give them, or name with like = "..." the material that has them'
-            text = f"material {name} has no {', '.join(missing)}"
-            problems.append(Problem(where.of(("material", name)), text, remedy))
-        every[name] = complete
+        complete = if_formed(_complete, name, material, where, problems)
+        if complete is not None:
+            every[name] = complete
     return every
+
+
+def _complete(
+    name: str, material: Material, where: Places, problems: list[Problem]
+) -> Material | None:
+    """Return a material with all of its values; None if the one that it is like does not exist."""
+    base = shipped().get(material.like or "")
+    if material.like is not None and base is None:
+        place = where.of(("material", name, "like"))
+        text = f"there is no material {material.like!r}"
+        problems.append(Problem(place, text, nearest(material.like, shipped())))
+        return None
+    problems += _mixed(name, material, where)
+    complete = _completed(material, base)
+    wanted = (*(COEFFICIENTS if by_coefficients(complete) else DRSP), *COMMON)
+    missing = [quantity for quantity in wanted if getattr(complete, quantity) is None]
+    if missing:
+        remedy = 'give them, or name with like = "..." the material that has them'
+        text = f"material {name} has no {', '.join(missing)}"
+        problems.append(Problem(where.of(("material", name)), text, remedy))
+    return complete
 
 
 def by_coefficients(material: Material) -> bool:

@@ -16,7 +16,7 @@ from rockshed.components.slope_rockfall.records import ROCK
 
 from ...core.errors import InputRefused, Problem
 from ...input_files.fields import doubts, explained
-from ...input_files.form import first, formed
+from ...input_files.form import first, formed, if_formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import Setting, setter
 from ..source import SiteLike, SiteSource, site_source
@@ -26,7 +26,7 @@ from .checks import MODEL, site_problems
 from .profile import Node, unfolded, with_ground
 from .reading import read_nodes
 from .rocks import RockSampler, rock_sampler
-from .site import Material, Profile, SlopeSite
+from .site import Material, SlopeSite
 from .start_check import start_faults
 
 COMPONENT = "SlopeRockfall"
@@ -95,17 +95,15 @@ def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) 
     where = source.places
     problems: list[Problem] = []
     data = formed(SlopeSite, source.content, where, problems)
-    if data is None:
-        _check_profile_alone(source, problems)
-        raise InputRefused(first(problems))
-    known = ground.materials(data.material, where, problems)
-    data = _with_boulders(data, source, problems)
+    is_formed = not problems
     notes: list[str] = []
-    nodes = read_nodes(data.profile, source.folder, where, known, problems)
-    nodes = unfolded(nodes, problems, notes)
-    nodes = with_ground(nodes, data.ground, where, known, problems)
+    known = if_formed(lambda: ground.materials(data.material, where, problems)) or {}
+    data = if_formed(_with_boulders, data, source, problems) or data
+    nodes = if_formed(_nodes, data, source, problems, notes) or []
     problems += site_problems(data, nodes, where)
-    instance = _instance(data, nodes, known, where, problems) if len(nodes) > 1 else None
+    instance = None
+    if is_formed and len(nodes) > 1:
+        instance = _instance(data, nodes, known, where, problems)
     doubted = tuple(doubts(data, where))
     if problems or instance is None:
         raise InputRefused(first(explained(problems, doubted)))
@@ -132,16 +130,14 @@ def _with_boulders(site: SlopeSite, source: SiteSource, problems: list[Problem])
     return site.model_copy(update={"rock": rock})
 
 
-def _check_profile_alone(source: SiteSource, problems: list[Problem]) -> None:
-    """Append the faults of the profile, where the form of something else is wrong."""
-    profile = source.content.get("profile")
-    own = source.content.get("material", {})
-    if isinstance(profile, dict) and isinstance(own, dict):
-        shape = formed(Profile, profile, source.places, [])  # its faults have been told
-        if shape is not None:
-            known = {*ground.shipped(), *own}
-            nodes = read_nodes(shape, source.folder, source.places, known, problems)
-            unfolded(nodes, problems, [])
+def _nodes(
+    data: SlopeSite, source: SiteSource, problems: list[Problem], notes: list[str]
+) -> list[Node]:
+    """Return the nodes of the profile, with the materials of the cells that begin there."""
+    known = {*ground.shipped(), *data.material}
+    read = read_nodes(data.profile, source.folder, source.places, known, problems)
+    nodes = unfolded(read, problems, notes)
+    return if_formed(with_ground, nodes, data.ground, source.places, known, problems) or nodes
 
 
 def _instance(

@@ -8,6 +8,7 @@ from rockshed.components.sand_cushion.declarations import SIZES
 from rockshed.components.sand_cushion.models import SPREAD
 
 from ...core.errors import Problem
+from ...input_files.form import told_if_formed
 from ...input_files.places import Key, Places
 from .geometry import ShedLayout, line_mass
 from .site import ShedProject
@@ -154,11 +155,18 @@ def support_problems(project: ShedProject, where: Places) -> Iterator[Problem]:
     ------
     Problem
     """
-    supports = project.supports
     for kind, key in (("elastic", "stiffness"), ("piles", "file")):
-        given = getattr(supports, key) is not None
-        if given and supports.kind != kind:
-            text = f"is for {kind} supports, and kind is {supports.kind}"
-            yield _at(where, ("supports", key), text, "leave one of both out")
-        if not given and supports.kind == kind:
-            yield _at(where, ("supports",), f"{key} is missing", f"{kind} supports need it")
+        yield from told_if_formed(_support_problems, project, kind, key, where)
+
+
+def _support_problems(
+    project: ShedProject, kind: str, key: str, where: Places
+) -> Iterator[Problem]:
+    """Yield a field that a kind of support needs, and one that belongs to another."""
+    supports = project.supports
+    given = getattr(supports, key) is not None
+    if given and supports.kind != kind:
+        text = f"is for {kind} supports, and kind is {supports.kind}"
+        yield _at(where, ("supports", key), text, "leave one of both out")
+    if not given and supports.kind == kind:
+        yield _at(where, ("supports",), f"{key} is missing", f"{kind} supports need it")

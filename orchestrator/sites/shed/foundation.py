@@ -1,7 +1,6 @@
-"""Piles of a pile file, or springs, under the supports of a shed: rods with their soil.
+"""Piles of a pile file under the supports of a shed: rods with their soil.
 
-A pile stands under each end of each girder; those of the girders that take part act together. An
-elastic support is a short stiff rod on a spring that yields nowhere and only pushes.
+A pile stands under each end of each girder; those of the girders that take part act together.
 """
 
 import math
@@ -22,30 +21,6 @@ STIFF_END = 5.0
 
 The limit of the rod is 1, and near it an exchange makes energy.
 """
-_SPRING_SEGMENTS = 4
-"""Segments of the rod of an elastic support."""
-_SPRING_SPEED, _SPRING_DENSITY = 5000.0, 7850.0
-"""Wave speed (m/s) and density (kg/m3) of that rod."""
-_FREE_OF_YIELDING = 1e4
-"""Ultimate resistance of an elastic support / its load at rest."""
-SPRING_EXCHANGE = 1e-5
-"""Exchange step on elastic supports (s): their rods are light."""
-
-
-@dataclass(frozen=True)
-class FoundationPart:
-    """The support under one end of a girder.
-
-    Attributes
-    ----------
-    stiffness : float or None
-        Of an elastic support, for all girders that take part (N/m).
-    pile : PileSite or None
-        The pile.
-    """
-
-    stiffness: float | None = None
-    pile: PileSite | None = None
 
 
 @dataclass(frozen=True)
@@ -138,47 +113,3 @@ def pile_rod(pile: PileSite, piles: float, exchange: float) -> SupportRod:
 
 def _numbers(values: NDArray[np.float64]) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
-
-
-def spring_rod(stiffness: float, load: float, end_stiffness: float, exchange: float) -> SupportRod:
-    """Return an elastic support as a rod on a spring.
-
-    Rod and spring in a row have the stiffness.
-
-    Parameters
-    ----------
-    stiffness : float
-        Of the support (N/m).
-    load : float
-        At rest (N).
-    end_stiffness : float
-        Of the end of the roof (N/m), which the impedance of the rod has to match.
-    exchange : float
-        Exchange step (s).
-
-    Returns
-    -------
-    SupportRod
-    """
-    length = _SPRING_SEGMENTS * exchange * _SPRING_SPEED
-    least = STIFF_END * end_stiffness * exchange
-    own = 10.0 * stiffness * _SPRING_SEGMENTS * exchange  # ten times as stiff as the support
-    area = max(least, own) / (_SPRING_DENSITY * _SPRING_SPEED)
-    modulus = _SPRING_DENSITY * _SPRING_SPEED**2
-    spring = 1.0 / (1.0 / stiffness - length / (modulus * area))
-    resistance = _FREE_OF_YIELDING * load
-    idle = (0.0,) * _SPRING_SEGMENTS
-    return SupportRod(
-        (length,),
-        (area,),
-        (modulus,),
-        (_SPRING_DENSITY,),
-        _SPRING_SEGMENTS,
-        idle,
-        (1.0,) * _SPRING_SEGMENTS,
-        idle,
-        resistance,
-        resistance / spring,
-        0.0,
-        0.0,
-    )

@@ -10,15 +10,8 @@ from rockshed.components.common.units import standard_gravity
 from rockshed.components.sand_cushion.measures import contact_frequency
 from rockshed.components.sand_cushion.models import MODELS, SPREAD
 
-from .foundation import (
-    SPRING_EXCHANGE,
-    STIFF_END,
-    FoundationPart,
-    SupportRod,
-    impedance,
-    pile_rod,
-    spring_rod,
-)
+from ..pile.site import PileSite
+from .foundation import STIFF_END, SupportRod, impedance, pile_rod
 from .site import Numerics, SandMaterial
 from .yielding import Corners
 
@@ -126,7 +119,9 @@ class RoofPart:
     deck_mass : float
         Mass of the slab on it, by area (kg/m2).
     supports : str
-        ``simple`` or ``fixed``.
+        ``simple``, ``fixed`` or ``elastic``.
+    support_stiffness : float
+        Of the spring under each of its ends (N/m); 0 where the supports are not elastic.
     corners : Corners or None
         Of the moment-curvature line; None for an elastic section.
     """
@@ -145,6 +140,7 @@ class RoofPart:
     spacing: float
     deck_mass: float = 0.0
     supports: str = "simple"
+    support_stiffness: float = 0.0
     corners: Corners | None = None
 
 
@@ -175,7 +171,7 @@ class ShedLayout:
     seed : int
         Number of the packing.
     rod : SupportRod or None
-        What stands under each end of the roof; None where nothing gives way.
+        Piles under each end of the roof; None where there are none.
     """
 
     rock: RockPart
@@ -261,7 +257,7 @@ def layout(
     cushion: CushionPart,
     roof: RoofPart,
     numerics: Numerics,
-    foundation: FoundationPart | None = None,
+    pile: PileSite | None = None,
 ) -> ShedLayout:
     """Derive everything that follows from the parts of a shed.
 
@@ -271,8 +267,8 @@ def layout(
         The parts.
     numerics : Numerics
         Those of the rest that are given.
-    foundation : FoundationPart, optional
-        What the ends of the roof stand on.
+    pile : PileSite, optional
+        Under each end of each girder.
 
     Returns
     -------
@@ -284,9 +280,9 @@ def layout(
     element = element_length(roof.span, elements)
     exchange = numerics.exchange_step or min(
         exchange_step(cushion, roof, girders, radius, elements),
-        support_exchange(foundation, roof, girders, element),
+        support_exchange(pile, roof, girders, element),
     )
-    ratio = BEAM_DAMPING_RATIO if foundation is None else 0.0
+    ratio = BEAM_DAMPING_RATIO if pile is None else 0.0
     damping, beam_step = beam_steps(roof, element, ratio)
     clearance = numerics.clearance or CLEARANCE * 2.0 * radius * (1.0 + SPREAD)
     approach = (rock.velocity_y - speed_at_start(rock, clearance)) / standard_gravity
@@ -307,7 +303,7 @@ def layout(
         _multiple(interval, exchange),
         _multiple(10.0 * interval, exchange),
         numerics.seed,
-        _rod(foundation, line_mass(cushion, roof, girders), roof, girders, element, exchange),
+        None if pile is None else pile_rod(pile, girders, exchange),
     )
 
 
@@ -340,14 +336,14 @@ def end_stiffness(roof: RoofPart, girders: float, element: float) -> float:
 
 
 def support_exchange(
-    foundation: FoundationPart | None, roof: RoofPart, girders: float, element: float
+    pile: PileSite | None, roof: RoofPart, girders: float, element: float
 ) -> float:
-    """Return the longest exchange step that supports which give way allow (s).
+    """Return the longest exchange step that the supports allow (s).
 
     Parameters
     ----------
-    foundation : FoundationPart or None
-        The supports; rigid ones allow any.
+    pile : PileSite or None
+        Under them; without piles they allow any.
     roof : RoofPart
         One girder.
     girders : float
@@ -355,30 +351,10 @@ def support_exchange(
     element : float
         Length of an element (m).
     """
-    if foundation is None:
+    if pile is None:
         return math.inf
-    if foundation.pile is None:
-        return SPRING_EXCHANGE
-    limit = girders * impedance(foundation.pile) / end_stiffness(roof, girders, element)
+    limit = girders * impedance(pile) / end_stiffness(roof, girders, element)
     return _round_down(limit / STIFF_END)
-
-
-def _rod(
-    foundation: FoundationPart | None,
-    mass: float,
-    roof: RoofPart,
-    girders: float,
-    element: float,
-    exchange: float,
-) -> SupportRod | None:
-    """Return the rod under each end of the roof, whose mass by length with the sand is given."""
-    if foundation is None:
-        return None
-    if foundation.pile is not None:
-        return pile_rod(foundation.pile, girders, exchange)
-    load = 0.5 * standard_gravity * mass * roof.span
-    stiff = end_stiffness(roof, girders, element)
-    return spring_rod(float(foundation.stiffness or 0.0), load, stiff, exchange)
 
 
 def line_mass(cushion: CushionPart, roof: RoofPart, girders: float) -> float:
@@ -474,7 +450,8 @@ def beam_steps(roof: RoofPart, element: float, ratio: float) -> tuple[float, flo
     """Return Rayleigh damping of the stiffness and internal step of the beam.
 
     The chain's highest frequency is the larger of 4/R2 sqrt(EI/mu) and 2/R sqrt(EA/mu); on fixed
-    supports 5.54/R2 sqrt(EI/mu) (README of the beam).
+    supports 5.54/R2 sqrt(EI/mu), on springs sqrt(24 EI/R4 + 2 k/R)/sqrt(mu) at most (README of the
+    beam).
 
     Parameters
     ----------
@@ -491,9 +468,11 @@ def beam_steps(roof: RoofPart, element: float, ratio: float) -> tuple[float, flo
         Both in s.
     """
     mass = roof.density * roof.area
-    bending = 5.54 if roof.supports == "fixed" else 4.0
+    factor = {"fixed": 5.54**2, "elastic": 24.0}.get(roof.supports, 16.0)
+    spring = 2.0 * roof.support_stiffness / element
+    bending = factor * roof.elastic_modulus * roof.second_moment / element**4
     omega = max(
-        bending / element**2 * math.sqrt(roof.elastic_modulus * roof.second_moment / mass),
+        math.sqrt((bending + spring) / mass),
         2.0 / element * math.sqrt(roof.elastic_modulus * roof.area / mass),
     )
     damping = 2.0 * ratio / omega
@@ -521,6 +500,9 @@ def stop_time(
     load = line_mass(cushion, roof, girders)
     bending = girders * roof.elastic_modulus * roof.second_moment
     period = 2.0 * roof.span**2 / math.pi * math.sqrt(load / bending)
+    if roof.support_stiffness > 0.0:
+        on_springs = math.sqrt(0.5 * load * roof.span / (girders * roof.support_stiffness))
+        period = math.hypot(period, 2.0 * math.pi * on_springs)
     return math.ceil(100.0 * (approach + max(sinking, _BEAM_PERIODS * period))) / 100.0
 
 

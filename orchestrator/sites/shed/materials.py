@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...core.errors import Problem
 from ...core.system.names import nearest
+from ...input_files.form import if_formed
 from ...input_files.places import Places
 from .site import SandMaterial
 
@@ -41,18 +42,27 @@ def sands(
     Returns
     -------
     dict of str to SandMaterial
-        Those that ship and those of the project.
+        Those that ship and those of the project whose form is right.
     """
     every = dict(shipped_sands())
     for name, material in own.items():
-        base = shipped_sands().get(material.like or DEFAULT_MATERIAL)
-        if base is None:
-            text = f"there is no material {material.like!r}"
-            remedy = nearest(str(material.like), shipped_sands())
-            problems.append(Problem(where.of(("material", name, "like")), text, remedy))
-            base = shipped_sands()[DEFAULT_MATERIAL]
-        every[name] = _completed_sand(material, base)
+        base = if_formed(_base, name, material, where, problems)
+        complete = if_formed(_completed_sand, material, base or shipped_sands()[DEFAULT_MATERIAL])
+        if complete is not None:
+            every[name] = complete
     return every
+
+
+def _base(
+    name: str, material: SandMaterial, where: Places, problems: list[Problem]
+) -> SandMaterial | None:
+    """Return the material that another one is like."""
+    base = shipped_sands().get(material.like or DEFAULT_MATERIAL)
+    if base is None:
+        text = f"there is no material {material.like!r}"
+        remedy = nearest(str(material.like), shipped_sands())
+        problems.append(Problem(where.of(("material", name, "like")), text, remedy))
+    return base
 
 
 def _completed_sand(material: SandMaterial, base: SandMaterial) -> SandMaterial:

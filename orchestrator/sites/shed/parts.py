@@ -8,14 +8,14 @@ from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
 from ...core.system.names import nearest
-from ...input_files.form import formed, read_toml
+from ...input_files.form import if_formed, read_toml
 from ...input_files.places import Key, Places
 from ...input_files.quantities import in_si
+from ..pile.preparation import prepare as prepare_pile
 from ..pile.site import PileSite
 from .effective_width import ON_A_SLAB, ON_GIRDERS, RULES, Spread
-from .foundation import FoundationPart
 from .geometry import CushionPart, RockPart, RoofPart
-from .materials import DEFAULT_MATERIAL, sands
+from .materials import DEFAULT_MATERIAL, sands, shipped_sands
 from .reinforced_concrete import Bars, Concrete, Strip, StripError, strip_corners
 from .sections import section
 from .site import Roof, ShedProject, StrikingRock
@@ -29,6 +29,8 @@ CONCRETE_DENSITY = 2500.0
 _TOLERANCE = 0.02
 """Part by which two values of one thing may differ."""
 _STEEPEST = math.radians(85.0)
+_ENDS = {"fixed": "fixed", "elastic": "elastic"}
+"""Ends of the beam by the kind of supports; of all others they are simple."""
 
 
 def rock_part(project: ShedProject, where: Places, problems: list[Problem]) -> RockPart | None:
@@ -49,25 +51,31 @@ def rock_part(project: ShedProject, where: Places, problems: list[Problem]) -> R
         None where it is not known.
     """
     rock = project.rock
-    body = _body(rock, where, problems)
-    speed = _speed(rock, where, problems)
-    if abs(rock.angle) > _STEEPEST:
-        text = f"angle is {math.degrees(rock.angle):.4g} deg from the vertical: it does not strike"
-        remedy = 'give at most 85 deg; a bare number is in rad, "15 deg" is written with its unit'
-        problems.append(Problem(where.of(("rock", "angle")), text, remedy))
-        return None
-    if body is None or speed is None:
+    body = if_formed(_body, rock, where, problems)
+    speed = if_formed(_speed, rock, where, problems)
+    angle = if_formed(_angle, rock, where, problems)
+    if body is None or speed is None or angle is None:
         return None
     mass, radius, density = body
     return RockPart(
         mass,
         radius,
         density,
-        speed * math.sin(rock.angle),
-        speed * math.cos(rock.angle),
+        speed * math.sin(angle),
+        speed * math.cos(angle),
         rock.spin,
         0.5 * project.roof.span if rock.place is None else rock.place,
     )
+
+
+def _angle(rock: StrikingRock, where: Places, problems: list[Problem]) -> float | None:
+    """Return the angle of the velocity from the vertical (rad)."""
+    if abs(rock.angle) <= _STEEPEST:
+        return rock.angle
+    text = f"angle is {math.degrees(rock.angle):.4g} deg from the vertical: it does not strike"
+    remedy = 'give at most 85 deg; a bare number is in rad, "15 deg" is written with its unit'
+    problems.append(Problem(where.of(("rock", "angle")), text, remedy))
+    return None
 
 
 def _body(
@@ -139,12 +147,10 @@ def roof_part(project: ShedProject, where: Places, problems: list[Problem]) -> R
     roof = project.roof
     if roof.concrete is not None:
         return _concrete(project, where, problems)
-    if roof.spacing is None:
-        text = "roof: spacing is missing"
-        problems.append(Problem(where.of(("roof",)), text, "give the distance of the girders"))
-    steel = _steel(roof, where, problems)
-    values = _section_values(roof, where, problems)
-    if steel is None or values is None or roof.spacing is None:
+    spacing = if_formed(_spacing, roof, where, problems)
+    steel = if_formed(_steel, roof, where, problems)
+    values = if_formed(_section_values, roof, where, problems)
+    if steel is None or values is None or spacing is None:
         return None
     flange = values.pop("flange")
     stress = roof.yield_stress or steel.yield_at(flange)
@@ -161,11 +167,20 @@ def roof_part(project: ShedProject, where: Places, problems: list[Problem]) -> R
         elastic_modulus=modulus,
         yield_stress=stress,
         span=roof.span,
-        spacing=roof.spacing,
+        spacing=spacing,
         deck_mass=roof.slab.thickness * roof.slab.density if roof.slab else 0.0,
-        supports=_ends(project),
+        supports=_ENDS.get(project.supports.kind, "simple"),
+        support_stiffness=project.supports.stiffness or 0.0,
         corners=_steel_corners(roof, values, modulus, stress),
     )
+
+
+def _spacing(roof: Roof, where: Places, problems: list[Problem]) -> float | None:
+    """Return the distance of the girders (m)."""
+    if roof.spacing is None:
+        text = "roof: spacing is missing"
+        problems.append(Problem(where.of(("roof",)), text, "give the distance of the girders"))
+    return roof.spacing
 
 
 def _steel_corners(
@@ -179,10 +194,6 @@ def _steel_corners(
     return steel_corners(SteelSection(modulus, second_moment, elastic, plastic, stress))
 
 
-def _ends(project: ShedProject) -> str:
-    return "fixed" if project.supports.kind == "fixed" else "simple"
-
-
 def _steel(roof: Roof, where: Places, problems: list[Problem]) -> Steel | None:
     name = roof.steel or DEFAULT_STEEL
     if name not in steels():
@@ -194,17 +205,19 @@ def _steel(roof: Roof, where: Places, problems: list[Problem]) -> Steel | None:
 
 _OWN = ("area", "second_moment", "height")
 """Values that a section of one's own has."""
+_MODULI = ("section_modulus", "plastic_modulus")
+"""Values that it may have."""
 
 
 def _section_values(roof: Roof, where: Places, problems: list[Problem]) -> dict[str, float] | None:
     """Return area, moments, height and flange thickness (m) of a girder."""
-    own = [key for key in (*_OWN, "section_modulus", "plastic_modulus") if getattr(roof, key)]
     if roof.section is not None:
+        found = section(roof.section, where.of(("roof", "section")), problems)
+        own = [key for key in (*_OWN, "section_modulus", "plastic_modulus") if getattr(roof, key)]
         if own:
             text = f"roof: section {roof.section!r} has its own {', '.join(own)}"
             remedy = "leave them out, or the section"
             problems.append(Problem(where.of(("roof", own[0])), text, remedy))
-        found = section(roof.section, where.of(("roof", "section")), problems)
         if found is None:
             return None
         names = (*_OWN, "section_modulus", "plastic_modulus", "flange")
@@ -227,11 +240,11 @@ def _section_values(roof: Roof, where: Places, problems: list[Problem]) -> dict[
 def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> RoofPart | None:
     """Return a metre of a slab."""
     roof = project.roof
-    girder = ("section", "steel", "spacing", "number", "slab", "yield_stress", "mass", *_OWN)
-    if given := [key for key in girder if getattr(roof, key) is not None]:
+    girder = ("section", "steel", "spacing", "number", "slab", "yield_stress", "mass", *_MODULI)
+    if given := [key for key in (*girder, *_OWN) if if_formed(getattr, roof, key) is not None]:
         text = f"roof: {', '.join(given)} belong to girders, and a slab of concrete is given"
         problems.append(Problem(where.of(("roof", given[0])), text, "leave one of both out"))
-    corners = _concrete_corners(roof, where, problems)
+    corners = if_formed(_concrete_corners, roof, where, problems)
     if corners is None or roof.concrete is None:
         return None
     strip = roof.concrete
@@ -248,7 +261,8 @@ def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> R
         yield_stress=strip.bar_yield_stress,
         span=roof.span,
         spacing=1.0,
-        supports=_ends(project),
+        supports=_ENDS.get(project.supports.kind, "simple"),
+        support_stiffness=project.supports.stiffness or 0.0,
         corners=None if roof.bending == "elastic" else corners,
     )
 
@@ -286,10 +300,10 @@ def _concrete_corners(roof: Roof, where: Places, problems: list[Problem]) -> Cor
         return None
 
 
-def foundation_part(
+def pile_part(
     project: ShedProject, folder: Path, where: Places, problems: list[Problem]
-) -> FoundationPart | None:
-    """Return what the ends of the roof stand on.
+) -> PileSite | None:
+    """Return the pile that stands under each end of each girder.
 
     Parameters
     ----------
@@ -304,23 +318,25 @@ def foundation_part(
 
     Returns
     -------
-    FoundationPart or None
-        None where nothing gives way, or the pile is refused.
+    PileSite or None
+        None where there are no piles, or the file is refused.
     """
     supports = project.supports
-    if supports.kind == "elastic" and supports.stiffness is not None:
-        return FoundationPart(supports.stiffness)
     if supports.kind != "piles" or supports.file is None:
         return None
+    file = folder / supports.file
     try:
-        content, places = read_toml(folder / supports.file)
+        read_toml(file)
     except InputRefused as refusal:
         remedy = "name a file that `rockshed pile` takes"
         place = where.of(("supports", "file"))
         problems += [Problem(place, f"supports.file: {each}", remedy) for each in refusal.problems]
         return None
-    pile = formed(PileSite, content, places, problems)
-    return None if pile is None else FoundationPart(pile=pile)
+    try:
+        return prepare_pile(file).site
+    except InputRefused as refusal:
+        problems += refusal.problems
+        return None
 
 
 def cushion_part(
@@ -344,15 +360,15 @@ def cushion_part(
     CushionPart or None
         None where it is not known.
     """
-    thickness = _thickness(project, where, problems)
-    known = sands(project.material, where, problems)
-    name = _material(project, list(known), where, problems)
-    spread = Spread(rock.radius if rock else 0.0, thickness or 0.0, project.roof.spacing or 0.0)
-    effective, rule = _effective_width(project, spread, where, problems)
-    if thickness is None or name is None or effective is None or rock is None:
+    thickness = if_formed(_thickness, project, where, problems)
+    known = if_formed(lambda: sands(project.material, where, problems)) or {}
+    name = if_formed(_material, project, where, problems)
+    radius = rock.radius if rock else 0.0
+    effective = if_formed(_effective_width, project, radius, thickness or 0.0, where, problems)
+    if thickness is None or name not in known or effective is None or rock is None:
         return None
     width = project.cushion.width or project.roof.span
-    return CushionPart(thickness, width, effective, rule, name, known[name])
+    return CushionPart(thickness, width, *effective, str(name), known[str(name)])
 
 
 def _thickness(project: ShedProject, where: Places, problems: list[Problem]) -> float | None:
@@ -369,15 +385,16 @@ def _thickness(project: ShedProject, where: Places, problems: list[Problem]) -> 
     return total
 
 
-def _material(
-    project: ShedProject, known: list[str], where: Places, problems: list[Problem]
-) -> str | None:
+def _material(project: ShedProject, where: Places, problems: list[Problem]) -> str | None:
     """Return the name of the one material of a cushion."""
     cushion = project.cushion
+    known = [*shipped_sands(), *project.material]
     named: list[tuple[str, Key]] = [
-        (layer.material, ("cushion", "layers", i)) for i, layer in enumerate(cushion.layers)
+        (name, ("cushion", "layers", i))
+        for i, layer in enumerate(cushion.layers)
+        if (name := if_formed(getattr, layer, "material")) is not None
     ]
-    if not named:
+    if not cushion.layers:
         named = [(cushion.material or DEFAULT_MATERIAL, ("cushion", "material"))]
     elif cushion.material is not None:
         text = "cushion: the layers have materials, and material is given too"
@@ -398,30 +415,30 @@ def _material(
             "material with the values of the layer that the rock reaches"
         )
         problems.append(Problem(where.of(("cushion", "layers")), text, remedy))
-    return names[0] if names[0] in known else None
+    return next((name for name in names if name in known), None)
 
 
 def _effective_width(
-    project: ShedProject, spread: Spread, where: Places, problems: list[Problem]
-) -> tuple[float | None, str]:
-    """Return the effective width (m) and its rule."""
+    project: ShedProject, radius: float, thickness: float, where: Places, problems: list[Problem]
+) -> tuple[float, str] | None:
+    """Return the effective width (m) and its rule, which needs radius and thickness (m)."""
     given = project.cushion.effective_width
     place = where.of(("cushion", "effective_width"))
     if given is None:
         given = ON_A_SLAB if project.roof.concrete else ON_GIRDERS
     if isinstance(given, str) and given in RULES:
-        width = RULES[given].width(spread)
+        width = RULES[given].width(Spread(radius, thickness, project.roof.spacing or 0.0))
         if width <= 0.0 and project.roof.concrete:
             text = f"cushion: the rule {given!r} is for girders, and the roof is a slab"
             problems.append(Problem(place, text, f"take {ON_A_SLAB!r}, or give a length"))
-        return (width if width > 0.0 else None), given
+        return (width, given) if width > 0.0 else None
     try:
         width = in_si(given, "m") if isinstance(given, str) else float(given)
     except ValueError as error:
         text = f"cushion: effective_width is neither a rule nor a length: {error}"
         problems.append(Problem(place, text, f"rules: {nearest(str(given), RULES)}"))
-        return None, ""
+        return None
     if width <= 0.0:
         problems.append(Problem(place, "cushion: effective_width must be above 0", "raise it"))
-        return None, ""
+        return None
     return width, "given"

@@ -7,16 +7,18 @@ from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from ...core.errors import InputRefused, Problem
 from ...core.system.names import nearest
 from ...input_files.fields import ANY, EACH, doubts, explained, fields
-from ...input_files.form import first, formed
+from ...input_files.form import first, formed, if_formed
+from ...input_files.places import Places
 from ..source import SiteLike, SiteSource, site_source
 from .checks import fit_problems, support_problems
-from .geometry import ShedLayout, layout
-from .parts import cushion_part, foundation_part, rock_part, roof_part
+from .geometry import CushionPart, RockPart, RoofPart, ShedLayout, layout
+from .parts import cushion_part, pile_part, rock_part, roof_part
 from .site import ShedProject
 
 SECTIONS = ("rock", "cushion", "roof")
@@ -118,22 +120,38 @@ def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> Prep
     where = source.places
     problems: list[Problem] = []
     data = formed(ShedProject, source.content, where, problems)
-    if data is None:
-        raise InputRefused(first(problems))
     doubted = tuple(doubts(data, where))
-    rock = rock_part(data, where, problems)
-    roof = roof_part(data, where, problems)
-    cushion = cushion_part(data, rock, where, problems)
-    before = len(problems)
-    problems += support_problems(data, where)
-    foundation = foundation_part(data, source.folder, where, problems)
-    if rock is None or roof is None or cushion is None or len(problems) > before:
-        raise InputRefused(first(explained(problems, doubted)))
-    found = layout(rock, cushion, roof, data.numerics, foundation)
-    problems += fit_problems(data, found, where)
-    if problems:
+    rock = if_formed(rock_part, data, where, problems)
+    parts = (
+        rock,
+        if_formed(cushion_part, data, rock, where, problems),
+        if_formed(roof_part, data, where, problems),
+    )
+    found = if_formed(_laid_out, data, parts, source.folder, where, problems)
+    if problems or found is None:
         raise InputRefused(first(explained(problems, doubted)))
     return PreparedShed(source, data, found, doubted, dict(changes or {}))
+
+
+_Parts = tuple[RockPart | None, CushionPart | None, RoofPart | None]
+
+
+def _laid_out(
+    data: ShedProject, parts: _Parts, folder: Path, where: Places, problems: list[Problem]
+) -> ShedLayout | None:
+    """Return all numbers of a shed; None where a part or its supports are not known.
+
+    What is wrong with the supports is appended, and what does not fit.
+    """
+    before = len(problems)
+    problems += support_problems(data, where)
+    pile = pile_part(data, folder, where, problems)
+    rock, cushion, roof = parts
+    if rock is None or cushion is None or roof is None or len(problems) > before:
+        return None
+    found = layout(rock, cushion, roof, data.numerics, pile)
+    problems += fit_problems(data, found, where)
+    return found
 
 
 def _changed(source: SiteSource, changes: Mapping[str, Any]) -> SiteSource:

@@ -184,7 +184,7 @@ class Supports(Data):
         "hinged, fixed, elastic (stiffness) or piles (file)", "hinged"
     )
     stiffness: Stiffness | None = field(
-        "of an elastic support, of all girders that take part; it only pushes",
+        "of the spring under each end of each girder, or of each metre of a slab",
         usual=(1e5, 1e11),
         likely=("kN/m", "kN/mm"),
     )
