@@ -316,7 +316,7 @@ def _criteria(project: ShedProject, found: ShedLayout) -> list[tuple[str, float 
         ("stress", stress, "Pa"),
         ("plastic moment", moment, "N.m"),
         ("curvature", crushing, "1"),
-        ("deflection", given.deflection, "m"),
+        ("deflection", given.deflection_of(roof.span), "m"),
         ("pile set", given.pile_set, "m"),
         ("penetration", given.penetration or found.cushion.thickness, "m"),
     ]

@@ -215,6 +215,72 @@ def rows(run: StoredRun, known: Mapping[str, Known]) -> list[ComparedRow]:
     return shown + list(_couplings(run))
 
 
+@dataclass(frozen=True)
+class ShownMetric:
+    """A metric in the first of its units on the screen.
+
+    Attributes
+    ----------
+    name : str
+        Of the metric.
+    label, unit : str
+        Texts of the first columns.
+    scale : Scale
+        Unit and decimals.
+    """
+
+    name: str
+    label: str
+    unit: str
+    scale: Scale
+
+    def written(self, value: float) -> str:
+        """Return a value (SI) of the metric as it is shown."""
+        return _written(value, self.scale)
+
+
+def shown_metrics(run: StoredRun) -> list[ShownMetric]:
+    """Return the metrics of the table of a run, in its order, each once.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    list of ShownMetric
+        Times and places under a peak have its name in their label.
+    """
+    computed = headlines(run)
+    found = [
+        _shown(metric.name, f"{metric.name.removesuffix(name)}{_full_label(name)}", scales[0])
+        for name, (_, scales) in _ROWS.items()
+        for metric in computed
+        if names.without_component(metric.name) == name
+    ]
+    found += [
+        _shown(metric.name, f"utilisation: {criterion}", Scale("1", 2))
+        for metric in computed
+        if (criterion := names.criterion_of(names.without_component(metric.name)))
+    ]
+    found += [
+        _shown(entry.metric.name, entry.metric.name, Scale(entry.unit, entry.decimals))
+        for entry in reported(run)
+    ]
+    return found
+
+
+def _full_label(name: str) -> str:
+    """Return the label of a row by itself: one that is indented belongs to the row above."""
+    label = _ROWS[name][0]
+    return label if not label.startswith(" ") else name
+
+
+def _shown(name: str, label: str, scale: Scale) -> ShownMetric:
+    return ShownMetric(name, label, "" if scale.unit == "1" else scale.unit, scale)
+
+
 def _plain(metric: Metric) -> ComparedRow:
     value = metric.value if isinstance(metric.value, str) else f"{metric.value:.6g}"
     return ComparedRow(metric.name, "" if metric.unit == "1" else metric.unit, value)

@@ -1,24 +1,14 @@
 """Table of the band that the rules of the effective width make of the headlines of a run."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
-
-from rockshed.components.common.units import SCREEN_UNITS
 
 from ..core.results.reading import StoredRun
 from ..tables import Table
-from . import names
+from .comparison import ShownMetric, shown_metrics
 
-HEADLINES = {
-    names.PEAK_ROCK: ("kN", 0),
-    names.SETTLED_ROCK: ("kN", 0),
-    names.PEAK_TRANSMITTED: ("kN", 0),
-    names.SETTLED_TRANSMITTED: ("kN", 0),
-    names.PENETRATION: ("m", 2),
-    names.DEFLECTION: ("mm", 1),
-    names.PEAK_MOMENT: ("kN m", 0),
-    names.PEAK_REACTION: ("kN", 0),
-}
-"""Unit on the screen and decimals of the metrics whose band is told; those of all girders."""
+BAND = ("low", "run", "high")
+"""Names of the runs of a band: with the smallest width, that of the run, and the largest."""
 
 
 def width_band_table(run: StoredRun) -> Table:
@@ -32,17 +22,20 @@ def width_band_table(run: StoredRun) -> Table:
     Returns
     -------
     Table
-        Without a row where the band was not computed.
+        Every number of the run's own table; without a row where the band was not computed.
     """
-    found: dict[str, dict[str, Any]] = run.provenance.get("band", {})
-    titles = [f"{found[name]['width']:.2f} m" for name in found]
-    titles = [
-        f"{title} (this run)" if name == "run" else title for name, title in zip(found, titles)
-    ]
+    told = run.provenance.get("band", {})
+    found: list[Mapping[str, Any]] = [told[name] for name in BAND if name in told]
+    titles = [f"{entry['width']:.2f} m" for entry in found]
+    if found:
+        titles[BAND.index("run")] += " (this run)"
     made = Table(("quantity", "unit", *titles), right=titles, title="band of the effective width")
-    for name, (unit, decimals) in HEADLINES.items():
-        values = [entry["metrics"].get(name) for entry in found.values()]
-        if values and None not in values:
-            shown = (f"{value / SCREEN_UNITS[unit]:,.{decimals}f}" for value in values)
-            made.add(name, unit, *shown)
+    for shown in shown_metrics(run) if found else ():
+        made.add(shown.label, shown.unit, *_values(shown, found))
     return made
+
+
+def _values(shown: ShownMetric, found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return a metric as the runs of a band have it; nothing where one has none."""
+    values = [entry["metrics"].get(shown.name) for entry in found]
+    return ["" if value is None else shown.written(float(value)) for value in values]

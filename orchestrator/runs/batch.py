@@ -139,11 +139,14 @@ class _Order:
         With the recorded variables only.
     allow_unstable : bool
         Whether a step may be longer than the stable one.
+    design : Any
+        What the results are compared with, of a project.
     """
 
     key: str
     system: SystemSpec
     allow_unstable: bool
+    design: Any = None
 
 
 def run_all(
@@ -246,8 +249,9 @@ def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome) -> None:
 
 def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
-    system = prepare(task.request, note, fmus_of=fmus_of).system
-    return _Order(task.key, slim(system, task.columns), task.allow_unstable)
+    job = prepare(task.request, note, fmus_of=fmus_of)
+    system, design = slim(job.system, task.columns), job.facts.get("design")
+    return _Order(task.key, system, task.allow_unstable, design)
 
 
 def slim(system: SystemSpec, recorded: tuple[str, ...] = COLUMNS) -> SystemSpec:
@@ -378,7 +382,8 @@ def _run(order: _Order, began: float) -> Outcome:
         place = folder / "run"
         failure = None
         try:
-            run = simulate(order.system, place, allow_unstable=order.allow_unstable)
+            facts = {"design": order.design} if order.design else {}
+            run = simulate(order.system, place, allow_unstable=order.allow_unstable, facts=facts)
         except RunFailed as reason:
             failure = reason
             run = read_run(place)
@@ -406,8 +411,10 @@ def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: flo
 def metrics_of(run: "StoredRun") -> dict[str, float]:
     """Return the numbers of a run by the names of the metrics."""
     from ..metrics.headlines import headlines
+    from ..metrics.reported import reported
 
-    known = [*run.metrics.values(), *headlines(run)]
+    declared = (entry.metric for entry in reported(run))
+    known = [*run.metrics.values(), *headlines(run), *declared]
     return {m.name: float(m.value) for m in known if not isinstance(m.value, str)}
 
 

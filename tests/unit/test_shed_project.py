@@ -390,6 +390,33 @@ def fits(case):
     assert value["sand.gravity"] == value["rock.gravity"] == value["beam.gravity"]
 
 
+# ---------------------------------------------------------------- criteria
+
+
+def limits(**tables):
+    shed = prepare(changed(**tables))
+    return {entry["name"]: entry["limit"] for entry in shed_case(shed).facts["design"]["criteria"]}
+
+
+@pytest.mark.parametrize(
+    ("written", "limit"),
+    [("30 mm", 0.03), (0.03, 0.03), ("span/300", 0.03), (" span / 450.5 ", 9 / 450.5)],
+)
+def test_a_deflection_is_limited_to_a_length_or_a_part_of_the_span(written, limit):
+    assert limits(criteria={"deflection": written})["deflection"] == pytest.approx(limit)
+
+
+def test_a_part_of_the_span_moves_with_the_span():
+    with_part = {"criteria": {"deflection": "span/300"}}
+    assert limits(**with_part, roof={"span": "6 m"})["deflection"] == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("written", ["span", "span/0", "span/300 m", "300", "-3 mm", "3 kg", True])
+def test_a_deflection_that_is_neither_is_refused(written):
+    (told,) = refusals(changed(criteria={"deflection": written if written != "300" else [300]}))
+    assert "criteria.deflection" in told
+
+
 # ---------------------------------------------------------------- from Python
 
 

@@ -2,14 +2,18 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rockshed.analyses.shed import band as analysis
 from rockshed.core.errors import InputRefused
 from rockshed.metrics import names
+from rockshed.metrics.headlines import headlines
 from rockshed.metrics.width_band import width_band_table
 from rockshed.reports.of_run import _effective_width
+from rockshed.runs import batch
 from rockshed.runs.batch import COLUMNS, COMPLETE, FAILED, Outcome, Task, slim
+from rockshed.runs.building import silent
 from rockshed.runs.request import Request
 from rockshed.runs.run import Run
 from tests.unit.test_headlines import made_up
@@ -46,9 +50,21 @@ def test_a_project_is_run_with_the_smallest_and_the_largest_width(monkeypatch):
         {"low": 1.65, "run": 2.0, "high": 3.0}
     )
     assert found["high"]["metrics"] == {names.PEAK_ROCK: 3e3}
+    assert {metric.name for metric in headlines(made_up())} <= set(found["run"]["metrics"])
     assert all(task.request.values["cushion.thickness"] == "1 m" for task in asked)
     assert not any(task.request.in_process for task in asked)
-    assert "beam.moment[*]" in asked[0].columns
+    assert {"sand.*", "rock.*", "beam.*"} == set(asked[0].columns)
+
+
+def test_the_other_widths_record_what_the_run_has_recorded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        analysis, "run_all", lambda tasks, **o: (asked.extend(tasks), carried_out(tasks))[1]
+    )
+    run = run_of(DESIGN)
+    run.provenance["system"] = {**run.provenance["system"], "record": ["beam.*", "rock.x"]}
+    analysis.width_band(run, Request("shed.toml"))
+    assert asked[0].columns == ("beam.*", "rock.x")
 
 
 def test_a_width_of_the_run_itself_is_not_run_again(monkeypatch):
@@ -62,24 +78,43 @@ def test_a_width_of_the_run_itself_is_not_run_again(monkeypatch):
     assert found["high"] == found["run"]
 
 
-def test_the_band_is_a_table_of_the_headlines():
-    entry = {"width": 2.0, "metrics": {names.PEAK_ROCK: 1.5e6}}
-    facts = {
-        "band": {"low": {**entry, "width": 1.5}, "run": entry, "high": {**entry, "width": 3.0}}
-    }
-    run = replace(made_up(), provenance={**made_up().provenance, **facts})
-    (row,) = width_band_table(run)
-    assert row == {
-        "quantity": names.PEAK_ROCK,
-        "unit": "kN",
-        "1.50 m": "1,500",
-        "2.00 m (this run)": "1,500",
-        "3.00 m": "1,500",
-    }
+def test_the_band_is_a_table_of_all_headlines_and_utilisations():
+    """Every number of the run's own table, in the first of its units."""
+    roof = {"criteria": [{"name": "deflection", "limit": 0.01, "unit": "m"}]}
+    bent = made_up(**{"beam.midspan.deflection": np.linspace(0.0, 0.02, 401)})
+    run = replace(bent, provenance={**bent.provenance, "design": roof})
+    values = {metric.name: metric.value for metric in headlines(run)}
+    entry = {"width": 2.0, "metrics": values}
+    doubled = {name: 2.0 * value for name, value in values.items()}
+    band = {"high": {"width": 3.0, "metrics": doubled}, "run": entry}
+    run.provenance["band"] = {**band, "low": {"width": 1.5, "metrics": {}}}
+    rows = {row["quantity"]: row for row in width_band_table(run)}
+    deflection = rows["peak midspan deflection"]
+    assert list(deflection)[2:] == ["1.50 m", "2.00 m (this run)", "3.00 m"]
+    own, high = (float(deflection[title]) for title in list(deflection)[3:])
+    assert high == pytest.approx(2.0 * own, rel=1e-2)
+    assert deflection["1.50 m"] == ""
+    assert {"peak force on the rock", "energy residual / E0", "utilisation: deflection"} <= {*rows}
+    assert len(rows) == len(values)
     (chapter,) = _effective_width(run)
-    assert len(chapter.tables[0]) == 1
+    assert len(chapter.tables[0]) == len(values)
     assert len(width_band_table(made_up())) == 0
     assert list(_effective_width(made_up())) == []
+
+
+def test_a_run_of_a_batch_is_compared_with_its_own_design():
+    """The plastic moment of a wider strip is that of more girders."""
+    project = {
+        "rock": {"mass": 400.0, "drop_height": 8.0},
+        "cushion": {"thickness": 0.5},
+        "roof": {"section": "H-200x200x8x12", "span": 3.0, "spacing": 1.0},
+    }
+    limits = []
+    for width in (1.0, 2.0):
+        request = Request("project", {analysis.FIELD: width}, project=project, in_process=True)
+        order = batch._order(Task(request), silent)
+        limits.append({entry["name"]: entry["limit"] for entry in order.design["criteria"]})
+    assert limits[1]["plastic moment"] == pytest.approx(2.0 * limits[0]["plastic moment"])
 
 
 def test_a_run_without_a_design_has_no_band():

@@ -5,15 +5,15 @@ from dataclasses import replace
 from typing import Any
 
 from ...core.errors import InputRefused, Problem
-from ...metrics.width_band import HEADLINES
-from ...runs.batch import COLUMNS, COMPLETE, Counted, Outcome, Task, run_all, uncounted
+from ...metrics.headlines import headlines
+from ...metrics.reported import reported
+from ...runs.batch import COMPLETE, Counted, Outcome, Task, run_all, uncounted
 from ...runs.building import Note, silent
 from ...runs.request import Request
 from ...runs.run import Run
 from ...sites.shed.effective_width import Spread, band
 
 FIELD = "cushion.effective_width"
-_RECORDED = (*COLUMNS, "beam.moment[*]", "beam.support.force.y[*]")
 _SAME = 0.01
 """Part by which a width may differ from that of the run and is not computed again."""
 
@@ -38,7 +38,7 @@ def width_band(
     -------
     dict
         ``low``, ``run`` and ``high``: ``width`` (m) and ``metrics``, by name, of each; plain data
-        for ``run.json``.
+        for ``run.json``. Every number that the run has in its table is there.
 
     Raises
     ------
@@ -47,15 +47,17 @@ def width_band(
     """
     spread, own = _design(run)
     named = dict(zip(("low", "high"), band(spread), strict=True))
-    values = {metric.name: metric.value for metric in run.metrics.values()}
-    found = {"run": {"width": own, "metrics": _headlines(values)}}
+    shown = [*headlines(run), *(entry.metric for entry in reported(run))]
+    values = {metric.name: float(metric.value) for metric in shown}
+    found = {"run": {"width": own, "metrics": values}}
     other = {name: width for name, width in named.items() if abs(width / own - 1.0) > _SAME}
-    tasks = {name: _task(request, width) for name, width in other.items()}
+    tasks = {name: _task(request, width, _recorded(run)) for name, width in other.items()}
     outcomes = run_all(list(tasks.values()), note=note, counted=counted)
     _refuse_failed({named[name]: outcomes[task.key] for name, task in tasks.items()})
     for name, task in tasks.items():
-        metrics = _headlines(outcomes[task.key].metrics)
-        found[name] = {"width": named[name], "metrics": metrics}
+        metrics = outcomes[task.key].metrics
+        others = {each: metrics[each] for each in values if each in metrics}
+        found[name] = {"width": named[name], "metrics": others}
     return {name: found.get(name, found["run"]) for name in ("low", "run", "high")}
 
 
@@ -75,13 +77,16 @@ def _design(run: Run) -> tuple[Spread, float]:
         ) from missing
 
 
-def _task(request: Request, width: float) -> Task:
+def _recorded(run: Run) -> tuple[str, ...]:
+    """Return what a run has recorded, as patterns of each component."""
+    wanted = run.provenance["system"].get("record", ["*"])
+    every = [f"{name}.*" for name in run.provenance["components"]]
+    return tuple(part for pattern in wanted for part in (every if pattern == "*" else [pattern]))
+
+
+def _task(request: Request, width: float, recorded: tuple[str, ...]) -> Task:
     values = {**request.values, FIELD: float(f"{width:.6g}")}
-    return Task(replace(request, values=values, in_process=False), columns=_RECORDED)
-
-
-def _headlines(values: Mapping[str, Any]) -> dict[str, float]:
-    return {name: float(values[name]) for name in HEADLINES if name in values}
+    return Task(replace(request, values=values, in_process=False), columns=recorded)
 
 
 def _refuse_failed(outcomes: Mapping[float, Outcome]) -> None:

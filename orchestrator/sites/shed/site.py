@@ -4,10 +4,12 @@ This is the form only; ``preparation.py`` checks the meaning, ``geometry.py`` de
 A bare number is in SI units; with a unit it is a text, ``"2.5 t"``.
 """
 
-from typing import Annotated, Literal
+import re
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
+from ...core.input_text import shown
 from ...input_files.fields import (
     Angle,
     AngularVelocity,
@@ -27,12 +29,41 @@ from ...input_files.fields import (
     Stiffness,
     field,
 )
-from ...input_files.form import Data
+from ...input_files.form import LARGEST, SMALLEST, Data
+from ...input_files.quantities import in_si
 
 MOST_SEED = 2**31 - 1
 """Largest number of a sample."""
 SolidFraction = Annotated[float, Field(ge=0.5, le=0.9, strict=True)]
 """Part of a layer that its discs fill, in the plane."""
+
+
+_PART_OF_SPAN = re.compile(r"span\s*/\s*(\d+(?:\.\d+)?)")
+
+
+def _deflection_limit(value: Any) -> str | float:
+    """Return a length (m), or a part of the span as it is written.
+
+    Raises
+    ------
+    ValueError
+        It is neither.
+    """
+    given = f"(given: {shown(value)})"
+    if isinstance(value, str) and (part := _PART_OF_SPAN.fullmatch(value.strip())):
+        if float(part.group(1)) < 1.0:
+            raise ValueError(f"must be a part of the span, span/300 for instance {given}")
+        return f"span/{part.group(1)}"
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise ValueError(f"must be a length or a part of the span, span/300 for instance {given}")
+    length = in_si(value, "m") if isinstance(value, str) else float(value)
+    if not SMALLEST <= length <= LARGEST:
+        raise ValueError(f"must be greater than 0 {given}")
+    return length
+
+
+DeflectionLimit = Annotated[str | float, BeforeValidator(_deflection_limit)]
+"""A length (m), or ``span/300``."""
 
 
 class StrikingRock(Data):
@@ -204,13 +235,22 @@ class Criteria(Data):
         usual=(1e2, 1e9),
         likely=("kN.m",),
     )
-    deflection: Length | None = field(
-        "of the deflection at midspan", usual=(1e-4, 2.0), likely=("mm", "cm")
+    deflection: DeflectionLimit | None = field(
+        'of the deflection at midspan, as a length or as a part of the span: "span/300"',
+        unit="m",
+        usual=(1e-4, 2.0),
+        likely=("mm", "cm"),
     )
     pile_set: Length | None = field("of the set of a pile", usual=(1e-5, 1.0), likely=("mm", "cm"))
     penetration: Length | None = field(
         "of the penetration; the thickness", usual=(1e-2, 10.0), likely=("cm", "mm")
     )
+
+    def deflection_of(self, span: float) -> float | None:
+        """Return the limit of the deflection (m) of a roof with this span (m), if there is one."""
+        if isinstance(self.deflection, str):
+            return span / float(self.deflection.partition("/")[2])
+        return self.deflection
 
 
 class Numerics(Data):
