@@ -116,7 +116,8 @@ def _moments(run: StoredRun, cushion: str) -> list[float]:
         for role in (Role.TRANSMITTED, Role.ON_BODY, Role.PENETRATION)
     )
     force = np.abs(run.series[transmitted])
-    high, end = force >= 0.5 * force.max(), _evenly(run, cushion)[-1]
+    high = force >= 0.5 * force.max()
+    end = _evenly(run, cushion)[-1]
     wanted = [extreme(run, name)[1] for name in (transmitted, on_body, depth)]
     before, after = time[high][:1], time[~high & (time > wanted[0])][:1]
     chosen: list[float] = []

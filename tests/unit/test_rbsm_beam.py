@@ -101,7 +101,7 @@ def test_bad_parameters_are_all_named():
         -1.0,
         math.nan,
         -9.8,
-        3.0,
+        4.0,
     )
     with pytest.raises(ComponentError) as error:
         instance.initialise()
@@ -142,8 +142,10 @@ def test_every_output_is_published():
     unset += [name for name in silent if name.startswith(("section.corner", "section.hardening"))]
     yielding = ["energy.plastic", "midspan.residual_deflection", "curvature_ratio"]
     yielding += [name for name in silent if "plastic_" in name]
+    springs = ["support.stiffness", "energy.support"]
+    springs += [f"support.settlement[{i}]" for i in (1, 2)]
     assert sorted(silent) == sorted(
-        unset + ends + free_ends + yielding + ["box.inertia_force"]  # no box
+        unset + ends + free_ends + yielding + springs + ["box.inertia_force"]  # no box
     )
 
 
