@@ -205,17 +205,31 @@ def _formed_value(entry: FieldInfo, value: Any, refused: Collection[Key], key: K
         It is refused.
     """
     if not any(other[: len(key)] == key for other in refused):
-        return TypeAdapter(entry.rebuild_annotation()).validate_python(value)
+        return _validated(entry, value)
     inner = next((part for part in _models(entry.annotation) if issubclass(part, Data)), None)
-    if inner is None or key in refused:
+    if inner is None or key in refused or not isinstance(value, dict | list):
         raise UnformedError(key)
+    if isinstance(value, list):
+        return [_formed_entry(inner, each, refused, (*key, i)) for i, each in enumerate(value)]
     if get_origin(entry.annotation) is dict:
         return {
             name: _formed_entry(inner, each, refused, (*key, name)) for name, each in value.items()
         }
-    if get_origin(entry.annotation) is list:
-        return [_formed_entry(inner, each, refused, (*key, i)) for i, each in enumerate(value)]
     return _formed_part(inner, value, refused, key)
+
+
+def _validated(entry: FieldInfo, value: Any) -> Any:
+    """Return a value in the form of its field.
+
+    Raises
+    ------
+    UnformedError
+        It has another one: that of an alternative was refused.
+    """
+    try:
+        return TypeAdapter(entry.rebuild_annotation()).validate_python(value)
+    except ValidationError as error:
+        raise UnformedError from error
 
 
 def _formed_entry(model: type[D], value: Any, refused: Collection[Key], key: Key) -> D:
@@ -226,7 +240,7 @@ def _formed_entry(model: type[D], value: Any, refused: Collection[Key], key: Key
     UnformedError
         It is none.
     """
-    if key in refused:
+    if key in refused or not isinstance(value, dict):
         raise UnformedError(key)
     return _formed_part(model, value, refused, key)
 
