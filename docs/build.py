@@ -41,6 +41,7 @@ CONTENTS = {
         "command-line",
         "systems",
         "results",
+        "studies",
         "report",
         "fmus",
         "security",
@@ -82,6 +83,8 @@ MODULES = {
             "rockshed.analyses.rockfall.run",
             "rockshed.analyses.pile.run",
             "rockshed.analyses.calibration.run",
+            "rockshed.analyses.study.run",
+            "rockshed.analyses.study.factors",
         ),
     ),
     "papers": (

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from .analyses.convergence.run import converge
     from .analyses.pile.run import pile
     from .analyses.rockfall.run import rockfall
+    from .analyses.study.factors import Interval, RandomValue
+    from .analyses.study.run import StudyFailed, study
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunDoubted, RunFailed, UnknownName
     from .reports.writing import report
@@ -35,10 +37,13 @@ if TYPE_CHECKING:
 _HOMES = {
     "ComponentError": "components.common.component",
     "InputRefused": "core.errors",
+    "Interval": "analyses.study.factors",
     "Problem": "core.errors",
+    "RandomValue": "analyses.study.factors",
     "Run": "runs.run",
     "RunDoubted": "core.errors",
     "RunFailed": "core.errors",
+    "StudyFailed": "analyses.study.run",
     "Subsystem": "runs.subsystem",
     "System": "runs.system",
     "Table": "tables",
@@ -56,6 +61,7 @@ _HOMES = {
     "rockfall": "analyses.rockfall.run",
     "shed": "runs.projects",
     "simulate": "runs.simulation",
+    "study": "analyses.study.run",
 }
 """Modules of the public names."""
 _ROOMS = ("formulas",)
@@ -64,10 +70,13 @@ _ROOMS = ("formulas",)
 __all__ = [
     "ComponentError",
     "InputRefused",
+    "Interval",
     "Problem",
+    "RandomValue",
     "Run",
     "RunDoubted",
     "RunFailed",
+    "StudyFailed",
     "Subsystem",
     "System",
     "Table",
@@ -87,6 +96,7 @@ __all__ = [
     "rockfall",
     "shed",
     "simulate",
+    "study",
 ]
 
 

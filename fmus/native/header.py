@@ -92,6 +92,7 @@ def model_header(component: Component, sizes: Sizes, guid: str, cpu: Baseline) -
 def _conduct() -> dict[str, object]:
     return {
         "phases": conduct.Phase,
+        "settled": conduct.SETTLED,
         "stale": conduct.Stale,
         "calls": conduct.CALLS,
         "remedies": conduct.REMEDIES,

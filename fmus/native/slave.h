@@ -29,7 +29,7 @@ typedef struct { Text array; int is_integer; size_t begin, end, every; int lowes
 enum { TIME = NW + NC }; /* value reference of the time, behind those of the sizes */
 
 enum { LINE = 64 }; /* bytes of a cache line. x begins with one in a slave, because its rows are read faster so */
-typedef struct { uint64_t mark; uint32_t phase; double start, time, unused[4], x[NX + 1], w[NW]; int64_t k[NK + 1]; } State;
+typedef struct { uint64_t mark; uint32_t phase, settled; double start, time, unused[4], x[NX + 1], w[NW]; int64_t k[NK + 1]; } State;
 _Static_assert(offsetof(State, x) == LINE, "x does not begin with a cache line");
 typedef struct { void (*logger)(void); void *environment; int takes_early_return; } Host; /* what the importer gave to an instance */
 typedef struct { State s; Host host; void *block; char *name; double stop, longest; int stale, previewed, told[ERROR + 1];
@@ -462,7 +462,12 @@ static void carry(void *field, char **at, size_t n, int out) { /* one field of a
 }
 
 static void carry_fields(State *s, char *at, int out) {
-  carry(&s->phase, &at, sizeof s->phase, out);
+  uint32_t phase = s->phase | s->settled;
+  carry(&phase, &at, sizeof phase, out);
+  if (!out) {
+    s->settled = phase == (INITIALISING | SETTLED) ? SETTLED : 0;
+    s->phase = s->settled ? INITIALISING : phase;
+  }
   carry(&s->time, &at, sizeof s->time, out);
   if (out) memcpy(at, HEADER, sizeof HEADER);
   at += sizeof HEADER;
@@ -476,13 +481,14 @@ static State *as_state(void *state) { State *s = state; return s && s->mark == M
 static Status get_state(Slave *m, void **state) {
   if (!*state && !(*state = malloc(sizeof(State)))) return refuse(m, "there is no memory for another state");
   memcpy(*state, &m->s, sizeof(State));
+  as_state(*state)->settled = m->s.phase == INITIALISING && m->stale == NOTHING ? SETTLED : 0;
   return OK;
 }
 
 static Status set_state(Slave *m, void *state) {
   if (!as_state(state)) return refuse(m, SAYS_DAMAGED);
   memcpy(&m->s, state, sizeof(State));
-  m->stale = m->s.phase <= INITIALISING ? STATE : NOTHING;
+  m->stale = m->s.phase > INITIALISING ? NOTHING : m->s.settled ? OUTPUTS : STATE;
   m->previewed = 0;
   return OK;
 }
@@ -542,7 +548,7 @@ static int is_possible(Slave *m, const State *s) { /* kernels do not look again 
   if (!clock_is_possible(m, s)) return 0;
   if (memcmp(s->k, TABLE, 8 * TABLE_LENGTH)) { because(m, SAYS_IMPOSSIBLE, SAYS_TABLE_DIFFERS); return 0; }
   if (!are_finite(s->w, NW) || !are_finite(s->x, NX)) { because(m, SAYS_IMPOSSIBLE, SAYS_NUMBER_NOT_FINITE); return 0; }
-  return (s->phase != RUNNING && s->phase != TERMINATED) || values_are_possible(m, s);
+  return (s->phase != RUNNING && s->phase != TERMINATED && !s->settled) || values_are_possible(m, s);
 }
 
 static Status deserialize(Slave *m, const char bytes[], size_t n, void **state) {

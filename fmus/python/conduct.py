@@ -18,6 +18,11 @@ class Phase(IntEnum):
     FAILED = 5
 
 
+SETTLED = 16
+"""Is added to the number of the initialisation mode in a serialized state whose outputs are
+computed: what has settled is not computed again after the state is restored."""
+
+
 class Stale(IntEnum):
     """The parts that must be computed before an output is read in initialization mode."""
 

@@ -23,6 +23,7 @@ from .conduct import (
     REMEDIES,
     SET,
     SET_UP,
+    SETTLED,
     STEP,
     TERMINATE,
     Call,
@@ -491,7 +492,9 @@ class ComponentSlave(Fmi2Slave):
         It is serialized already: nothing is left that could fail.
         """
         try:
-            content = _CLOCK.pack(self._phase, self._time) + self._instance.to_bytes()
+            settled = self._phase is Phase.INITIALISING and self._stale is Stale.NOTHING
+            phase = self._phase | SETTLED if settled else self._phase
+            content = _CLOCK.pack(phase, self._time) + self._instance.to_bytes()
             return _SEAL.pack(_MARK, zlib.crc32(content)) + content
         except BaseException as error:
             self._fail(error)
@@ -505,14 +508,18 @@ class ComponentSlave(Fmi2Slave):
         """
         content = component_state(state)
         phase, time = _CLOCK.unpack_from(state, _SEAL.size)
+        settled = phase == Phase.INITIALISING | SETTLED
+        phase = Phase.INITIALISING if settled else phase
         if problem := _clock_problem(phase, time):
             raise ComponentError(self.component.name, [IMPOSSIBLE_STATE % problem])
-        computed = phase in (Phase.RUNNING, Phase.TERMINATED)
+        computed = settled or phase in (Phase.RUNNING, Phase.TERMINATED)
         restored = Instance(self.component, self.sizes)
         restored.from_bytes(content, computed)
         if computed and (problems := restored.value_problems()):
             raise ComponentError(self.component.name, [IMPOSSIBLE_STATE % problems[0]])
         self._take_over(restored, Phase(phase), time)
+        if settled:
+            self._stale = Stale.OUTPUTS
 
     def _take_over(self, restored: Instance, phase: Phase, time: float) -> None:
         """Continue from the values of an instance."""

@@ -38,6 +38,10 @@ def saved_result(folder: str | Path) -> Result | None:
         from .rockfall.reading import read_campaign
 
         return read_campaign(folder, content)
+    if kind == "study":
+        from .study.reading import read_study
+
+        return read_study(folder, content)
     return _blows(folder, content) if kind == "pile" else None
 
 

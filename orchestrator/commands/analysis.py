@@ -42,6 +42,7 @@ _OPTIONS = {
     "values": "--set",
     "sizes": "--size",
     "folder": "--output-dir",
+    "metrics": "--metric",
     "platforms": "--platform",
     "certificates": "--tls-ca, --tls-cert and --tls-key",
 }

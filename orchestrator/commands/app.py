@@ -31,6 +31,7 @@ COMMANDS = {
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find parameters from measurements, of a sand by default.",
     "converge": "Compare a shed with coarser and finer discs and elements.",
+    "study": "Run a system with values that vary: designs, Monte Carlo, sensitivity.",
     "rockfall": "Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.",
     "formula": "Impact force by formulas of practice: Japanese handbook, ASTRA, Labiouse, Hertz.",
     "pile": "Wave analysis of a driven pile or rod: set per blow, stresses, bearing graph.",

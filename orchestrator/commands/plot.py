@@ -20,8 +20,8 @@ _Folders = Annotated[
     list[Path],
     typer.Argument(
         metavar="RUN...",
-        help="Folder of a run, finished or not, or of `rockfall` or `pile`; of several runs with "
-        "--variable.",
+        help="Folder of a run, finished or not, or of `study`, `rockfall` or `pile`; of several "
+        "runs with --variable.",
     ),
 ]
 _Pictures = Annotated[
@@ -112,7 +112,8 @@ def _draw_again(folder: Path, output_dir: Path | None, screen: Screen) -> list[P
     result = saved_result(folder)
     if result is not None:
         with stages(screen) as progress:
-            return result.write_pictures(output_dir or folder / "figures", progress)
+            place = output_dir or folder / result.picture_folder
+            return result.write_pictures(place, progress)
     found = _read(folder, screen)
     return draw(found, output_dir or found.folder / "figures", screen)
 

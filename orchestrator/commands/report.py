@@ -17,7 +17,8 @@ _ARGUMENTS = ("file", "check")
 _Result = Annotated[
     Path,
     typer.Argument(
-        metavar="RUN", help="Folder of a run, finished or not, or of `rockfall` or `pile`."
+        metavar="RUN",
+        help="Folder of a run, finished or not, or of `study`, `rockfall` or `pile`.",
     ),
 ]
 _Output = Annotated[

@@ -6,13 +6,13 @@ from typing import Annotated, Any
 import typer
 
 from ..analyses.rockfall.campaign import CampaignFailed
-from ..analyses.rockfall.cluster import Certificates
 from ..analyses.rockfall.run import rockfall
 from ..animations.formats import can_write_mp4
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold
 from .analysis import options_named, show, stages
+from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site
 from .screen import COLD_START, RUN_FAILED, Screen, opened
@@ -62,21 +62,6 @@ _Threads = Annotated[
         min=1, help="Threads, or processes of --scheduler local; default: one for each core."
     ),
 ]
-_Scheduler = Annotated[
-    str | None,
-    typer.Option(
-        metavar="local|tls://HOST:PORT|tcp://HOST:PORT",
-        help="Compute on Dask: on processes of this computer, or on the workers of a running "
-        "scheduler. Whoever reaches a scheduler without certificates (tcp) runs programs on it.",
-    ),
-]
-_Authority = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Certificate of a cluster's authority (PEM).")
-]
-_Certificate = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Your certificate for a cluster (PEM).")
-]
-_Key = Annotated[Path | None, typer.Option(metavar="FILE", help="The key that belongs to it.")]
 
 
 def command(
@@ -89,10 +74,10 @@ def command(
     animation: _Animation = None,
     output_dir: _Folder = None,
     workers: _Threads = None,
-    scheduler: _Scheduler = None,
-    tls_ca: _Authority = None,
-    tls_cert: _Certificate = None,
-    tls_key: _Key = None,
+    scheduler: Scheduler = None,
+    tls_ca: Authority = None,
+    tls_cert: Certificate = None,
+    tls_key: PrivateKey = None,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -111,7 +96,7 @@ def command(
                     seed=seed,
                     workers=workers,
                     scheduler=scheduler,
-                    certificates=_certificates(tls_ca, tls_cert, tls_key),
+                    certificates=certificates_of(tls_ca, tls_cert, tls_key),
                     replay=replay or [],
                     trajectories=_number_or_word(trajectories),
                     animation=animation,
@@ -134,20 +119,6 @@ def _begun(site: Path, folder: Path | None, animates: bool, screen: Screen) -> P
     if animates and not can_write_mp4():
         screen.note('animations become GIF files; pip install "rockshed[movie]" for MP4')
     return folder
-
-
-def _certificates(
-    authority: Path | None, certificate: Path | None, key: Path | None
-) -> Certificates | None:
-    """Return the certificates of a cluster; all three files belong together."""
-    given = {"--tls-ca": authority, "--tls-cert": certificate, "--tls-key": key}
-    if authority and certificate and key:
-        return Certificates(authority, certificate, key)
-    missing = [option for option, file in given.items() if file is None]
-    if len(missing) == len(given):
-        return None
-    remedy = f"give {', '.join(given)} together"
-    raise InputRefused([Problem(option, "is missing", remedy) for option in missing])
 
 
 def _number_or_word(text: str | None) -> Any:

@@ -14,10 +14,12 @@ from .fmu.fmu_slave import FmuFile
 from .fmu.slave import FATAL, OK, WARNING, Slave, Source, counts_of, status_name
 from .loop.buses import Buses
 from .loop.initialisation import free, initialise, instantiate
+from .loop.instances import FreshInstances, KeptInstances
 from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Master, Progress
 from .loop.recording import Hearing, Recorder
+from .results.memory import MemoryResults
 from .results.metric import Metric
 from .results.provenance import describe_run
 from .results.reading import StoredRun, read_run
@@ -100,6 +102,72 @@ def simulate(
     return read_run(folder)
 
 
+def plan_of(system: SystemSpec, instances: KeptInstances) -> Plan:
+    """Return the plan of a system, one of many; files are read once.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        Components, connections and times.
+    instances : KeptInstances
+        Of the runs of this thread.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with the system.
+    """
+    return make_plan(system, instances.sources(sources_of(system)))
+
+
+def simulate_in_memory(
+    system: SystemSpec,
+    instances: KeptInstances,
+    *,
+    allow_unstable: bool = False,
+    facts: Facts | None = None,
+) -> StoredRun:
+    """Run a system as one of many, without files.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        Components, connections and times.
+    instances : KeptInstances
+        Of earlier runs of this thread; they take those of this run.
+    allow_unstable : bool
+        Warn of steps that are too long, and do not refuse them.
+    facts : mapping, optional
+        Added to the provenance of the run.
+
+    Returns
+    -------
+    StoredRun
+        Complete, interrupted or failed; it lies in no folder, and has no serialized states. The
+        provenance of one that failed has the time (s), ``failed_at``.
+
+    Raises
+    ------
+    InputRefused
+        The system, or the FMUs' answer to it.
+    """
+    made_from = instances.sources(sources_of(system))
+    plan = make_plan(system, made_from)
+    known = dict(facts or {})
+    plan = replace(plan, warnings=(*plan.warnings, *known.pop("warnings", ())))
+    results = MemoryResults()
+    with Interruption() as interruption:
+        session = _Session(plan, made_from, results, interruption, instances)
+        try:
+            session.prepare(allow_unstable, known)
+            session.run(None)
+        except RunFailed as failure:
+            results.amend(failed_at=failure.time)
+        finally:
+            session.close()
+    return results.run()
+
+
 def _plan(system: SystemSpec, sources: Mapping[str, Source], allow_unstable: bool) -> Plan:
     """Make the plan; of steps that do not fit, components say too what they have against them."""
     try:
@@ -145,8 +213,9 @@ class _Session:
 
     plan: Plan
     sources: Mapping[str, Source]
-    results: RunFolder
+    results: RunFolder | MemoryResults
     interruption: Interruption
+    instances: FreshInstances | KeptInstances = field(default_factory=FreshInstances)
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
     finished: bool = False
@@ -157,9 +226,9 @@ class _Session:
         began = time.perf_counter()
         plan = self.plan
         self.journal = Journal(self.results.running, plan.order)
-        self.slaves = instantiate(plan, self.sources, self._enter)
+        self.slaves = self.instances.make(plan, self.sources, self._enter)
         buses = Buses(plan, self.journal.entries)
-        initial = initialise(self.slaves, buses, allow_unstable, self._enter)
+        initial = self.instances.initialise(self.slaves, buses, allow_unstable, self._enter)
         self.warnings = [*plan.warnings, *initial]
         self.initialised = True
         self.accounts = Accounts(self.slaves, buses)
@@ -179,7 +248,8 @@ class _Session:
         names = [name for name, spec in self.plan.system.components.items() if spec.record_states]
         state = sum(len(zlib.compress(self.slaves[name].state(), 1)) for name in names)
         columns = 1 + len(self.columns)
-        return amount_in_words(self.plan.timing, columns, state, self.results.running)
+        place = self.results.running or self.results.folder
+        return amount_in_words(self.plan.timing, columns, state, place)
 
     def _enter(self, component: str) -> None:
         """Note that a component is called next; stop here if that was asked for."""
@@ -279,7 +349,7 @@ class _Session:
                 self._terminate(slave)
         for name, slave in self.slaves.items():
             self.journal.ends(name)
-            slave.free()
+            self.instances.give_back(slave)
         if self.finished:
             warnings = self._all_warnings()
             if warnings != self.results.provenance["warnings"]:

@@ -4,29 +4,25 @@ Each process keeps its FMUs' code compiled from run to run.
 """
 
 import os
-import signal
+import threading
 import time
-from _thread import interrupt_main
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from multiprocessing import active_children, get_context, parent_process
-from multiprocessing.process import BaseProcess
-from threading import Event, Thread
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..core.errors import InputRefused, Problem
 from ..core.system.system import SystemSpec
-from ..temporary import TemporaryFolder
 from .building import FmusOf, Note, case_fmus, each_once, silent
+from .executors import Crew, Lost, at_end, processes, running
 from .job import prepare
 from .kept import KeptRuns
 from .outcome import Outcome
 from .request import Request
 
 if TYPE_CHECKING:
-    from ..core.errors import RunFailed
+    from ..core.loop.instances import KeptInstances
+    from ..core.results.metric import Metric
     from ..core.results.reading import StoredRun
 
 COMPLETE = "complete"
@@ -99,15 +95,19 @@ class Task:
         Seed of the sample; None if the lattice is undisturbed.
     allow_unstable : bool
         Whether a step may be longer than the stable one.
-    columns : tuple of str
-        Variables that are recorded.
+    columns : tuple of str, optional
+        Variables that are recorded, and are in the outcome; with None those of the system are
+        recorded, and the outcome has metrics only.
+    label : str
+        Names the run in messages.
     """
 
     request: Request
     model: str = ""
     seed: int | None = None
     allow_unstable: bool = False
-    columns: tuple[str, ...] = COLUMNS
+    columns: tuple[str, ...] | None = COLUMNS
+    label: str = ""
 
     @property
     def settings(self) -> list[str]:
@@ -139,14 +139,29 @@ class _Order:
         With the recorded variables only.
     allow_unstable : bool
         Whether a step may be longer than the stable one.
-    design : Any
-        What the results are compared with, of a project.
+    facts : mapping of str to Any
+        For the provenance of the run, whose metrics may depend on them.
+    with_series : bool
+        Whether the outcome has the recorded columns.
+    label : str
+        Names the run in messages.
     """
 
     key: str
     system: SystemSpec
     allow_unstable: bool
-    design: Any = None
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    with_series: bool = True
+    label: str = ""
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """Everything besides the system from which the outcome follows."""
+        return {"design": self.facts.get("design"), "series": self.with_series}
+
+
+Opening = Callable[[int], AbstractContextManager[Crew]]
+"""Opens an executor for at most so many runs at a time."""
 
 
 def run_all(
@@ -181,17 +196,109 @@ def run_all(
     InputRefused
         A task cannot be prepared.
     """
+    orders = orders_of(tasks, note)
+
+    def opening(most: int) -> AbstractContextManager[Crew]:
+        return processes(min(workers or os.cpu_count() or 1, most))
+
+    return carry_out(orders, opening, note, counted, kept)
+
+
+def orders_of(tasks: Sequence[Task], note: Note = silent) -> list[_Order]:
+    """Prepare all tasks, each different one once.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        Runs.
+    note : callable
+        Called with a line for each FMU that is built.
+
+    Returns
+    -------
+    list of order
+        For :func:`carry_out`.
+
+    Raises
+    ------
+    InputRefused
+        Tasks that cannot be prepared, with the reasons of all of them.
+    """
     fmus_of = each_once()
-    orders = [_order(task, note, fmus_of) for task in {task.key: task for task in tasks}.values()]
+    orders = []
+    problems: list[Problem] = []
+    for task in {task.key: task for task in tasks}.values():
+        try:
+            orders.append(_order(task, note, fmus_of))
+        except InputRefused as refusal:
+            problems += _labelled(task.label, refusal.problems)
+    if problems:
+        raise InputRefused(_fewer(problems))
+    return orders
+
+
+_MOST_PROBLEMS = 12
+"""Problems of a batch that are told; a bad value is in many of its runs."""
+
+
+def _labelled(label: str, problems: Sequence[Problem]) -> list[Problem]:
+    """Return problems with the name of their run."""
+    before = f"{label}: " if label else ""
+    return [Problem(f"{before}{p.where}", p.what, p.remedy) for p in problems]
+
+
+def _fewer(problems: Sequence[Problem]) -> list[Problem]:
+    """Return the first problems, and the number of the others."""
+    found = list(problems[:_MOST_PROBLEMS])
+    if rest := len(problems) - len(found):
+        found.append(Problem("other runs", f"have {rest} more problems", "correct these first"))
+    return found
+
+
+def carry_out(
+    orders: Sequence[_Order],
+    opening: Opening,
+    note: Note = silent,
+    counted: Counted = uncounted,
+    kept: KeptRuns | None = None,
+    check_first: bool = False,
+) -> dict[str, Outcome]:
+    """Carry out prepared runs.
+
+    Parameters
+    ----------
+    orders : sequence of order
+        As :func:`orders_of` makes them. Ctrl-C ends them; those without a result are interrupted.
+    opening : callable
+        Opens the executor; it is not called if there is nothing to do.
+    note : callable
+        Called with a line on runs that have ended before.
+    counted : callable
+        Called with the number of runs that have ended, and of all.
+    kept : KeptRuns, optional
+        Runs that have ended before, which are not carried out again, and to which others are added.
+    check_first : bool
+        Whether the FMUs are asked about the values of all runs before the first one begins.
+
+    Returns
+    -------
+    dict of str to Outcome
+        By the key of the task. A run that fails is an outcome too.
+
+    Raises
+    ------
+    InputRefused
+        With ``check_first``, values that FMUs refuse.
+    """
     outcomes = _ended(orders, kept)
     if outcomes:
         note(f"{len(outcomes)} of {len(orders)} runs have ended before, and are not run again")
-    waiting = {order.key: order for order in orders if order.key not in outcomes}
-    processes = min(workers or os.cpu_count() or 1, max(len(waiting), 1))
+    waiting = [order for order in orders if order.key not in outcomes]
+    by_key = {order.key: order for order in waiting}
     try:
-        for outcome in _carry_out(list(waiting.values()), processes):
+        for outcome in _carry_out(waiting, opening, check_first):
             outcomes[outcome.key] = outcome
-            _keep(kept, waiting[outcome.key], outcome)
+            _keep(kept, by_key[outcome.key], outcome)
             counted(len(outcomes), len(orders))
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
@@ -206,7 +313,8 @@ def _ended(orders: Sequence[_Order], kept: KeptRuns | None) -> dict[str, Outcome
     if kept is None:
         return {}
     found = {
-        order.key: kept.find(order.key, order.system, order.allow_unstable) for order in orders
+        order.key: kept.find(order.key, order.system, order.allow_unstable, order.about)
+        for order in orders
     }
     return {key: outcome for key, outcome in found.items() if outcome is not None}
 
@@ -244,178 +352,178 @@ def run_here(task: Task, note: Note = silent, kept: KeptRuns | None = None) -> O
 def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome) -> None:
     """Keep the outcome of a run that is complete."""
     if kept and outcome.status == COMPLETE:
-        kept.keep(order.system, order.allow_unstable, outcome)
+        kept.keep(order.system, order.allow_unstable, outcome, order.about)
 
 
 def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
     """Return the system of a task, with the recorded variables only and no states."""
     job = prepare(task.request, note, fmus_of=fmus_of)
-    system, design = slim(job.system, task.columns), job.facts.get("design")
-    return _Order(task.key, system, task.allow_unstable, design)
+    return _Order(
+        task.key,
+        slim(job.system, task.columns),
+        task.allow_unstable,
+        job.facts,
+        task.columns is not None,
+        task.label,
+    )
 
 
-def slim(system: SystemSpec, recorded: tuple[str, ...] = COLUMNS) -> SystemSpec:
+def slim(system: SystemSpec, recorded: tuple[str, ...] | None = COLUMNS) -> SystemSpec:
     """Return a system that records some variables and no states.
 
     Parameters
     ----------
     system : SystemSpec
         The system.
-    recorded : tuple of str
-        Variables, of components that it may not have.
+    recorded : tuple of str, optional
+        Variables, of components that it may not have; with None those that it records itself.
     """
     components = {
         name: spec.model_copy(update={"record_states": False})
         for name, spec in system.components.items()
     }
-    changes = {
-        "components": components,
-        "record": [column for column in recorded if column.partition(".")[0] in components],
-        "state_interval": None,
-    }
+    changes: dict[str, Any] = {"components": components, "state_interval": None}
+    if recorded is not None:
+        known = [column for column in recorded if column.partition(".")[0] in components]
+        changes["record"] = known
     return system.model_copy(update=changes)
 
 
-def _carry_out(orders: Sequence[_Order], workers: int) -> Iterator[Outcome]:
+def _carry_out(
+    orders: Sequence[_Order], opening: Opening, check_first: bool = False
+) -> Iterator[Outcome]:
     """Yield outcomes in the order in which they come.
 
-    An FMU may take its process with it: runs that are lost so are made again, each alone.
+    An FMU may take its process with it: a run that is lost so is made again, once.
     """
     if not orders:
         return
-    lost = []
-    with _processes(workers) as pool:
-        futures = {pool.submit(run_one, order): order for order in orders}
-        for future in as_completed(futures):
-            if isinstance(future.exception(), BrokenProcessPool):
-                lost.append(futures[future])
-            else:
-                yield future.result()
-    for order in lost:
-        with _processes(1) as pool:
-            yield _alone(pool.submit(run_one, order), order)
+    with opening(len(orders)) as executor:
+        if check_first:
+            _refuse(orders, executor)
+        for number, outcome in executor.each(run_one, orders):
+            key = orders[number].key
+            yield _lost(key) if isinstance(outcome, Lost) else outcome
 
 
-def _alone(future: "Future[Outcome]", order: _Order) -> Outcome:
-    try:
-        return future.result()
-    except BrokenProcessPool:
-        return Outcome(order.key, FAILED, "the process of the run ended without a result")
+def _lost(key: str) -> Outcome:
+    return Outcome(key, FAILED, "the process of the run ended without a result")
 
 
-@contextmanager
-def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Yield processes that start afresh; left early, runs that have not begun are dropped."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin_process)
-    try:
-        yield pool
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        _end(active_children())
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)
+def _refuse(orders: Sequence[_Order], executor: Crew) -> None:
+    """Refuse runs whose values the FMUs refuse by their descriptions."""
+    found = dict(executor.each(check_one, orders))
+    problems = [
+        problem
+        for number, order in enumerate(orders)
+        if not isinstance(found[number], Lost)
+        for problem in _labelled(order.label, found[number])
+    ]
+    if problems:
+        raise InputRefused(_fewer(problems))
 
 
-def _end(children: Sequence[BaseProcess]) -> None:
-    """Interrupt the runs of processes, and kill those that do not hear it.
+# --- in a process ---
 
-    Only a terminal tells Ctrl-C to all processes. A kernel that prepares a large layer hears
-    nothing for minutes.
+_of_thread = threading.local()
+"""Instances of FMUs that the runs of a thread use one after the other."""
+
+
+def _instances() -> "KeptInstances":
+    """Return the instances of this thread."""
+    from ..core.loop.instances import KeptInstances
+
+    found: KeptInstances | None = getattr(_of_thread, "instances", None)
+    if found is None:
+        found = _of_thread.instances = KeptInstances()
+        at_end(found.close)
+    return found
+
+
+def check_one(order: _Order) -> list[Problem]:
+    """Return what the FMUs of a run have against its values, by their descriptions.
+
+    Parameters
+    ----------
+    order : order
+        Of :func:`orders_of`.
     """
-    for child in children:
-        with suppress(OSError):
-            os.kill(child.pid or 0, signal.SIGINT)
-    last = time.monotonic() + _DEAF
-    for child in children:
-        child.join(max(last - time.monotonic(), 0.0))
-        if child.is_alive():
-            child.kill()
+    from ..core.run import plan_of
 
-
-def _begin_process() -> None:
-    """Ignore Ctrl-C between two runs, and end when the parent does.
-
-    Ctrl-C reaches every process: a run takes it for itself while it goes on, between runs the
-    parent. A parent that is killed tells nothing: its end is waited for.
-    """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = parent_process()
-    if parent is not None:
-        Thread(target=_end_with, args=(parent,), daemon=True).start()
-
-
-_RUNNING = Event()
-"""Whether this process carries out a run."""
-_DEAF = 5.0
-"""Time (s) after which a process that was interrupted and goes on is killed."""
-_LONGEST_END = 20.0
-"""Time (s) after which a run that has been interrupted is no longer waited for."""
-
-
-def _end_with(parent: Any) -> None:
-    """Wait for the end of the parent; then interrupt the run, so that it tidies up, and end."""
-    parent.join()
-    last = time.monotonic() + _LONGEST_END
-    while _RUNNING.is_set() and time.monotonic() < last:
-        interrupt_main()  # not heard before the run has begun
-        time.sleep(0.5)
-    os._exit(1)
+    try:
+        plan_of(order.system, _instances())
+    except InputRefused as refusal:
+        return refusal.problems
+    return []
 
 
 def run_one(order: _Order) -> Outcome:
-    """Carry out one run in the process in which this is called."""
+    """Carry out one run in the thread in which this is called.
+
+    Parameters
+    ----------
+    order : order
+        Of :func:`orders_of`.
+
+    Returns
+    -------
+    Outcome
+        Also of a run that fails.
+    """
+    from ..core.run import simulate_in_memory
+
     began = time.perf_counter()
-    _RUNNING.set()
-    try:
-        return _run(order, began)
-    finally:
-        _RUNNING.clear()
-
-
-def _run(order: _Order, began: float) -> Outcome:
-    from ..core.errors import InputRefused, RunFailed
-    from ..core.results.reading import read_run
-    from ..core.run import simulate
-
-    with TemporaryFolder("rockshed-") as folder:
-        place = folder / "run"
-        failure = None
+    with running():
         try:
-            facts = {"design": order.design} if order.design else {}
-            run = simulate(order.system, place, allow_unstable=order.allow_unstable, facts=facts)
-        except RunFailed as reason:
-            failure = reason
-            run = read_run(place)
+            run = simulate_in_memory(
+                order.system,
+                _instances(),
+                allow_unstable=order.allow_unstable,
+                facts=order.facts,
+            )
+            return _outcome(order, run, began)
         except InputRefused as refusal:
-            wall_time = time.perf_counter() - began
-            return Outcome(order.key, FAILED, str(refusal), wall_time=wall_time)
-        return _outcome(order.key, run, failure, began)
+            reason = "; ".join(map(str, refusal.problems))
+        except KeyboardInterrupt:
+            return Outcome(order.key, INTERRUPTED, "not run")
+        except (OSError, MemoryError, RuntimeError, ArithmeticError) as error:
+            reason = f"{type(error).__name__}: {error}"
+        return Outcome(order.key, FAILED, reason, wall_time=time.perf_counter() - began)
 
 
-def _outcome(key: str, run: "StoredRun", failure: "RunFailed | None", began: float) -> Outcome:
+def _outcome(order: _Order, run: "StoredRun", began: float) -> Outcome:
+    from ..metrics.comparison import warnings
+
     components = run.provenance["components"]
+    failed = run.status == FAILED
+    found = {} if failed else {metric.name: metric for metric in _numbers(run)}
+    complete = found if run.status == COMPLETE else {}
     return Outcome(
-        key,
+        order.key,
         run.status,
-        str(failure) if failure else "",
-        failure.time if failure else None,
-        metrics_of(run) if run.status == COMPLETE else {},
-        dict(run.series),
+        str(run.error) if failed else "",
+        run.provenance.get("failed_at"),
+        {name: float(metric.value) for name, metric in complete.items()},
+        dict(run.series) if order.with_series else {},
         _options(components),
         {name: str(facts["sha256"]) for name, facts in components.items()},
         time.perf_counter() - began,
+        {name: metric.unit for name, metric in complete.items()},
+        tuple(warnings(run)) if complete and not order.with_series else (),
     )
+
+
+def _numbers(run: "StoredRun") -> "list[Metric]":
+    """Return all metrics of a run that are numbers."""
+    from ..metrics.headlines import headlines
+
+    known = [*run.metrics.values(), *headlines(run)]
+    return [metric for metric in known if not isinstance(metric.value, str)]
 
 
 def metrics_of(run: "StoredRun") -> dict[str, float]:
     """Return the numbers of a run by the names of the metrics."""
-    from ..metrics.headlines import headlines
-    from ..metrics.reported import reported
-
-    declared = (entry.metric for entry in reported(run))
-    known = [*run.metrics.values(), *headlines(run), *declared]
-    return {m.name: float(m.value) for m in known if not isinstance(m.value, str)}
+    return {metric.name: float(metric.value) for metric in _numbers(run)}
 
 
 def _options(components: Mapping[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import zlib
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +27,7 @@ FINISHED = ".finished-runs"
 """Folder, among the results of a batch, of its runs that have ended, until all have."""
 _NAME = re.compile(r"run-[0-9a-f]{32}\.npz")
 """Name of a file of this module, which ends in the beginning of a digest."""
-_TEXTS, _TABLES = ("status", "error"), ("metrics", "options", "fmus")
+_TEXTS, _TABLES = ("status", "error"), ("metrics", "options", "fmus", "units")
 _PROGRAM = ("core", "metrics", "runs")
 """Rooms of the package from which the outcome of a run follows, besides the FMUs."""
 _DAMAGED = (
@@ -57,7 +57,9 @@ class KeptRuns:
 
     folder: Path
 
-    def find(self, key: str, system: SystemSpec, allow_unstable: bool) -> Outcome | None:
+    def find(
+        self, key: str, system: SystemSpec, allow_unstable: bool, about: object = None
+    ) -> Outcome | None:
         """Return the outcome of a run that has ended before.
 
         Parameters
@@ -68,22 +70,26 @@ class KeptRuns:
             That is run.
         allow_unstable : bool
             Whether a step may be longer than the stable one.
+        about : object, optional
+            What else the outcome follows from, as plain data.
 
         Returns
         -------
         Outcome or None
             None where there is none, or its file is damaged.
         """
-        file = self._file(system, allow_unstable)
+        file = self._file(system, allow_unstable, about)
         if file is None or not file.is_file():
             return None
         with suppress(*_DAMAGED):
             return _read(file, key)
         return None
 
-    def keep(self, system: SystemSpec, allow_unstable: bool, outcome: Outcome) -> None:
+    def keep(
+        self, system: SystemSpec, allow_unstable: bool, outcome: Outcome, about: object = None
+    ) -> None:
         """Keep the outcome of a run of this system."""
-        file = self._file(system, allow_unstable)
+        file = self._file(system, allow_unstable, about)
         if file is not None:
             with suppress(OSError):  # then it is run again
                 self.folder.mkdir(parents=True, exist_ok=True)
@@ -97,7 +103,7 @@ class KeptRuns:
         with suppress(OSError):
             self.folder.rmdir()
 
-    def _file(self, system: SystemSpec, allow_unstable: bool) -> Path | None:
+    def _file(self, system: SystemSpec, allow_unstable: bool, about: object) -> Path | None:
         """Return the file of a run; None if its components are not FMU files."""
         fmus = {name: spec.fmu for name, spec in system.components.items()}
         if not all(Path(fmu).is_file() for fmu in fmus.values()):
@@ -106,19 +112,26 @@ class KeptRuns:
             "system": system.model_dump(mode="json"),
             "fmus": {name: _sha256(Path(fmu)) for name, fmu in fmus.items()},
             "allow_unstable": allow_unstable,
-            "program": _program(),
+            "about": about,
+            "program": program_stamp(),
             "versions": versions("numpy", "fmpy"),
         }
-        text = json.dumps(content, sort_keys=True)
+        text = json.dumps(content, sort_keys=True, default=str)
         return self.folder / f"run-{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
 
 
 def _sha256(file: Path) -> str:
+    status = file.stat()
+    return _sha256_of(file, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=256)
+def _sha256_of(file: Path, _changed: int, _size: int) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 @cache
-def _program() -> str:
+def program_stamp() -> str:
     """Return a digest of the sources that carry out a run."""
     digest = hashlib.sha256()
     for room in _PROGRAM:
@@ -148,6 +161,7 @@ def _read(file: Path, key: str) -> Outcome:
         columns = facts["columns"]
         series = {name: stored[f"column-{i}"] for i, name in enumerate(columns)}
     rest = {name: value for name, value in facts.items() if name not in ("columns", "key")}
+    rest["warnings"] = tuple(rest["warnings"])
     outcome = Outcome(key, series=series, **rest)
     if not (_is_formed(outcome) and _is_of_rows(series)):
         raise ValueError("it has values of another kind")
@@ -161,6 +175,8 @@ def _is_formed(outcome: Outcome) -> bool:
         all(isinstance(getattr(outcome, name), str) for name in _TEXTS)
         and all(isinstance(getattr(outcome, name), dict) for name in _TABLES)
         and all(isinstance(value, str) for value in outcome.fmus.values())
+        and all(isinstance(value, str) for value in outcome.units.values())
+        and all(isinstance(text, str) for text in outcome.warnings)
         and all(type(value) in (int, float) and math.isfinite(value) for value in numbers)
         and outcome.failed_at is None  # what is kept is complete
     )

@@ -33,6 +33,10 @@ class Outcome:
         SHA-256 by component.
     wall_time : float
         Seconds.
+    units : mapping of str to str
+        FMI units by the names of the metrics.
+    warnings : tuple of str
+        Warnings of the run, and doubts about its metrics.
     """
 
     key: str
@@ -44,3 +48,5 @@ class Outcome:
     options: Mapping[str, Any] = field(default_factory=dict)
     fmus: Mapping[str, str] = field(default_factory=dict)
     wall_time: float = 0.0
+    units: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ import numpy as np
 import psutil
 import pytest
 
-from rockshed.runs import batch
+from rockshed.runs import batch, executors
 from rockshed.runs.batch import COMPLETE, Task, run_all
 from rockshed.runs.job import Request
 from rockshed.runs.kept import KeptRuns
@@ -59,7 +59,7 @@ def test_a_run_of_other_values_is_run(kept):
     runs, _ = kept
     other = Task(Request("lab-impact", {"sand.damping": 0.3}, options={"stop_time": 0.001}))
     (order,) = (batch._order(task, print) for task in [other])
-    assert runs.find(order.key, order.system, order.allow_unstable) is None
+    assert runs.find(order.key, order.system, order.allow_unstable, order.about) is None
 
 
 @pytest.mark.parametrize("at", [0, 0.3, 0.6, 0.9])
@@ -70,7 +70,7 @@ def test_a_kept_run_that_is_damaged_is_run_again(kept, at):
     order = batch._order(SHORT, print)
     for damaged in (whole[: int(at * len(whole))], _flipped(whole, int(at * len(whole)))):
         file.write_bytes(damaged)
-        found = runs.find(order.key, order.system, order.allow_unstable)
+        found = runs.find(order.key, order.system, order.allow_unstable, order.about)
         assert found is None or json.dumps(found.metrics) == json.dumps(kept[1].metrics)
     file.write_bytes(whole)
 
@@ -103,15 +103,16 @@ def test_processes_of_a_batch_end_when_their_parent_is_killed_and_what_has_ended
 
 def interrupted_while_deaf():
     """Raise what Ctrl-C raises, while a process sleeps; it carries that process."""
-    with batch._processes(1) as pool:
-        pool.submit(time.monotonic).result()  # it has begun
-        pool.submit(time.sleep, 600.0)
+    with executors.Processes(1) as pool:
+        (lane,) = pool._lanes
+        lane.pool.submit(time.monotonic).result()  # it has begun
+        lane.pool.submit(time.sleep, 600.0)
         raise KeyboardInterrupt(*active_children())
 
 
 def test_a_process_that_hears_no_interrupt_is_killed(monkeypatch):
     """As a kernel that prepares a large layer of sand; between two runs a process hears nothing."""
-    monkeypatch.setattr(batch, "_DEAF", 0.5)
+    monkeypatch.setattr(executors, "_DEAF", 0.5)
     with pytest.raises(KeyboardInterrupt) as reason:
         interrupted_while_deaf()
     (child,) = reason.value.args

@@ -19,6 +19,7 @@ import rockshed
 from rockshed.analyses.rockfall import campaign, cluster
 from rockshed.analyses.rockfall.campaign import campaign_of
 from rockshed.commands.app import app
+from rockshed.runs.cluster import connected
 from rockshed.sites.rockfall.preparation import prepare
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
@@ -27,7 +28,7 @@ EXAMPLE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 @pytest.fixture(scope="module")
 def client():
     """A scheduler with one worker; tests add to it."""
-    with cluster._local(1) as client:
+    with connected("local", 1) as client:
         yield client
 
 

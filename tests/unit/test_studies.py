@@ -182,7 +182,7 @@ def test_tasks_that_are_the_same_are_one_run(monkeypatch):
     monkeypatch.setattr(
         batch,
         "_carry_out",
-        lambda orders, workers: iter([Outcome(order.key, COMPLETE) for order in orders]),
+        lambda orders, *rest: iter([Outcome(order.key, COMPLETE) for order in orders]),
     )
     told = []
     found = batch.run_all(
@@ -243,7 +243,7 @@ def test_a_batch_looks_at_the_fmus_of_equal_components_and_sizes_once(monkeypatc
 
 
 def test_ctrl_c_keeps_what_was_computed(monkeypatch):
-    def carry_out(orders, workers):
+    def carry_out(orders, *rest):
         yield Outcome(orders[0].key, COMPLETE)
         raise KeyboardInterrupt
 

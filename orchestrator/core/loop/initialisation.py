@@ -34,8 +34,31 @@ Entering = Callable[[str], None]
 """Called with the name of a component before the component is called."""
 
 
+class Stages:
+    """Two moments of an initialisation at which something may be added to it."""
+
+    def entered(self) -> None:
+        """Act when all slaves are in initialisation mode, before anything is passed on."""
+
+    def settled(self, unsettled: str) -> None:
+        """Act when outputs have been passed on in that mode.
+
+        Parameters
+        ----------
+        unsettled : str
+            Name of an output that still changes, or nothing.
+        """
+
+
+NO_STAGES = Stages()
+"""Adds nothing to an initialisation."""
+
+
 def instantiate(
-    plan: Plan, sources: Mapping[str, Source], entering: Entering = lambda name: None
+    plan: Plan,
+    sources: Mapping[str, Source],
+    entering: Entering = lambda name: None,
+    names: Sequence[str] | None = None,
 ) -> dict[str, Slave]:
     """Make one slave for each component.
 
@@ -47,6 +70,8 @@ def instantiate(
         Makers of the slaves, by component.
     entering : callable, optional
         Called with the name of each component before its turn.
+    names : sequence of str, optional
+        Components of which slaves are made, by default all.
 
     Returns
     -------
@@ -60,7 +85,7 @@ def instantiate(
     slaves: dict[str, Slave] = {}
     problems: list[Problem] = []
     try:
-        for name in plan.order:
+        for name in plan.order if names is None else names:
             entering(name)
             try:
                 slaves[name] = sources[name].instantiate(name)
@@ -85,6 +110,7 @@ def initialise(
     buses: Buses,
     allow_unstable: bool = False,
     entering: Entering = lambda name: None,
+    stages: Stages = NO_STAGES,
 ) -> list[str]:
     """Bring slaves to their first step.
 
@@ -101,6 +127,8 @@ def initialise(
         Warn of steps that are too long, and do not refuse them.
     entering : callable, optional
         Called with the name of each component before its turn.
+    stages : Stages, optional
+        Called in between.
 
     Returns
     -------
@@ -115,7 +143,9 @@ def initialise(
     plan = buses.plan
     span = (plan.timing.seconds(0), plan.timing.seconds(plan.timing.exchanges))
     _phase(slaves, lambda slave: _begin(plan, slave, *span), entering)
+    stages.entered()
     before = _settle(buses, slaves, entering)
+    stages.settled(before)
     _phase(slaves, lambda slave: slave.exit_initialisation(), entering)
     unsettled = _settle(buses, slaves, entering) or before
     _refuse_lost(buses)

@@ -34,8 +34,8 @@ class Journal:
 
     Parameters
     ----------
-    folder : Path
-        In which the run writes.
+    folder : Path or None
+        In which the run writes; None where nobody would read a journal.
     components : sequence of str
         Their names in order.
 
@@ -46,11 +46,11 @@ class Journal:
         preparations of the first, second, ... component, and behind those of all come their ends.
     """
 
-    def __init__(self, folder: Path, components: Sequence[str]) -> None:
+    def __init__(self, folder: Path | None, components: Sequence[str]) -> None:
         self._folder = folder
         self._components = list(components)
         self.entries: IntegerTable = np.zeros(2, np.int64)
-        if _IS_FILE:
+        if folder is not None and _IS_FILE:
             self.entries = np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
         self.entries[:] = _NOTHING
         self.legend([])
@@ -65,6 +65,8 @@ class Journal:
         plan : Plan, optional
             Gives times; not needed where there are no operations.
         """
+        if self._folder is None:
+            return
         legend = {
             "components": self._components,
             "start": plan.timing.start if plan else 0,
@@ -90,13 +92,15 @@ class Journal:
 
     def moved(self, folder: Path) -> None:
         """Note that the folder of the run has another name now."""
-        self._folder = folder
+        if self._folder is not None:
+            self._folder = folder
 
     def close(self) -> None:
         """Remove the files: the run has not crashed."""
         self.entries[:] = _NOTHING
-        for name in (FILE, LEGEND):
-            (self._folder / name).unlink(missing_ok=True)
+        if self._folder is not None:
+            for name in (FILE, LEGEND):
+                (self._folder / name).unlink(missing_ok=True)
 
 
 def last_entry(folder: Path, reason: str) -> str:

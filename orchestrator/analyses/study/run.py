@@ -1,0 +1,464 @@
+"""Carry out a study: prepare all of its runs, then run them, then tell."""
+
+import os
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from ...core.errors import InputRefused, Problem
+from ...core.results.metric import identifier
+from ...core.system.names import nearest
+from ...core.system.system import Value
+from ...runs.batch import INTERRUPTED, Outcome, Task, carry_out, orders_of
+from ...runs.building import Note, silent
+from ...runs.cluster import Certificates
+from ...runs.dask_executor import dask
+from ...runs.executors import Crew, processes
+from ...runs.job import prepare
+from ...runs.kept import FINISHED, KeptRuns
+from ...runs.parameters import SystemValues
+from ...runs.request import Request, plain
+from ...runs.system import System
+from ..frame import StageProgress, counter, no_progress
+from .designs import GRID, RANDOM, SAMPLED, SOBOL, Point, design_problems, points
+from .factors import Factor, Interval, Levels, RandomValue, Varied, in_si
+from .headline import headline_metrics
+from .records import MetricName, StudyRecords, StudyRun, metrics_by_identifier
+from .result import StudyResult
+from .statistics import SHARES, needed
+from .tables import level_text
+
+StudyTarget = str | Path | Mapping[str, Any] | System
+"""A case, a project or system file, the content of a project, or a system of one of them."""
+
+
+class StudyFailed(Exception):  # noqa: N818 (as RunFailed)
+    """No run of a study has a result.
+
+    Attributes
+    ----------
+    result : StudyResult
+        With the reason of each run.
+    """
+
+    def __init__(self, result: StudyResult) -> None:
+        self.result = result
+        reasons = Counter(run.error or run.status for run in result.records.runs)
+        told = "; ".join(f"{text} ({number} runs)" for text, number in reasons.most_common(3))
+        super().__init__(f"none of the {len(result.records.runs)} runs has a result: {told}")
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """Everything that a study runs.
+
+    Attributes
+    ----------
+    name : str
+        Of the system.
+    design : str
+        Name of the design.
+    factors : sequence of Factor
+        That vary.
+    entries : sequence of (int, Point, int or None, Task)
+        Number of the point, counted from 1, the point, the packing and the run.
+    origin : mapping of str to Any
+        What is studied.
+    """
+
+    name: str
+    design: str
+    factors: Sequence[Factor]
+    entries: Sequence[tuple[int, Point, int | None, Task]]
+    origin: Mapping[str, Any] = field(default_factory=dict)
+
+
+def study(
+    target: StudyTarget,
+    vary: Mapping[str, Varied | Sequence[Value]],
+    *,
+    design: str | None = None,
+    samples: int | None = None,
+    seeds: int = 1,
+    draw: int = 0,
+    values: Mapping[str, Value] | None = None,
+    options: Mapping[str, Any] | None = None,
+    metrics: Sequence[str] = (),
+    percentiles: Sequence[float] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    certificates: Certificates | None = None,
+    folder: str | Path | None = None,
+    pictures: bool = False,
+    progress: StageProgress | None = None,
+    note: Note = silent,
+) -> StudyResult:
+    """Run a system with values that vary, by levels or by distributions.
+
+    Parameters
+    ----------
+    target : str, path, mapping or System
+        A case, a project file or its content, a system file, or a system of one of these.
+    vary : mapping
+        Values that vary, by the name of a field of the project, ``component.parameter`` or the name
+        of a shared value: a list of levels, an :class:`~rockshed.Interval` or a
+        :class:`~rockshed.RandomValue`.
+    design : str, optional
+        ``grid``, ``oat`` (one at a time), ``random``, ``lhs`` or ``sobol``; by default a grid, with
+        a distribution ``random``.
+    samples : int, optional
+        Number of samples that are drawn; of a Sobol design a power of 2, of which it runs as many
+        times (factors + 2).
+    seeds : int
+        Number of packings of the sand: for each point of a grid; of random samples and those of a
+        Latin hypercube, each sample has one of them.
+    draw : int
+        Seed of the random numbers of the design.
+    values : mapping of str to Value, optional
+        Other values of the system, which do not vary.
+    options : mapping, optional
+        Keys of the system: ``stop_time``, ``output_interval``, ...
+    metrics : sequence of str
+        Identifiers of the metrics that are told; by default forces, penetration, moment,
+        deflection and utilisation.
+    percentiles : sequence of float, optional
+        In percent; by default 5, 50, 90, 95, 99, as far as the sample bears them.
+    workers : int, optional
+        Number of processes, by default one for each core.
+    scheduler : str, optional
+        ``local`` or the address of a Dask scheduler, whose workers see the same files.
+    certificates : Certificates, optional
+        Of a scheduler at ``tls://HOST:PORT``.
+    folder : path, optional
+        Where the results are saved; other files stay there. Runs that have ended are kept there
+        until all have: a study that was killed or interrupted goes on.
+    pictures : bool
+        Whether figures are drawn and saved too.
+    progress : callable, optional
+        Called with a stage, and the numbers of its pieces that are done and of all.
+    note : callable
+        Called with a line for each FMU that is built.
+
+    Returns
+    -------
+    StudyResult
+        All runs, tables, metrics and figures.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with arguments, designs or values; nothing was computed.
+    StudyFailed
+        No run has a result; its attribute ``result`` has the reasons.
+    ClusterFailed
+        The workers of a scheduler could not go on.
+
+    Examples
+    --------
+    >>> import rockshed
+    >>> found = rockshed.study(
+    ...     "lab-impact",
+    ...     {"rock.velocity0.y": [-4.0, -8.0]},
+    ...     options={"stop_time": 0.002},
+    ...     workers=1,
+    ... )
+    >>> found
+    <StudyResult lab-impact: 2 designs, 2 runs>
+    >>> found.to_arrow().column("rock.velocity0.y").to_pylist()
+    [-4.0, -8.0]
+    """
+    show = progress or no_progress
+    request = _request(target, values or {}, options or {})
+    plan = _plan(request, vary, design, samples, seeds, draw, note)
+    shares = _shares(percentiles, plan)
+    orders = orders_of([task for *_, task in plan.entries], note)
+    opening = _Opening(workers, scheduler, certificates)
+    kept = KeptRuns(Path(folder) / FINISHED) if folder else None
+    began = time.perf_counter()
+    outcomes = carry_out(orders, opening.open, note, counter(show, "runs"), kept, check_first=True)
+    effort = {"wall_time": time.perf_counter() - began, **opening.facts}
+    result = _result(plan, outcomes, metrics, shares, effort)
+    has_any = bool(result.records.complete)
+    if folder:
+        result.save(folder, pictures=pictures and has_any, progress=show)
+    if not has_any:
+        raise StudyFailed(result)
+    if kept is not None:
+        kept.clear()
+    return result
+
+
+# --- what is run ---
+
+
+def _request(
+    target: StudyTarget, values: Mapping[str, Value], options: Mapping[str, Any]
+) -> Request:
+    if isinstance(target, System):
+        if target.request is None or target.request.in_process:
+            text = "runs in processes of its own, which need the FMU files of a system"
+            remedy = "give the name of a case or the file of a project or system"
+            raise InputRefused([Problem(target.name, text, remedy)])
+        found = target.request
+    elif isinstance(target, Mapping):
+        found = Request("project", project=target)
+    else:
+        found = Request(str(target))
+    return replace(
+        found,
+        values={**found.values, **plain(values)},
+        options={**found.options, **plain(options)},
+    )
+
+
+def _plan(
+    request: Request,
+    vary: Mapping[str, Any],
+    design: str | None,
+    samples: int | None,
+    seeds: int,
+    draw: int,
+    note: Note,
+) -> _Plan:
+    """Return the runs of a study.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with what varies, and with the design.
+    """
+    job = prepare(request, note)
+    known = SystemValues(job)
+    factors, problems = _factors(vary, known)
+    chosen = design or (RANDOM if any(f.is_distribution for f in factors) else GRID)
+    if not vary:
+        text = "nothing varies"
+        problems.append(Problem("vary", text, "name a value and its levels"))
+    problems += [
+        Problem(f"vary {name}", "has a value too, in values", "leave one of them out")
+        for name in vary
+        if name in request.values
+    ]
+    problems += _seed_problems(seeds, vary, known)
+    problems += [] if problems else design_problems(chosen, factors, samples)
+    if problems:
+        raise InputRefused(problems)
+    found = points(chosen, factors, samples or 0, draw)
+    numbers = _packings(known, seeds, len(found), chosen)
+    entries = [
+        (number, point, seed, _task(request, point, seed, known.seed, f"design {number}", factors))
+        for number, (point, listed) in enumerate(zip(found, numbers, strict=True), 1)
+        for seed in listed
+    ]
+    kind = next(k for k in ("case", "project_file", "system_file", "request") if k in job.facts)
+    origin = {kind: job.facts[kind], "draw": draw, "samples": samples, "seeds": seeds}
+    asked = {"values": dict(request.values), "options": dict(request.options)}
+    return _Plan(job.name, chosen, factors, entries, {**origin, **asked})
+
+
+def _factors(vary: Mapping[str, Any], known: SystemValues) -> tuple[list[Factor], list[Problem]]:
+    """Return what varies with numbers in SI, and what is wrong with it."""
+    factors = []
+    problems = []
+    for name, given in vary.items():
+        varied = given if isinstance(given, Levels | Interval | RandomValue) else None
+        if varied is None:
+            listed = [given] if isinstance(given, str | int | float) else given
+            varied = Levels(tuple(listed))
+        unit = known.unit(name)
+        if unit is None:
+            text = "is no value of this system"
+            problems.append(Problem(f"vary {name}", text, nearest(name, known.known())))
+            continue
+
+        def read(value: Value, name: str = name) -> Value:
+            return known.read(name, value)
+
+        factor, wrong = in_si(name, varied, unit, read)
+        factors.append(factor)
+        problems += wrong
+    return factors, problems
+
+
+def _seed_problems(seeds: int, vary: Mapping[str, Any], known: SystemValues) -> list[Problem]:
+    if seeds < 1:
+        return [Problem("seeds", f"{seeds} packings are no study", "give one at least")]
+    if seeds == 1:
+        return []
+    if known.seed is None:
+        text = "no component of this system has packings that are numbered"
+        return [Problem("seeds", text, "leave it out")]
+    if known.seed in vary:
+        return [Problem("seeds", f"and vary {known.seed} are one thing", "leave one of them out")]
+    return []
+
+
+def _packings(known: SystemValues, seeds: int, count: int, design: str) -> list[list[int | None]]:
+    """Return the packings of each point: all of a grid and of a Sobol design, else one in turn."""
+    if known.seed is None or seeds == 1:
+        return [[known.first_seed if known.seed else None]] * count
+    every: list[int | None] = list(range(known.first_seed, known.first_seed + seeds))
+    if design in SAMPLED and design != SOBOL:
+        return [[every[i % seeds]] for i in range(count)]
+    return [every] * count
+
+
+def _task(
+    request: Request,
+    point: Point,
+    seed: int | None,
+    seed_name: str | None,
+    label: str,
+    factors: Sequence[Factor],
+) -> Task:
+    units = {factor.name: factor.unit for factor in factors}
+    told = ", ".join(f"{n} = {level_text(v, units[n])}" for n, v in point.values.items())
+    seeded: dict[str, Value] = {}
+    if seed_name is not None and seed is not None and seed_name not in point.values:
+        seeded[seed_name] = seed
+    merged = {**request.values, **seeded, **point.values}
+    if seed_name in request.values and seed_name not in point.values:
+        merged[str(seed_name)] = seed if seed is not None else request.values[str(seed_name)]
+    return Task(
+        replace(request, values=merged),
+        seed=seed,
+        columns=None,
+        label=f"{label} ({told})" if told else label,
+    )
+
+
+# --- what is told ---
+
+
+def _shares(percentiles: Sequence[float] | None, plan: _Plan) -> list[float]:
+    """Return the parts whose percentiles are told.
+
+    Raises
+    ------
+    InputRefused
+        There is no such percentile, the design has no sample, or it does not bear them.
+    """
+    if percentiles is None:
+        size = _sample_size(plan)
+        return [share for share in SHARES if needed(share) <= size]
+    problems = []
+    for percent in percentiles:
+        where = f"percentiles {percent:g}"
+        if not 0.0 < percent < 100.0:
+            problems.append(Problem(where, "lies not between 0 and 100", "give 95 for 95 %"))
+        elif plan.design not in SAMPLED:
+            text = f"a design {plan.design} is no sample, and has no percentiles"
+            problems.append(Problem(where, text, "choose design=random, lhs or sobol"))
+        elif needed(0.01 * percent) > _sample_size(plan):
+            text = (
+                f"{_sample_size(plan)} samples do not bear it: its 95 % interval has two bounds "
+                f"from {needed(0.01 * percent)} on"
+            )
+            problems.append(Problem(where, text, "give more samples, or leave it out"))
+    if problems:
+        raise InputRefused(problems)
+    return [0.01 * percent for percent in percentiles]
+
+
+def _sample_size(plan: _Plan) -> int:
+    """Return the number of independent runs of a design that draws them."""
+    if plan.design not in SAMPLED:
+        return 0
+    return sum(point.role in ("", "A", "B") for _, point, _, _ in plan.entries)
+
+
+def _result(
+    plan: _Plan,
+    outcomes: Mapping[str, Outcome],
+    metrics: Sequence[str],
+    shares: Sequence[float],
+    effort: Mapping[str, Any],
+) -> StudyResult:
+    """Return the result of runs that have all ended.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Some have not: they were interrupted.
+    InputRefused
+        The runs have no such metrics.
+    """
+    if any(outcome.status == INTERRUPTED for outcome in outcomes.values()):
+        raise KeyboardInterrupt
+    records = _records(plan, outcomes)
+    told = _told(metrics, records) if records.complete else []
+    return StudyResult(plan.name, records, told, shares, plan.origin, effort)
+
+
+def _records(plan: _Plan, outcomes: Mapping[str, Outcome]) -> StudyRecords:
+    runs = []
+    names: dict[str, MetricName] = {}
+    for number, point, seed, task in plan.entries:
+        outcome = outcomes[task.key]
+        found = metrics_by_identifier(outcome)
+        for words, unit in outcome.units.items():
+            if identifier(words) in found:
+                names.setdefault(identifier(words), MetricName(words, unit))
+        runs.append(
+            StudyRun(
+                number,
+                point.role,
+                seed,
+                point.values,
+                outcome.status,
+                outcome.error,
+                outcome.warnings,
+                found,
+            )
+        )
+    return StudyRecords(plan.design, plan.factors, runs, names)
+
+
+def _told(metrics: Sequence[str], records: StudyRecords) -> list[str]:
+    """Return the metrics that are told.
+
+    Raises
+    ------
+    InputRefused
+        The runs have no such metrics; they are kept.
+    """
+    unknown = [name for name in metrics if name not in records.names]
+    if unknown:
+        known = list(records.names)
+        text = "no run has such a metric; the runs are kept"
+        raise InputRefused([Problem(f"metrics {n}", text, nearest(n, known)) for n in unknown])
+    return list(metrics) or headline_metrics(records)
+
+
+class _Opening:
+    """Opens processes or the workers of a scheduler.
+
+    Attributes
+    ----------
+    facts : mapping of str to Any
+        About the executor; empty while nothing had to be run.
+    """
+
+    def __init__(
+        self, workers: int | None, scheduler: str | None, certificates: Certificates | None
+    ) -> None:
+        if scheduler is None and certificates is not None:
+            text = "are for a running scheduler"
+            raise InputRefused([Problem("certificates", text, "name it with scheduler=...")])
+        self._workers = workers
+        self._scheduler = scheduler
+        self._certificates = certificates
+        self.facts: Mapping[str, Any] = {}
+
+    def open(self, most: int) -> AbstractContextManager[Crew]:
+        """Open an executor for at most so many runs at a time."""
+        if self._scheduler is not None:
+            self.facts = {"scheduler": self._scheduler, "workers": self._workers}
+            return dask(self._scheduler, self._workers, self._certificates)
+        workers = min(self._workers or os.cpu_count() or 1, most)
+        self.facts = {"workers": workers}
+        return processes(workers)

@@ -1,0 +1,175 @@
+"""The command ``rockshed study``: a system with values that vary."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..analyses.study.result import StudyResult
+from ..analyses.study.run import StudyFailed, study
+from ..cases.registry import case, is_case
+from ..core.errors import InputRefused, Problem
+from ..core.results.run_folder import RUN
+from ..runs.chosen import is_project_file
+from ..runs.cluster import ClusterFailed
+from ..runs.request import Request
+from .analysis import options_named, show, stages
+from .assignments import values_of
+from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
+from .options import Assignments, Json, NoFigures, Quiet, Target, Workers
+from .results_place import free_folder
+from .screen import INTERRUPTED, RUN_FAILED, Screen, opened
+from .vary import varied_of
+
+_OPTIONS = (
+    *("vary", "design", "samples", "seeds", "draw", "metrics", "percentiles", "values"),
+    *("workers", "scheduler", "certificates", "folder"),
+)
+"""Arguments of the analysis that are options of the command."""
+_Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=HOW",
+        help="Vary a field of a project, component.parameter or a shared value: levels A,B,C, a "
+        "range LOW..HIGH:LEVELS, or normal(MEAN, DEVIATION), lognormal(MEDIAN, DEVIATION OF LN), "
+        "uniform(LOW, HIGH), triangular(LOW, MODE, HIGH). May be repeated.",
+    ),
+]
+_Design = Annotated[
+    str | None,
+    typer.Option(
+        metavar="grid|oat|random|lhs|sobol",
+        help="Every combination, one at a time, independent samples, Latin hypercube, or Sobol "
+        "sequence; default grid, with a distribution random.",
+    ),
+]
+_Samples = Annotated[
+    int | None, typer.Option(help="Samples that are drawn; sobol runs (factors + 2) times as many.")
+]
+_Seeds = Annotated[
+    int,
+    typer.Option(help="Packings of the sand: of each combination; of samples, one each in turn."),
+]
+_Draw = Annotated[int, typer.Option(min=0, help="Another draw of the samples.")]
+_Metrics = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--metric",
+        metavar="ID",
+        help="Tell this metric (peak_transmitted_force, ...); default: forces, penetration, "
+        "moment, deflection, utilisation. May be repeated.",
+    ),
+]
+_Percentiles = Annotated[
+    str | None,
+    typer.Option(metavar="50,95", help="Percentiles that are told; default: all that are borne."),
+]
+_StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of every run.")]
+_Folder = Annotated[
+    Path | None, typer.Option(help="Folder of the results; default results/NAME-study.")
+]
+
+
+def command(
+    target: Target,
+    vary: _Vary = None,
+    design: _Design = None,
+    samples: _Samples = None,
+    seeds: _Seeds = 1,
+    draw: _Draw = 0,
+    set_: Assignments = None,
+    stop_time: _StopTime = None,
+    metric: _Metrics = None,
+    percentiles: _Percentiles = None,
+    output_dir: _Folder = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    tls_ca: Authority = None,
+    tls_cert: Certificate = None,
+    tls_key: PrivateKey = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a system with values that vary: designs, Monte Carlo, sensitivity.
+
+    What has ended is kept: a study that was killed goes on.
+    """
+    with opened(quiet, as_json) as screen:
+        asked = {
+            **_read(vary, set_, percentiles),
+            "design": design,
+            "samples": samples,
+            "seeds": seeds,
+            "draw": draw,
+            "options": {} if stop_time is None else {"stop_time": stop_time},
+            "metrics": metric or (),
+            "workers": workers,
+            "scheduler": scheduler,
+            "certificates": certificates_of(tls_ca, tls_cert, tls_key),
+            "folder": output_dir or _folder(target, screen),
+            "pictures": not no_figures,
+        }
+        show(screen, _studied(target, asked, screen))
+
+
+def _read(
+    vary: Sequence[str] | None, assigned: Sequence[str] | None, percentiles: str | None
+) -> dict[str, Any]:
+    """Read options that are texts.
+
+    Raises
+    ------
+    InputRefused
+        With all that cannot be read.
+    """
+    problems: list[Problem] = []
+    found = {
+        "vary": varied_of(vary or [], problems),
+        "values": values_of("--set", assigned or [], problems),
+        "percentiles": _percentiles(percentiles, problems),
+    }
+    if problems:
+        raise InputRefused(problems)
+    return found
+
+
+def _studied(target: str, asked: Mapping[str, Any], screen: Screen) -> StudyResult:
+    """Carry out a study; one without a result, or that is interrupted, ends the command."""
+    try:
+        with options_named(_OPTIONS), stages(screen) as progress:
+            return study(target, **asked, progress=progress, note=screen.note)
+    except (StudyFailed, ClusterFailed) as failure:
+        screen.fail(str(failure))
+        raise typer.Exit(RUN_FAILED) from None
+    except KeyboardInterrupt:
+        screen.warn("interrupted; runs that have ended are kept: the same command goes on")
+        raise typer.Exit(INTERRUPTED) from None
+
+
+def _percentiles(text: str | None, problems: list[Problem]) -> list[float] | None:
+    """Read percentiles, numbers in percent with commas between them."""
+    if text is None:
+        return None
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        what = f"{text!r} is no list of numbers"
+        problems.append(Problem("--percentiles", what, "write --percentiles 50,95"))
+        return None
+
+
+def _folder(target: str, screen: Screen) -> Path:
+    """Return the folder of the results of a target that the user has named no folder for."""
+    request = Request(target)
+    name = Path(target).stem if request.is_file else target
+    kind = "project_file" if request.is_file and is_project_file(target) else "system_file"
+    of_case = {"case": case(target).name if is_case(target) else target}
+    which = {kind: target} if request.is_file else of_case
+    return free_folder(f"{name}-study", {"kind": "study", **which}, _content, screen)
+
+
+def _content(folder: Path) -> Any:
+    return json.loads((folder / RUN).read_text(encoding="utf-8"))

@@ -1,0 +1,229 @@
+"""Connections to the workers of a Dask scheduler: processes of this computer, or a cluster."""
+
+import logging
+import signal
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+from multiprocessing import resource_tracker
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..core.ending import put_off
+from ..core.errors import InputRefused, Problem
+from ..temporary import TemporaryFolder
+
+if TYPE_CHECKING:
+    from distributed import Client, LocalCluster, Security
+
+LOCAL = "local"
+"""Name of the scheduler that is started with its workers, and ends with the work."""
+CONNECT_TIMEOUT = 5.0
+"""Time (s) after which a scheduler counts as unreachable, and one without workers as useless."""
+_NO_PAGES: Mapping[str, Any] = {
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+    "distributed.nanny.http.routes": [],
+}
+"""Settings of Dask with which its web servers show nothing."""
+
+
+class ClusterFailed(Exception):  # noqa: N818 (as RunFailed)
+    """Workers of a scheduler could not begin, or could not go on."""
+
+
+@dataclass(frozen=True)
+class Certificates:
+    """Files (PEM) with which the scheduler of a cluster knows its users, and they know it.
+
+    Attributes
+    ----------
+    authority : str or Path
+        Certificate of the authority that has signed those of the cluster.
+    certificate, key : str or Path
+        Of this user.
+    """
+
+    authority: str | Path
+    certificate: str | Path
+    key: str | Path
+
+
+@contextmanager
+def connected(
+    scheduler: str, workers: int | None, certificates: Certificates | None = None
+) -> "Iterator[Client]":
+    """Connect to the workers of a Dask scheduler.
+
+    Parameters
+    ----------
+    scheduler : str
+        ``local`` for one that is started here, or the address of a running one.
+    workers : int or None
+        Number of processes of the local scheduler, by default one for each core.
+    certificates : Certificates, optional
+        For a scheduler at an address ``tls://HOST:PORT``.
+
+    Yields
+    ------
+    distributed.Client
+        There until the block ends.
+
+    Raises
+    ------
+    InputRefused
+        An address that is none, a scheduler that does not answer or has no workers, or no Dask.
+    ClusterFailed
+        Scheduler and workers cannot be started.
+    """
+    _check(scheduler, workers, certificates)
+    # messages of Dask that matter are raised in our own words
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    with _local(workers) if scheduler == LOCAL else _running(scheduler, certificates) as client:
+        yield client
+
+
+def _check(scheduler: str, workers: int | None, certificates: Certificates | None) -> None:
+    where = f"scheduler {scheduler}"
+    problems = list(_certificate_problems(scheduler, certificates))
+    if find_spec("distributed") is None:
+        remedy = 'install it: pip install "rockshed[cluster]"'
+        problems.append(Problem(where, "needs the package distributed", remedy))
+    if scheduler != LOCAL and "://" not in scheduler:
+        remedy = f"write {LOCAL}, or tcp://HOST:PORT of a running scheduler"
+        problems.append(Problem(where, "is no address", remedy))
+    if scheduler != LOCAL and workers is not None:
+        text = "a running scheduler has its own workers"
+        problems.append(Problem("workers", text, "leave it out"))
+    if problems:
+        raise InputRefused(problems)
+
+
+def _certificate_problems(scheduler: str, certificates: Certificates | None) -> Iterator[Problem]:
+    """Yield the certificates that are missing, or have no use."""
+    if scheduler == LOCAL and find_spec("cryptography") is None:
+        remedy = 'install it: pip install "rockshed[cluster]"'
+        text = "needs the package cryptography: nobody else may reach its processes"
+        yield Problem(f"scheduler {LOCAL}", text, remedy)
+    is_secure = scheduler.startswith("tls://")
+    if certificates is None:
+        if is_secure:
+            remedy = "give the files with certificates=..."
+            yield Problem(f"scheduler {scheduler}", "needs certificates", remedy)
+        return
+    if not is_secure:
+        text = "are for a scheduler at an address tls://HOST:PORT"
+        yield Problem("certificates", text, "leave them out, or correct the address")
+    for name, file in vars(certificates).items():
+        if not Path(file).is_file():
+            yield Problem(f"certificates: {name}", f"there is no file {file}", "correct the path")
+
+
+@contextmanager
+def _local(workers: int | None) -> "Iterator[Client]":
+    """Start a scheduler with worker processes of one thread each; dead ones are replaced.
+
+    Who can hand a task to a scheduler runs code as its user. This one and its workers talk TLS,
+    with a certificate that is made here, is in their memory only, and is asked of everybody who
+    connects; their web servers have no pages.
+    """
+    import dask
+    from distributed import Client, Security
+
+    security = Security.temporary()
+    with ExitStack() as opened:
+        folder = str(opened.enter_context(TemporaryFolder("rockshed-dask-")))
+        opened.enter_context(dask.config.set({**_NO_PAGES, "temporary-directory": folder}))
+        with put_off(), _deaf_to_ctrl_c():
+            cluster = opened.enter_context(_started(workers, folder, security))
+        yield opened.enter_context(Client(cluster, direct_to_workers=True, security=security))
+
+
+def _started(workers: int | None, folder: str, security: "Security") -> "LocalCluster":
+    """Start scheduler and workers.
+
+    Raises
+    ------
+    ClusterFailed
+        They cannot be started, for instance because the disk is full.
+    """
+    from distributed import LocalCluster
+
+    try:
+        return LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            memory_limit=0,
+            dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
+            silence_logs=logging.CRITICAL,
+            local_directory=folder,
+            security=security,
+            protocol="tls://",
+        )
+    except (OSError, RuntimeError) as error:
+        text = f"scheduler and workers cannot be started: {_first_line(error)}"
+        raise ClusterFailed(text) from error
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Let threads and processes that begin meanwhile not hear Ctrl-C.
+
+    A terminal tells Ctrl-C to all processes. It is for this one, which ends the others.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    # multiprocessing starts its tracker with its first process, and unblocks SIGINT then
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _running(address: str, certificates: Certificates | None) -> "Iterator[Client]":
+    """Connect to a running scheduler that has workers."""
+    from distributed import Client
+
+    where = f"scheduler {address}"
+    try:
+        client = Client(address, timeout=CONNECT_TIMEOUT, security=_security(certificates))
+    except Exception as error:  # a server that is no scheduler may end this in anything
+        text = f"no scheduler answers there within {CONNECT_TIMEOUT:g} s ({_first_line(error)})"
+        remedy = "start it with `dask scheduler`, correct the address, or take local"
+        raise InputRefused([Problem(where, text, remedy)]) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=CONNECT_TIMEOUT)
+        except TimeoutError as error:
+            remedy = f"start some: `dask worker {address}`"
+            raise InputRefused([Problem(where, "the scheduler has no workers", remedy)]) from error
+        yield client
+
+
+def _security(certificates: Certificates | None) -> Any:
+    """Return the certificates as Dask takes them; None for a scheduler without."""
+    from distributed import Security
+
+    if certificates is None:
+        return None
+    return Security(
+        require_encryption=True,
+        tls_ca_file=str(certificates.authority),
+        tls_client_cert=str(certificates.certificate),
+        tls_client_key=str(certificates.key),
+    )
+
+
+def _first_line(error: Exception) -> str:
+    """Return the reason of an error, as far as it says something to a person."""
+    if isinstance(error, MemoryError):  # the answer was read as the length of a message
+        return "what answers is no Dask scheduler"
+    return (str(error).splitlines() or [type(error).__name__])[0]
