@@ -6,6 +6,7 @@ compiler for any x86-64; it looks at the processor before it makes an instance. 
 description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and one flag.
 """
 
+import errno
 import json
 import os
 import platform as machine
@@ -47,6 +48,8 @@ _HERE = Path(__file__).parent
 _SLAVE = _HERE / "slave.h"
 _SHIMS = {Fmi.TWO: _HERE / "shim_fmi2.c", Fmi.THREE: _HERE / "shim_fmi3.c"}
 _CONDUCT = _HERE.parent / "python" / "conduct.py"
+_LEAST_FREE = 1 << 20
+"""Room (bytes) that a compiler needs at least; some say nothing on a full disk."""
 _KERNELS = (_HERE / "kernels.py", _HERE / "subset.py")
 
 
@@ -423,6 +426,14 @@ def compiler(platform: str) -> list[str]:
     )
 
 
+def _reason(done: "subprocess.CompletedProcess[str]", work: Path) -> str:
+    """Return why a compiler failed, in its own words or, on a full disk, without them."""
+    full = shutil.disk_usage(work).free < _LEAST_FREE
+    words = f"{os.strerror(errno.ENOSPC)} in {work.parent}" if full else ""
+    said = (done.stderr or done.stdout).strip()
+    return "\n".join(filter(None, (words, said))) or "it said nothing"
+
+
 def _linked(
     name: str, compiler: Sequence[str], platform: str, library: str, shim: str, sources: Files
 ) -> bytes:
@@ -462,6 +473,6 @@ def _linked(
         if done.returncode or not (work / library).is_file():
             raise BuildError(
                 f"{name}: the compiler failed for {platform}, no native FMU was built: "
-                f"{' '.join(command)}\n{(done.stderr or done.stdout).strip()}\n{_PYTHON_REMAINS}"
+                f"{' '.join(command)}\n{_reason(done, work)}\n{_PYTHON_REMAINS}"
             )
         return (work / library).read_bytes()

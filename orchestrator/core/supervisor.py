@@ -34,6 +34,9 @@ _PASSED_ON = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
 """Signals that are meant for the child, whichever process they are sent to."""
 _FIRST_EXCEPTION = 0xC0000000
 """Smallest exit code with which Windows ends a process that has crashed."""
+_AFTER_FIRST = 20.0
+"""Time (s) that a child has to hear the first Ctrl-C. A kernel that prepares a large layer of sand
+hears nothing for minutes, and has nothing to lose yet."""
 _AFTER_SECOND = 1.0
 """Time (s) that a child has after the second Ctrl-C, if it has not heard the first one."""
 _AFTER_TERMINATION = 5.0
@@ -73,8 +76,8 @@ def supervised(work: Callable[[], None], command: Sequence[str], report: Report)
 
     The child goes on behind this call as an unsupervised process would; the parent ends with the
     exit code of the child. Ctrl-C and requests to terminate reach the child. One that does not
-    hear them, in code that never returns, is ended: by the second Ctrl-C, or some seconds after a
-    request to terminate.
+    hear them, in code that does not return, is ended: some seconds after a request to terminate,
+    later after the first Ctrl-C, and soon after the second one.
 
     Parameters
     ----------
@@ -180,12 +183,10 @@ class _Requests:
     def enter(self, number: int) -> None:
         """Count a request; the deadline is that of a child that hears none."""
         self.count += 1
+        patience = {1: _AFTER_FIRST, 2: _AFTER_SECOND}.get(self.count, 0.0)
         if number != signal.SIGINT:
-            self.deadline = min(self.deadline, time.monotonic() + _AFTER_TERMINATION)
-        elif self.count == 2:
-            self.deadline = min(self.deadline, time.monotonic() + _AFTER_SECOND)
-        elif self.count > 2:
-            self.deadline = time.monotonic()
+            patience = _AFTER_TERMINATION
+        self.deadline = min(self.deadline, time.monotonic() + patience)
 
     @property
     def left(self) -> float:

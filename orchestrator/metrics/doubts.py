@@ -11,7 +11,7 @@ from rockshed.components.common.units import kN, mm, ms
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import contents, names
-from .cushion import cushions, thickness_at_start
+from .cushion import cushions, still_sinking, thickness_at_start
 from .energy import driven, structures
 from .headlines import headlines
 from .roles import column, members, members_of, owners, parameter, parameters, recorded
@@ -26,6 +26,14 @@ _WEIGHT_LIMIT = 0.1
 _THINNEST = 3.0
 """Diameters of a grain that a layer needs under the body to be a cushion."""
 
+_PEAKS = {
+    names.PEAK_TRANSMITTED: names.PEAK_TRANSMITTED_AT,
+    names.PEAK_ROCK: names.PEAK_ROCK_AT,
+    names.PEAK_MOMENT: names.PEAK_MOMENT_AT,
+    names.PEAK_SHEAR: names.PEAK_SHEAR_AT,
+    names.PEAK_REACTION: names.PEAK_REACTION_AT,
+}
+"""Largest values, and their times."""
 _NO_DEFLECTION = 1e-9
 """Change (m) of a deflection up to which nothing has loaded a structure."""
 
@@ -50,6 +58,7 @@ def warnings(run: StoredRun) -> list[str]:
     texts = [
         *meaningless(run),
         *told,
+        *_ended_too_early(run, found),
         *exceeded(run, found),
         *_open_balance(run, found),
         *(text for structure in structures(run) for text in _other_weight(run, structure)),
@@ -180,6 +189,31 @@ def _gone_sideways(run: StoredRun, cushion: str) -> Iterator[str]:
             f"which reaches from x = {left:g} m to {left + width:g} m; what came after is no "
             "impact on a cushion: move the rock, or widen the box"
         )
+
+
+def _ended_too_early(run: StoredRun, found: list[Metric]) -> Iterator[str]:
+    """Doubt the largest values of an impact that its run has cut off."""
+    forces = [column(run, cushion, Role.ON_BODY) for cushion in cushions(run)]
+    hit = any(run.series[force].any() for force in forces if force)
+    if run.status != "complete" or driven(run) or not hit:
+        return
+    end = float(run.time[-1])
+    ends = f"the run ends at {end / ms:.4g} ms"
+    if still_sinking(run):
+        yield (
+            f"{ends}, before the rock has come to a stop: largest values and penetration are those "
+            "until then; raise the stop time"
+        )
+        return
+    times = {metric.name: metric.value for metric in found}
+    cut = [name for name, at in _PEAKS.items() if at in times and _is(float(times[at]), end)]
+    if cut:
+        yield f"{ends}, with the largest value of {', '.join(cut)} so far: raise the stop time"
+
+
+def _is(time: float, end: float) -> bool:
+    """Tell whether a time is that of the end."""
+    return math.isclose(time, end, rel_tol=1e-9)
 
 
 def _unloaded(run: StoredRun, structure: str) -> Iterator[str]:

@@ -22,7 +22,7 @@ MOMENTS = int(os.environ.get("ROCKSHED_ENDING_MOMENTS", "0"))
 EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
 MARK = "ROCKSHED_TEST_MARK"
 """Environment variable by which all processes of a command are found."""
-PATIENCE = 120.0
+PATIENCE = 600.0
 """Time (s) that a command has to end, on a machine with much else to do."""
 RESULTS = "thesis"
 MINE = {

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from rockshed.core.errors import RunFailed
+from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
@@ -234,6 +236,22 @@ def test_a_body_in_motion_is_a_reference_from_the_start(tmp_path):
     found = oscillate(tmp_path, 1e-2, "jacobi", {"spring": spring(4.0), "mass": heavy})
     assert made(found) > 0.02 * 2.0
     assert found.provenance["warnings"] == []
+
+
+def test_a_runaway_ends_the_run_and_keeps_its_rows(tmp_path):
+    """E grows by exp(0.6 t) with a lag of 1.5 steps of 0.1 s: 11 times at ln 11 / 0.6 s."""
+    alarm = {"reference": 2.0}
+    with pytest.raises(RunFailed, match=r"bond b .*unstable.*E0 = 2 J.*reduce") as end:
+        oscillate(tmp_path, 0.1, "jacobi", energy_alarm=alarm)
+    assert end.value.time == pytest.approx(math.log(11.0) / 0.6, rel=0.3)
+    run = read_run(tmp_path / "run")
+    assert run.status == "failed"
+    assert abs(run.series["coupling.b.energy"][run.time < end.value.time]).max() <= 20.0
+    assert run.time[-1] >= end.value.time
+
+
+def test_a_runaway_needs_an_energy_that_the_system_names(tmp_path):
+    assert oscillate(tmp_path, 0.1, "jacobi").status == "complete"
 
 
 def test_the_summary_has_the_final_accounts(tmp_path):

@@ -96,6 +96,25 @@ def test_an_interruption_of_the_parent_alone_reaches_the_child(tmp_path):
     assert process.returncode == 130
 
 
+def test_a_child_that_hears_no_interruption_is_ended_after_a_while(tmp_path):
+    """As in a kernel that prepares a large layer of sand."""
+    process = start(tmp_path, "time.sleep(600)", "supervisor._AFTER_FIRST = 0.5")
+    child = child_of(process)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[0]
+    assert said == "reported None did not return when the run was interrupted\n"
+    assert not is_there(child)
+
+
+def test_a_child_that_has_heard_an_interruption_has_its_time(tmp_path):
+    told = "supervisor.tell(supervisor._HEARD); time.sleep(2); sys.exit(130)"
+    process = start(tmp_path, told, "supervisor._AFTER_FIRST = 0.1")
+    child_of(process)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60)[0] == ""
+    assert process.returncode == 130
+
+
 def test_ctrl_c_at_a_terminal_reaches_the_child_once(tmp_path):
     master, terminal = pty.openpty()
     process = start(

@@ -5,7 +5,7 @@ import pytest
 
 import rockshed
 from rockshed.metrics import comparison
-from rockshed.metrics.doubts import meaningless
+from rockshed.metrics.doubts import meaningless, warnings
 from tests.unit.test_headlines import made_up
 
 
@@ -36,6 +36,21 @@ def test_a_beam_that_an_impact_leaves_as_it_was_is_told():
     (said,) = meaningless(made_up(**{"beam.midspan.deflection": np.full(401, 2e-3)}))
     assert "the beam is never loaded: its deflection stays 2 mm from the start to the end" in said
     assert meaningless(made_up(**{"beam.midspan.deflection": 2e-3 + 1e-6 * WAY})) == []
+
+
+def ends(**columns):
+    return [text for text in warnings(made_up(**columns)) if text.startswith("the run ends")]
+
+
+def test_a_largest_value_in_the_last_row_is_told():
+    (said,) = ends(**{"sand.transmitted_force": 1e3 + 1e5 * WAY})
+    assert "with the largest value of peak transmitted force so far: raise the stop time" in said
+    assert ends() == []
+
+
+def test_a_rock_that_still_sinks_at_the_end_is_told():
+    (said,) = ends(**{"sand.penetration": 0.1 * WAY})
+    assert "before the rock has come to a stop" in said
 
 
 # ------------------------------------------------------------------ strict

@@ -30,6 +30,8 @@ _DESCRIPTIONS = {
     "energy": "sum of both works: energy that the coupling has made",
 }
 """Columns of a bond, and their descriptions."""
+RUNAWAY = 10.0
+"""Share of E0 beyond which an error of energy ends the run: nothing after it means anything."""
 
 
 @dataclass
@@ -38,29 +40,37 @@ class Watched:
 
     Attributes
     ----------
-    name, remedy : str
-        What it is, and what makes it smaller.
+    owner, what, remedy : str
+        Bond or component, what is watched of it, and what makes that smaller.
     largest, at : float
         The largest value so far (J), and its time (s).
+    ran_away_at : float, optional
+        First time (s) at which it was more than the energy of the whole system.
     """
 
-    name: str
+    owner: str
+    what: str
     remedy: str
     largest: float = 0.0
     at: float = 0.0
+    ran_away_at: float | None = None
 
-    def look(self, energies: NDArray[np.float64], times: NDArray[np.float64]) -> None:
-        """Keep the largest of more values (J) and its time (s)."""
-        i = int(np.argmax(np.abs(energies)))
-        if abs(energies[i]) > abs(self.largest):
+    def look(self, energies: NDArray[np.float64], times: NDArray[np.float64], most: float) -> None:
+        """Keep the largest of more values (J) and its time (s); ``most`` is a runaway (J)."""
+        sizes = np.abs(energies)
+        i = int(np.argmax(sizes))
+        if sizes[i] > abs(self.largest):
             self.largest, self.at = float(energies[i]), float(times[i])
+        if self.ran_away_at is None and sizes[i] > most:
+            self.ran_away_at = float(times[int(np.argmax(sizes > most))])
 
     def warning(self, share: float, reference: float) -> str:
         """Return the sentence that warns of it; the share and E0 (J) are those of the alarm."""
         percent = 100.0 * self.largest / reference
         return (
-            f"{self.name} reaches {self.largest:.6g} J at t = {self.at:.9g} s, {percent:+.3g} % of "
-            f"E0 = {reference:.6g} J, and {100.0 * share:g} % are tolerated: {self.remedy}"
+            f"{self.owner}: {self.what} reaches {self.largest:.6g} J at t = {self.at:.9g} s, "
+            f"{percent:+.3g} % of E0 = {reference:.6g} J, and {100.0 * share:g} % are tolerated: "
+            f"{self.remedy}"
         )
 
 
@@ -93,12 +103,13 @@ class Accounts:
         self._reference = self._read(given) if isinstance(given, End) else given
         self._largest_work = 0.0
         self._bonds = [
-            Watched(f"bond {bond.name}: the coupling energy", "reduce the exchange step")
+            Watched(f"bond {bond.name}", "the coupling energy", "reduce the exchange step")
             for bond in self.plan.bonds
         ]
         self._balances = [
             Watched(
-                f"{end.component}: the error of its balance of energy ({end.name})",
+                end.component,
+                f"the error of its balance of energy ({end.name})",
                 f"reduce the internal step of {end.component}, and the exchange step over which "
                 "its partners are held",
             )
@@ -136,6 +147,7 @@ class Accounts:
             In J.
         """
         found = np.zeros((len(rows), self.columns))
+        most = RUNAWAY * (abs(self._reference or 0.0) or np.inf)  # others are known at the end
         for i, (bond, channels) in enumerate(zip(self.plan.bonds, self._channels)):
             taken = bond.sign * _sums(rows[:, self._snapshots.taken][:, channels])
             if bond.work is None:
@@ -143,12 +155,12 @@ class Accounts:
             else:
                 given_back = rows[:, self._snapshots.place[bond.work.name]] - self._at_start[i]
             found[:, 3 * i : 3 * i + 3] = np.stack((taken, given_back, taken + given_back), axis=1)
-            self._bonds[i].look(taken + given_back, times)
+            self._bonds[i].look(taken + given_back, times, most)
             self._largest_work = max(self._largest_work, float(np.abs(taken).max()))
         for end, watched, start in zip(
             self.plan.balances, self._balances, self._balances_at_start, strict=True
         ):
-            watched.look(rows[:, self._snapshots.place[end.name]] - start, times)
+            watched.look(rows[:, self._snapshots.place[end.name]] - start, times, most)
         self._newest = found[-1]
         return found
 
@@ -158,6 +170,25 @@ class Accounts:
         if self._reference is not None:
             return self._reference
         return max(self._kinetic_at_start, self._largest_work)
+
+    def refuse_runaway(self) -> None:
+        """Do nothing as long as no error of energy is as large as the E0 that the system names.
+
+        Raises
+        ------
+        RunFailed
+            The first bond or component that made or lost more than :data:`RUNAWAY` of E0.
+        """
+        lost = [w for w in self._bonds + self._balances if w.ran_away_at is not None]
+        if not lost:
+            return
+        first = min(lost, key=lambda watched: watched.ran_away_at or 0.0)
+        raise RunFailed(
+            first.owner,
+            first.ran_away_at or 0.0,
+            f"unstable: {first.what} is more than {RUNAWAY:g} times E0 = "
+            f"{abs(self.reference):.6g} J, and nothing after it means anything; {first.remedy}",
+        )
 
     @property
     def warnings(self) -> list[str]:

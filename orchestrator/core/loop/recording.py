@@ -80,7 +80,13 @@ class Recorder:
             self.flush()
 
     def flush(self) -> None:
-        """Pass on the snapshots that wait."""
+        """Pass on the snapshots that wait.
+
+        Raises
+        ------
+        RunFailed
+            Energy runs away; the rows that show it have been passed on.
+        """
         waiting = self._snapshots.waiting
         if waiting:
             rows = self._snapshots.rows[: len(waiting)]
@@ -91,6 +97,7 @@ class Recorder:
             self._sink.rows(times, np.concatenate((rows[:, self._places], energies), axis=1))
             waiting.clear()
         self._flushed_at = time.monotonic()
+        self._accounts.refuse_runaway()
 
     def next_frames(self, exchange: int) -> int:
         """Return the next exchange after which states are recorded; the last one if none are."""
