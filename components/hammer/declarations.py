@@ -13,6 +13,8 @@ HeardPlaces = namedtuple("HeardPlaces", "wave rate length")
 HEARD = HeardPlaces(*range(3))
 """Places in ``heard``, which keeps the wave of the step before."""
 
+MOST_BODIES = 3
+"""Number of bodies of the train at most: ram, anvil, helmet."""
 _UTO = "Uto et al. 1974, table 1: standard penetration test"
 
 LAYOUT = Layout(
@@ -50,6 +52,72 @@ LAYOUT = Layout(
             "1",
             minimum=0.01,
             maximum=1.0,
+        ),
+        param(
+            "anvil.mass",
+            "mass of an anvil between ram and hammer cushion; 0: none",
+            0.0,
+            "kg",
+            minimum=0.0,
+        ),
+        param(
+            "anvil.stiffness",
+            "stiffness of the contact of ram and anvil",
+            1e10,
+            "N/m",
+            minimum=1.0,
+        ),
+        param(
+            "anvil.restitution",
+            "coefficient of restitution of ram and anvil",
+            1.0,
+            "1",
+            minimum=0.01,
+            maximum=1.0,
+        ),
+        param(
+            "helmet.mass",
+            "mass of the helmet (drive cap) between hammer cushion and head; 0: none",
+            0.0,
+            "kg",
+            minimum=0.0,
+        ),
+        param(
+            "pile_cushion.stiffness",
+            "stiffness of the cushion between helmet and head; 0: none, the helmet is rigid on it",
+            0.0,
+            "N/m",
+            minimum=0.0,
+        ),
+        param(
+            "pile_cushion.restitution",
+            "coefficient of restitution of the cushion between helmet and head",
+            1.0,
+            "1",
+            minimum=0.01,
+            maximum=1.0,
+        ),
+        param(
+            "gas.force",
+            "smallest force between ram and what is below it while the gas of a diesel burns",
+            0.0,
+            "N",
+            minimum=0.0,
+        ),
+        param(
+            "gas.hold",
+            "time since the ram has touched for which the gas keeps its force",
+            10e-3,
+            "s",
+            minimum=0.0,
+        ),
+        param(
+            "gas.end",
+            "time since the ram has touched at which the gas has lost its force, evenly from "
+            "gas.hold on",
+            12.5e-3,
+            "s",
+            minimum=0.0,
         ),
         param(
             "gap",
@@ -154,7 +222,9 @@ LAYOUT = Layout(
             role=Role.ELASTIC,
             label="hammer",
         ),
-        out("energy.supplied", "energy supplied by the blows after the first", "J"),
+        out("helmet.position", "position of the helmet, downwards; of the head without one", "m"),
+        out("helmet.velocity", "velocity of the helmet, downwards; 0 without one", "m/s"),
+        out("energy.supplied", "energy supplied by the blows after the first, and by gas", "J"),
         out(
             "energy.cushion_loss",
             "energy dissipated in the cushion",
@@ -187,9 +257,20 @@ LAYOUT = Layout(
         State("largest", lambda sizes: 1),
         State("ends", lambda sizes: 1),
         State("heard", lambda sizes: len(HEARD)),
+        State("masses", lambda sizes: MOST_BODIES),
+        State("places", lambda sizes: MOST_BODIES),
+        State("speeds", lambda sizes: MOST_BODIES),
+        State("stiffnesses", lambda sizes: MOST_BODIES),
+        State("restitutions", lambda sizes: MOST_BODIES),
+        State("pressed", lambda sizes: MOST_BODIES),
+        State("spring_forces", lambda sizes: MOST_BODIES),
+        State("elapsed", lambda sizes: 1),
     ),
 )
 """Variables and hidden arrays of the hammer.
 
 ``largest`` is the largest compression of the cushion in this blow (m), ``ends`` the force (N) at
-the end of the last internal step."""
+the end of the last internal step. Of the train from the ram downwards: ``masses`` (kg), ``places``
+(m) and ``speeds`` (m/s) of the bodies; ``stiffnesses`` (N/m), ``restitutions``, largest
+compressions ``pressed`` (m) and mean ``spring_forces`` (N) of the springs below them; ``elapsed``
+is the time (s) since the ram has touched."""

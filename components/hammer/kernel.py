@@ -9,7 +9,26 @@ from ..common.substeps import are_too_many, substep_count, substep_length
 from ..common.wave_port import Course, End, Heard, Ram, course, struck
 from .cushion import cushion_force, met, steeper
 from .declarations import HEARD, KINEMATICS, LAYOUT, WAVES
-from .faults import DIVERGED, NO_IMPEDANCE, RIGID_NEEDS_WAVES
+from .faults import (
+    DIVERGED,
+    GAS_ENDS_EARLY,
+    NO_IMPEDANCE,
+    NOT_SETTLED,
+    RIGID_NEEDS_WAVES,
+    TRAIN_INCOMPLETE,
+    TRAIN_NEEDS_WAVES,
+)
+from .train import (
+    UNSETTLED,
+    advance_train,
+    assemble,
+    bodies,
+    elastic,
+    has_train,
+    is_complete,
+    kinetic,
+    lifted,
+)
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -32,8 +51,15 @@ def initialise(w, x, k):
     Returns
     -------
     int
-        Status, OK or RIGID_NEEDS_WAVES.
+        Status, OK or a fault of the parameters.
     """
+    if has_train(w):
+        if w[V.port] == KINEMATICS:
+            return TRAIN_NEEDS_WAVES
+        if not is_complete(w):
+            return TRAIN_INCOMPLETE
+        if w[V.gas_end] < w[V.gas_hold]:
+            return GAS_ENDS_EARLY
     if w[V.port] == KINEMATICS and w[V.cushion_stiffness] == 0.0:
         return RIGID_NEEDS_WAVES
     view(x, k, A.largest)[0], view(x, k, A.ends)[0] = 0.0, 0.0
@@ -59,6 +85,8 @@ def evaluate(w, x, k):
     if w[V.port] == KINEMATICS:
         w[V.head_reached] = w[V.head_position]
     w[V.position] = w[V.head_reached] - w[V.gap]
+    if has_train(w):
+        assemble(w, x, k)
     w[V.energy_start] = 0.0
     publish(w, x, k)
     w[V.energy_start], w[V.energy_residual] = w[V.energy_residual], 0.0
@@ -81,7 +109,7 @@ def step(t, h, w, x, k):
     Returns
     -------
     int
-        Status: OK, NO_IMPEDANCE or DIVERGED.
+        Status: OK, NO_IMPEDANCE, NOT_SETTLED or DIVERGED.
     """
     if w[V.port] == WAVES and w[V.head_impedance] <= 0.0:
         return NO_IMPEDANCE
@@ -97,13 +125,20 @@ def step(t, h, w, x, k):
         now = t + i * dt
         if w[V.blow_interval] > 0.0 and now >= w[V.blows] * w[V.blow_interval] - _ROUNDING * dt:
             _strike_again(w, x, k)
-        if w[V.cushion_stiffness] == 0.0:
+        if has_train(w):
+            force = advance_train(now, dt, w, x, k)
+            if force == UNSETTLED:
+                return NOT_SETTLED
+            impulse += dt * force
+        elif w[V.cushion_stiffness] == 0.0:
             here = Course(way.start + i * dt * way.rate, way.rate, way.hidden)
             impulse += dt * _rigid(now, dt, here, w)
         else:
             impulse += dt * _cushioned(now, dt, w, x, k)
     w[V.force] = impulse / (n * dt)
-    if w[V.cushion_stiffness] == 0.0:
+    if has_train(w):
+        w[V.end_force] = view(x, k, A.spring_forces)[bodies(w) - 1]
+    elif w[V.cushion_stiffness] == 0.0:
         w[V.end_force] = w[V.touching] * max(
             0.0, w[V.head_impedance] * w[V.velocity] - w[V.head_wave]
         )
@@ -121,6 +156,8 @@ def _compression(w):
 @kernel
 def _cushion_energy(w, x, k):
     """Return the elastic energy in the cushion (J): what it would give back."""
+    if has_train(w):
+        return elastic(w, x, k)
     if w[V.cushion_stiffness] == 0.0:
         return 0.0
     stiffness, restitution = w[V.cushion_stiffness], w[V.cushion_restitution]
@@ -153,12 +190,17 @@ def _strike_again(w, x, k):
     before = _mechanical(w, x, k)
     w[V.position], w[V.velocity], w[V.touching] = w[V.head_reached], w[V.impact_velocity], 1.0
     view(x, k, A.largest)[0] = 0.0
+    if has_train(w):
+        assemble(w, x, k)
+        w[V.position], w[V.velocity] = view(x, k, A.places)[0], view(x, k, A.speeds)[0]
     w[V.blows] += 1.0
     w[V.energy_supplied] += _mechanical(w, x, k) - before
 
 
 @kernel
 def _mechanical(w, x, k):
+    if has_train(w):
+        return kinetic(w, x, k) + lifted(w, x, k) + elastic(w, x, k)
     return (
         0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
         - w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
@@ -237,8 +279,11 @@ def _way_down(start, end, slack):
 def publish(w, x, k):
     """Write the outputs of cushion and energies."""
     w[V.cushion_compression] = max(_compression(w), 0.0)
+    w[V.helmet_position], w[V.helmet_velocity] = w[V.head_reached], 0.0
     w[V.energy_kinetic] = 0.5 * w[V.mass] * w[V.velocity] * w[V.velocity]
     w[V.energy_gravity] = -w[V.mass] * w[V.gravity] * w[V.weight] * w[V.position]
+    if has_train(w):
+        _publish_train(w, x, k)
     w[V.energy_cushion] = _cushion_energy(w, x, k)
     w[V.energy_residual] = (
         w[V.energy_kinetic]
@@ -250,3 +295,15 @@ def publish(w, x, k):
         - w[V.energy_supplied]
         - w[V.energy_start]
     )
+
+
+@kernel
+def _publish_train(w, x, k):
+    """Write the outputs that anvil and helmet change."""
+    places, last = view(x, k, A.places), bodies(w) - 1
+    above = 1 if w[V.anvil_mass] > 0.0 else 0
+    below = places[above + 1] if above < last else w[V.head_reached]
+    w[V.cushion_compression] = max(places[above] - below, 0.0)
+    if w[V.helmet_mass] > 0.0:
+        w[V.helmet_position], w[V.helmet_velocity] = places[last], view(x, k, A.speeds)[last]
+    w[V.energy_kinetic], w[V.energy_gravity] = kinetic(w, x, k), lifted(w, x, k)

@@ -36,6 +36,8 @@ Acceleration = Annotated[NotNegative, BeforeValidator(InUnit("m/s2"))]
 Angle = Annotated[Number, BeforeValidator(InUnit("rad"))]
 AngularVelocity = Annotated[Number, BeforeValidator(InUnit("rad/s"))]
 Duration = Annotated[Positive, BeforeValidator(InUnit("s"))]
+Rate = Annotated[Positive, BeforeValidator(InUnit("1/s"))]
+StressGradient = Annotated[Positive, BeforeValidator(InUnit("N/m3"))]
 SoilDamping = Annotated[NotNegative, BeforeValidator(InUnit("s/m"))]
 
 _USUAL, _UNIT = "usual", "unit"

@@ -103,28 +103,43 @@ def drive(pile: PreparedPile, count: Count = lambda done, total: None) -> list[B
     return blows
 
 
-def bearing_graph(pile: PreparedPile, count: Count = lambda done, total: None) -> list[Blow]:
-    """Compute a first blow for each ultimate resistance of the bearing graph.
+@dataclass(frozen=True)
+class Point:
+    """First and last blow for one ultimate resistance of a bearing graph, without traces."""
+
+    first: Blow
+    last: Blow
+
+
+def bearing_graph(pile: PreparedPile, count: Count = lambda done, total: None) -> list[Point]:
+    """Compute blows for each ultimate resistance of the bearing graph.
 
     Parameters
     ----------
     pile : PreparedPile
         With hammer and rod.
     count : Count
-        Called with the numbers of blows done and of all.
+        Called with the numbers of resistances done and of all.
 
     Returns
     -------
-    list of Blow
-        By rising resistance, without traces; empty if the site has no bearing graph.
+    list of Point
+        By rising resistance; empty if the site has no bearing graph. Where it has one blow, or no
+        last one is wanted, first and last blow are one.
     """
-    resistances = sorted(pile.site.bearing.resistances) if pile.site.bearing else []
-    blows = []
+    wanted = pile.site.bearing
+    resistances = sorted(wanted.resistances) if wanted else []
+    blows = pile.site.blows if wanted and wanted.last_blow else 1
+    points = []
     for number, resistance in enumerate(resistances, 1):
-        blow = strike(pile, pile.rod(resistance), 0, resistance)
-        blows.append(replace(blow, traces={}))
+        rod = pile.rod(resistance)
+        struck = [
+            replace(strike(pile, rod, blow * pile.steps, resistance), traces={})
+            for blow in range(blows)
+        ]
+        points.append(Point(struck[0], struck[-1]))
         count(number, len(resistances))
-    return blows
+    return points
 
 
 def strike(pile: PreparedPile, rod: Instance, begun: int, resistance: float) -> Blow:

@@ -7,6 +7,7 @@ traces.parquet        force, Z v, displacements at head, gauge and toe over time
 envelopes.parquet     largest stresses and residual force in each segment, blow by blow; as
                       envelopes.csv
 bearing.parquet       a row for each ultimate resistance; as bearing.csv
+drivability.parquet   a row for each penetration; as drivability.csv
 figures/              pictures
 ====================  ==========================================================================
 """
@@ -25,8 +26,9 @@ from ...core.results.run_folder import RUN, SUMMARY
 from ...files import write_json
 from ...sites.pile.preparation import PreparedPile
 from ...versions import versions
-from .blows import TRACES, Blow
-from .summary import blow_values
+from .blows import TRACES, Blow, Point
+from .drivability import Stage
+from .summary import BlowValue, blow_values, formula_values, stage_values
 
 _PACKAGES = ("numpy", "numba", "pyarrow")
 _WORDS = {
@@ -97,7 +99,7 @@ def write_facts(
         "name": pile.name,
         "ended": datetime.now(UTC).isoformat(timespec="seconds"),
         "site_file": str(file) if file else None,
-        "site": pile.site.model_dump(mode="json", by_alias=True),
+        "site": (pile.given or pile.site).model_dump(mode="json", by_alias=True),
         "warnings": list(pile.warnings),
         "exchange_step": pile.step,
         "time": pile.time,
@@ -166,27 +168,54 @@ def envelope_table(pile: PreparedPile, blows: Sequence[Blow]) -> Any:
     return result_table(columns)
 
 
-def bearing_table(pile: PreparedPile, graph: Sequence[Blow]) -> Any:
+def bearing_table(pile: PreparedPile, graph: Sequence[Point]) -> Any:
     """Return a row for each ultimate resistance.
 
     Parameters
     ----------
     pile : PreparedPile
         That was struck.
-    graph : sequence of Blow
+    graph : sequence of Point
         Of the bearing graph, one at least.
 
     Returns
     -------
     pyarrow.Table
-        Resistance (N), and the values of the blow.
+        Resistance (N), and the values of the first blow; those of the last one as ``last.NAME``
+        where there are several.
     """
-    rows = [blow_values(pile, blow) for blow in graph]
-    resistances = [blow.resistance for blow in graph]
     words = "ultimate resistance of shaft and toe"
-    columns = [result_column("resistance", resistances, "N", words)]
+    columns = [result_column("resistance", [point.first.resistance for point in graph], "N", words)]
+    kinds = {"": [point.first for point in graph]}
+    if graph[0].last is not graph[0].first:
+        kinds["last."] = [point.last for point in graph]
+    for prefix, blows in kinds.items():
+        rows = [[*blow_values(pile, blow), *formula_values(pile, blow)] for blow in blows]
+        columns += _columns(rows, prefix)
+    return result_table(columns)
+
+
+def drivability_table(stages: Sequence[Stage]) -> Any:
+    """Return a row for each penetration.
+
+    Parameters
+    ----------
+    stages : sequence of Stage
+        Of the drivability analysis, one at least.
+
+    Returns
+    -------
+    pyarrow.Table
+        Penetration (m), resistances (N), blows, time (s), and the values of the blow.
+    """
+    return result_table(_columns([stage_values(stage) for stage in stages], ""))
+
+
+def _columns(rows: Sequence[Sequence[BlowValue]], prefix: str) -> list[Any]:
+    """Return a column for each value, named with a prefix."""
+    columns = []
     for entries in zip(*rows, strict=True):
-        name = entries[0].name
+        name = f"{prefix}{entries[0].name}"
         values = [entry.value for entry in entries]
         columns.append(result_column(name, values, entries[0].unit, name.replace("_", " ")))
-    return result_table(columns)
+    return columns

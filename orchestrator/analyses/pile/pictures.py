@@ -1,8 +1,8 @@
-"""Pictures of a pile: traces of a blow, envelopes of the stresses, several blows, bearing graph."""
+"""Pictures of a pile: traces, envelopes of stresses, several blows, bearing graph, drivability."""
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,13 +26,17 @@ from ...sites.pile.preparation import PreparedPile
 from ...tables import digits
 from ..drawing import drawn
 from ..frame import Drawing
-from .blows import Blow
+from .blows import Blow, Point
+from .drivability import Stage
+from .formulas import by_formulas
 
 if TYPE_CHECKING:
     from .result import PileResult
 
 MPa = 1e6
 """Pascal in a megapascal."""
+MN = 1e6
+"""Newton in a meganewton."""
 _WIDE = 50.0
 """Largest over smallest blow count from which on the scale of a bearing graph is logarithmic."""
 _TRAVELS = 8.0
@@ -44,8 +48,8 @@ _PRESSING = 0.05
 def caption(pile: PreparedPile) -> list[str]:
     """Return in short lines what was computed for a pile."""
     site = pile.site
-    length = sum(section.length for section in site.rod)
-    shaft = pile.resistance - site.toe.resistance
+    length = site.length
+    shaft = pile.shaft_resistance
     cushion = "no cushion"
     if site.cushion:
         stiffness = f"cushion {site.cushion.stiffness / kN:.4g} kN/m"
@@ -82,6 +86,8 @@ def drawings(result: "PileResult") -> dict[str, Drawing]:
         figures["blows"] = partial(blow_by_blow, pile, result.blows)
     if result.graph:
         figures["bearing"] = partial(bearing, pile, result.graph)
+    if result.stages:
+        figures["drivability"] = partial(depths, result.stages)
     return figures
 
 
@@ -189,7 +195,7 @@ def envelopes(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
             left.plot(blow.residual / kN, depth, color=INK, label=after, **style)
         for axes in (stress, left):
             axes.axvline(0.0, color=GREY, linewidth=0.7)
-            for layer in pile.site.shaft:
+            for layer in (*pile.site.shaft, *pile.site.friction):
                 axes.axhspan(layer.top, layer.bottom, color=SAND, alpha=0.18, linewidth=0.0)
             legend(axes)
         stress.set(xlabel="stress (MPa), tension to the left", ylabel="depth below the head (m)")
@@ -232,49 +238,231 @@ def blow_by_blow(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
     return figure
 
 
-def bearing(pile: PreparedPile, graph: Sequence[Blow]) -> Figure:
-    """Draw the bearing graph.
+def bearing(pile: PreparedPile, graph: Sequence[Point]) -> Figure:
+    """Draw the bearing graph of the first blow and, where there are several, of the last one.
+
+    The axis ends at the blow count that is said to be refusal; what is beyond it stands at the
+    right edge.
 
     Parameters
     ----------
     pile : PreparedPile
         That was struck.
-    graph : sequence of Blow
+    graph : sequence of Point
         One for each ultimate resistance.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Ultimate resistance and largest stresses over the blow count.
+        Ultimate resistance, that by dynamic formulas, and largest stresses over the blow count.
     """
-    shown = [blow for blow in graph if blow.count is not None]
-    words = "First blow each; the soil of the file scaled to R_u."
-    if refused := len(graph) - len(shown):
-        words += f" {refused} without a set are not shown."
-    count = [blow.count or 0.0 for blow in shown]
-    wide = bool(count) and max(count) > _WIDE * min(count)
-    if wide:
-        words += " Blow counts on a logarithmic scale."
-    with drawn([*caption(pile), words], WIDTH, 5.8) as figure:
-        resistance, stress = figure.subplots(2, 1, sharex=True, height_ratios=[1.3, 1])
-        values = [blow.resistance / kN for blow in shown]
-        resistance.plot(count, values, "o-", color=INK, markersize=4.0)
+    several = graph[0].last is not graph[0].first
+    curves = {"first blow": [point.first for point in graph]}
+    if several:
+        curves[f"blow {pile.site.blows}"] = [point.last for point in graph]
+    counts = [_counted(pile, blow) for blows in curves.values() for blow in blows]
+    shown = [count for count in counts if count is not None]
+    wide = bool(shown) and max(shown) > _WIDE * min(shown)
+    words = "The soil of the file scaled to R_u."
+    if len(shown) < len(counts):
+        words += f" Arrows: {_refusal(pile):g} blows per 0.3 m and more, or no set."
+    words += " Blow counts on a logarithmic scale." if wide else ""
+    with drawn([*caption(pile), words], WIDTH, 6.4) as figure:
+        resistance, stress = figure.subplots(2, 1, sharex=True, height_ratios=[1.5, 1])
+        edge = max(shown, default=1.0) * (1.6 if wide else 1.1)
+        for (name, blows), dashes in zip(curves.items(), ("-", "--")):
+            _resistance_over(pile, blows, edge, (resistance, dashes, name))
+            _stresses_over(pile, blows, (stress, dashes, name if several else ""))
+        _formulas_over(pile, list(curves.values())[-1], resistance)
         resistance.set(ylabel="ultimate resistance R_u (kN)")
         resistance.set_ylim(bottom=0.0)
-        _stresses_over(count, shown, stress)
-        stress.set_ylim(0.0, 1.15 * max(blow.compression.max() / MPa for blow in graph))
+        largest = max(blow.compression.max() / MPa for blows in curves.values() for blow in blows)
+        stress.set_ylim(0.0, 1.15 * largest)
         if wide:
             stress.set_xscale("log")
             plain_powers(stress.xaxis)
+            stress.set_xlim(0.8 * min(shown), 1.05 * edge)
         else:
-            stress.set_xlim(left=0.0)
+            stress.set_xlim(0.0, 1.03 * edge)
+        legend(resistance)
         legend(stress)
     return figure
 
 
-def _stresses_over(count: Sequence[float], blows: Sequence[Blow], axes: Axes) -> None:
-    pressed = [blow.compression.max() / MPa for blow in blows]
-    pulled = [blow.tension.max() / MPa for blow in blows]
-    axes.plot(count, pressed, "o-", color=TRANSMITTED, markersize=3.5, label="compression")
-    axes.plot(count, pulled, "o-", color=ROCK, markersize=3.5, label="tension")
+def _refusal(pile: PreparedPile) -> float:
+    """Return the blows per 0.3 m from which a bearing graph shows refusal."""
+    assert pile.site.bearing is not None
+    return pile.site.bearing.refusal
+
+
+def _counted(pile: PreparedPile, blow: Blow) -> float | None:
+    """Return the blow count of a blow; None at refusal."""
+    count = blow.count
+    return None if count is None or count >= _refusal(pile) else count
+
+
+def _resistance_over(
+    pile: PreparedPile, blows: Sequence[Blow], edge: float, line: tuple[Axes, str, str]
+) -> None:
+    """Draw R_u over the blow count on axes, with dashes and a label; refusals at the edge."""
+    axes, dashes, label = line
+    known = [(count, blow) for blow in blows if (count := _counted(pile, blow)) is not None]
+    values = [blow.resistance / kN for _, blow in known]
+    form: dict[str, Any] = {"color": INK, "markersize": 4.0}
+    axes.plot([count for count, _ in known], values, f"o{dashes}", label=f"R_u, {label}", **form)
+    beyond = [blow.resistance / kN for blow in blows if _counted(pile, blow) is None]
+    if beyond:
+        axes.plot([edge] * len(beyond), beyond, ">", color=INK, markersize=5.0)
+
+
+def _formulas_over(pile: PreparedPile, blows: Sequence[Blow], axes: Axes) -> None:
+    """Draw what Hiley and Gates make of the sets."""
+    known = [(count, blow) for blow in blows if (count := _counted(pile, blow)) is not None]
+    count = [count for count, _ in known]
+    found = [by_formulas(pile, blow) for _, blow in known]
+    hiley = [entry.hiley / kN for entry in found]
+    gates = [(entry.gates or 0.0) / kN for entry in found]
+    axes.plot(count, hiley, ":", color=BEAM, linewidth=1.2, label="Hiley")
+    axes.plot(count, gates, "-.", color=SAND, linewidth=1.2, label="Gates (FHWA)")
+
+
+def _stresses_over(pile: PreparedPile, blows: Sequence[Blow], line: tuple[Axes, str, str]) -> None:
+    axes, dashes, label = line
+    known = [(count, blow) for blow in blows if (count := _counted(pile, blow)) is not None]
+    count = [count for count, _ in known]
+    pressed = [blow.compression.max() / MPa for _, blow in known]
+    pulled = [blow.tension.max() / MPa for _, blow in known]
+    after = f", {label}" if label else ""
+    form: dict[str, Any] = {"markersize": 3.5}
+    axes.plot(count, pressed, f"o{dashes}", color=TRANSMITTED, label=f"compression{after}", **form)
+    axes.plot(count, pulled, f"o{dashes}", color=ROCK, label=f"tension{after}", **form)
     axes.set(ylabel="largest stress (MPa)", xlabel="blows per 0.3 m")
+
+
+def depths(stages: Sequence[Stage]) -> Figure:
+    """Draw the drivability over the penetration.
+
+    Parameters
+    ----------
+    stages : sequence of Stage
+        One for each penetration.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Resistances, blow counts, stresses with their limits, and blows or time from the first
+        penetration on, side by side.
+    """
+    pile = stages[0].pile
+    number = pile.site.blows
+    words = (
+        f"Blow {number} at each penetration. Dotted: refusal, and limits of the stresses; grey: "
+        "bounds of the layers."
+    )
+    name = ": ".join(filter(None, (literal(pile.name), literal(pile.site.description))))
+    with drawn([name, _hammer_words(pile), words], 1.15 * WIDTH, 5.0) as figure:
+        bearing, blows, stress, time = figure.subplots(1, 4, sharey=True)
+        _resistances_down(stages, bearing)
+        _blows_down(stages, blows)
+        _stresses_down(stages, stress)
+        _time_down(stages, time)
+        _layers_down(stages, (bearing, blows, stress, time))
+        bearing.set(ylabel="depth of the toe below the ground (m)")
+        bearing.set_ylim(1.03 * stages[-1].penetration, 0.0)
+        for axes in (bearing, blows, stress, time):
+            legend(axes)
+    return figure
+
+
+def _hammer_words(pile: PreparedPile) -> str:
+    """Return hammer and cushions in a line."""
+    hammer = pile.site.hammer
+    parts = [
+        " ".join(filter(None, (hammer.kind, "hammer", literal(hammer.model)))),
+        f"ram {digits(hammer.mass, 4)} kg",
+        f"rated energy {digits(hammer.energy / kJ, 4)} kJ, efficiency {hammer.efficiency:g}",
+    ]
+    for spring, words in ((pile.site.cushion, "cushion"), (pile.site.pile_cushion, "pile cushion")):
+        if spring:
+            parts.append(f"{words} {digits(spring.stiffness / MN, 3)} MN/m")
+    if pile.site.helmet:
+        parts.append(f"helmet {digits(pile.site.helmet, 4)} kg")
+    return "; ".join(parts)
+
+
+def _resistances_down(stages: Sequence[Stage], axes: Axes) -> None:
+    depth = [stage.penetration for stage in stages]
+    shaft = [stage.pile.shaft_resistance / kN for stage in stages]
+    total = [stage.pile.resistance / kN for stage in stages]
+    axes.plot(shaft, depth, "-", color=SAND, label="shaft")
+    axes.plot(total, depth, "-", color=INK, label="shaft and toe")
+    axes.set(xlabel="resistance (kN)")
+    axes.set_xlim(left=0.0)
+
+
+def _blows_down(stages: Sequence[Stage], axes: Axes) -> None:
+    wanted = stages[0].pile.site.drivability
+    assert wanted is not None
+    known = [(stage.count, stage.penetration) for stage in stages if stage.count is not None]
+    stuck = [stage.penetration for stage in stages if stage.count is None]
+    count = [count for count, _ in known]
+    axes.plot(count, [depth for _, depth in known], "o-", color=TRANSMITTED, markersize=3.0)
+    if stuck:
+        axes.plot([wanted.refusal] * len(stuck), stuck, ">", color=ROCK, label="refusal")
+    if stuck or max(count, default=0.0) > 0.5 * wanted.refusal:
+        axes.axvline(wanted.refusal, color=ROCK, linestyle=":", linewidth=1.0)
+    axes.set(xlabel=f"blows / {wanted.per:g} m")
+    axes.set_xlim(left=0.0)
+
+
+def _stresses_down(stages: Sequence[Stage], axes: Axes) -> None:
+    limits = stages[0].pile.site.limits
+    struck = [(stage.penetration, stage.blow) for stage in stages if stage.blow]
+    depth = [depth for depth, _ in struck]
+    for kind, colour in (("compression", TRANSMITTED), ("tension", ROCK)):
+        largest = [getattr(blow, kind).max() / MPa for _, blow in struck]
+        axes.plot(largest, depth, "-", color=colour, label=kind)
+        limit = getattr(limits, kind)
+        if limit is not None:
+            axes.axvline(limit / MPa, color=colour, linestyle=":", linewidth=1.0)
+    axes.set(xlabel="stress (MPa)")
+    axes.set_xlim(left=0.0)
+
+
+def _time_down(stages: Sequence[Stage], axes: Axes) -> None:
+    known = [stage for stage in stages if stage.driven is not None]
+    depth = [stage.penetration for stage in known]
+    if stages[0].pile.site.hammer.rate is None:
+        axes.plot([stage.driven or 0.0 for stage in known], depth, "-", color=BEAM)
+        axes.set(xlabel="blows so far")
+    else:
+        minutes = [(stage.time or 0.0) / _MINUTE for stage in known]
+        axes.plot(minutes, depth, "-", color=BEAM)
+        axes.set(xlabel="time so far (min)")
+    axes.set_xlim(left=0.0)
+
+
+_MINUTE = 60.0
+
+
+def _layers_down(stages: Sequence[Stage], panels: Sequence[Axes]) -> None:
+    """Draw the bounds of the layers, and their names in the first panel."""
+    ground = stages[0].pile.site.ground
+    assert ground is not None
+    top, deepest = 0.0, stages[-1].penetration
+    for layer in ground.layers:
+        for axes in panels:
+            axes.axhline(layer.bottom, color=GREY, linewidth=0.6)
+        if top < deepest:
+            place = (0.98, top + 0.02 * deepest)
+            axes = panels[-1]
+            axes.text(
+                *place,
+                literal(layer.soil),
+                transform=axes.get_yaxis_transform(),
+                ha="right",
+                va="top",
+                fontsize=7.5,
+                color=GREY,
+            )
+        top = layer.bottom

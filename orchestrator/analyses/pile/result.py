@@ -10,21 +10,41 @@ from ...core.results.metric import Metric
 from ...sites.pile.preparation import PreparedPile
 from ...tables import Table
 from ..frame import Result
-from .blows import Blow
-from .files import bearing_table, envelope_table, trace_table, write_facts, write_tables
+from .blows import Blow, Point
+from .drivability import Stage
+from .files import (
+    bearing_table,
+    drivability_table,
+    envelope_table,
+    trace_table,
+    write_facts,
+    write_tables,
+)
 from .summary import metrics_of
-from .tables import blow_table, graph_table, in_words, notes, warnings
+from .tables import (
+    blow_table,
+    graph_tables,
+    in_words,
+    limit_warnings,
+    notes,
+    stage_table,
+    warnings,
+)
 
 
 class PileResult(Result):
-    """Blows on a pile, one after the other, and its bearing graph.
+    """Blows on a pile, one after the other, its bearing graph and its drivability.
 
     Attributes
     ----------
     pile : PreparedPile
         Site, from which hammer and rod are made.
-    blows, graph : sequence of Blow
-        One after the other, and for each resistance of the bearing graph.
+    blows : sequence of Blow
+        One after the other.
+    graph : sequence of Point
+        First and last blow for each resistance of the bearing graph.
+    stages : sequence of Stage
+        Penetrations of the drivability analysis.
     wall_time : float
         Time (s) that the blows took.
     """
@@ -32,12 +52,18 @@ class PileResult(Result):
     kind = "pile"
 
     def __init__(
-        self, pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Blow], wall_time: float
+        self,
+        pile: PreparedPile,
+        blows: Sequence[Blow],
+        graph: Sequence[Point],
+        stages: Sequence[Stage],
+        wall_time: float,
     ) -> None:
         super().__init__()
         self.pile = pile
         self.blows = tuple(blows)
         self.graph = tuple(graph)
+        self.stages = tuple(stages)
         self.wall_time = wall_time
 
     @property
@@ -47,27 +73,39 @@ class PileResult(Result):
 
     def metric_list(self) -> list[Metric]:
         """Return the values of each blow, and of the whole."""
-        return list(metrics_of(self.pile, self.blows, self.graph))
+        return list(metrics_of(self.pile, self.blows, self.graph, self.stages))
 
     @property
     def summary(self) -> str:
         """Number of blows and penetration in one line."""
         total = sum(blow.set for blow in self.blows)
         graph = f", bearing graph of {len(self.graph)} resistances" if self.graph else ""
-        return f"{in_words(self.blows)}, penetration {total / mm:.1f} mm{graph}"
+        depths = f", {len(self.stages)} penetrations" if self.stages else ""
+        return f"{in_words(self.blows)}, penetration {total / mm:.1f} mm{graph}{depths}"
+
+    @property
+    def every_blow(self) -> list[Blow]:
+        """All blows, those of the bearing graph and of the drivability too."""
+        points = [blow for point in self.graph for blow in (point.first, point.last)]
+        stages = [stage.blow for stage in self.stages if stage.blow]
+        return [*self.blows, *points, *stages]
 
     @property
     def notes(self) -> list[str]:
         """Energies and times, and the error of the energy balance."""
-        return notes(self.pile, self.blows, self.graph, self.wall_time)
+        return notes(self.pile, self.blows, self.every_blow, self.wall_time)
 
     @property
     def warnings(self) -> list[str]:
         """Values of the site that are not usual, and doubts about the blows, a sentence each."""
-        return [*self.pile.warnings, *warnings([*self.blows, *self.graph])]
+        return [
+            *self.pile.warnings,
+            *warnings(self.every_blow),
+            *limit_warnings(self.pile, self.blows, self.stages),
+        ]
 
     def tables(self) -> list[Table]:
-        """Return the blows, and the bearing graph where the site has one.
+        """Return the blows, the bearing graph and the drivability where the site has them.
 
         Returns
         -------
@@ -76,7 +114,9 @@ class PileResult(Result):
         """
         tables = [blow_table(self.pile, self.blows)]
         if self.graph:
-            tables.append(graph_table(self.pile, self.graph))
+            tables += graph_tables(self.pile, self.graph)
+        if self.stages:
+            tables.append(stage_table(self.stages))
         return tables
 
     def to_arrow(self) -> Any:
@@ -90,10 +130,12 @@ class PileResult(Result):
         return trace_table(self.blows)
 
     def write_files(self, folder: Path) -> list[Path]:
-        """Write traces, envelopes, bearing graph, summary and ``run.json`` into a folder."""
+        """Write traces, envelopes, bearing graph, drivability and the facts into a folder."""
         tables = {"traces": self.to_arrow(), "envelopes": envelope_table(self.pile, self.blows)}
         if self.graph:
             tables["bearing"] = bearing_table(self.pile, self.graph)
+        if self.stages:
+            tables["drivability"] = drivability_table(self.stages)
         return [
             *write_tables(tables, folder),
             *write_facts(self.pile, self.metric_list(), self.wall_time, folder),

@@ -11,6 +11,7 @@ from ...sites.pile.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
 from .blows import bearing_graph, drive
+from .drivability import drivability
 from .result import PileResult
 
 
@@ -71,8 +72,9 @@ def pile(
         tell_first_compilation([component("Hammer"), component("PileRod")])
         began = time.perf_counter()
         struck = drive(prepared, counter(show, "blows"))
-        graph = bearing_graph(prepared, counter(show, "bearing graph, blows"))
-        result = PileResult(prepared, struck, graph, time.perf_counter() - began)
+        graph = bearing_graph(prepared, counter(show, "bearing graph, resistances"))
+        stages = drivability(prepared, counter(show, "drivability, penetrations"))
+        result = PileResult(prepared, struck, graph, stages, time.perf_counter() - began)
         if place is not None:
             result.write(place, pictures, show)
     result.folder = Path(folder) if folder else None

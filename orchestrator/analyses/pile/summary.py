@@ -7,7 +7,9 @@ import numpy as np
 
 from ...core.results.metric import Metric
 from ...sites.pile.preparation import PreparedPile
-from .blows import Blow
+from .blows import Blow, Point
+from .drivability import Stage
+from .formulas import by_formulas
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,51 @@ def blow_values(pile: PreparedPile, blow: Blow) -> list[BlowValue]:
     ]
 
 
+def formula_values(pile: PreparedPile, blow: Blow) -> list[BlowValue]:
+    """Return the ultimate resistances (N) that dynamic formulas make of the set of a blow."""
+    found = by_formulas(pile, blow)
+    return [BlowValue("hiley", found.hiley, "N"), BlowValue("gates", found.gates, "N")]
+
+
+def stage_values(stage: Stage) -> list[BlowValue]:
+    """Return the single values of a penetration.
+
+    Parameters
+    ----------
+    stage : Stage
+        Of a drivability analysis.
+
+    Returns
+    -------
+    list of BlowValue
+        In SI units, in the order of the files; those of a blow are None where there is none.
+    """
+    site = stage.pile.site
+    made = [
+        BlowValue("penetration", stage.penetration, "m"),
+        BlowValue("shaft_resistance", stage.pile.shaft_resistance, "N"),
+        BlowValue("toe_resistance", site.toe.resistance, "N"),
+        BlowValue("blows_per_way", stage.count, "1"),
+        BlowValue("blows", stage.driven, "1"),
+        BlowValue("time", stage.time, "s"),
+    ]
+    blow = stage.blow
+    if blow is not None:
+        return [*made, *blow_values(stage.pile, blow)]
+    return [*made, *(BlowValue(name, None, unit) for name, unit in _BLOW_UNITS)]
+
+
+_BLOW_UNITS = (
+    *(("set", "m"), ("blows_per_0.3_m", "1"), ("toe_displacement", "m"), ("head_force", "N")),
+    *(("compression", "Pa"), ("compression_depth", "m"), ("tension", "Pa"), ("tension_depth", "m")),
+    *(("transferred_energy", "J"), ("energy_ratio", "1"), ("residual_force", "N")),
+    *(("energy_unbalanced", "1"), ("energy_moving", "1")),
+)
+"""Names and units of :func:`blow_values`."""
+
+
 def metrics_of(
-    pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Blow]
+    pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Point], stages: Sequence[Stage]
 ) -> Iterator[Metric]:
     """Yield the metrics of a pile.
 
@@ -62,8 +107,10 @@ def metrics_of(
         That was struck.
     blows : sequence of Blow
         One after the other.
-    graph : sequence of Blow
+    graph : sequence of Point
         Of the bearing graph.
+    stages : sequence of Stage
+        Of the drivability analysis.
 
     Yields
     ------
@@ -78,11 +125,24 @@ def metrics_of(
     yield Metric("penetration", sum(blow.set for blow in blows), "m")
     for number, blow in enumerate(blows, 1):
         yield from _of_blow(f"blow.{number}", pile, blow)
-    for blow in graph:
-        yield from _of_blow(f"bearing.{blow.resistance:g}", pile, blow)
+    for point in graph:
+        yield from _of_blow(f"bearing.{point.first.resistance:g}", pile, point.first)
+        for entry in formula_values(pile, point.first):
+            yield from _metric(f"bearing.{point.first.resistance:g}", entry)
+        if point.last is not point.first:
+            yield from _of_blow(f"bearing_last.{point.last.resistance:g}", pile, point.last)
+            for entry in formula_values(pile, point.last):
+                yield from _metric(f"bearing_last.{point.last.resistance:g}", entry)
+    for stage in stages:
+        for entry in stage_values(stage):
+            yield from _metric(f"drivability.{stage.penetration:g}", entry)
 
 
 def _of_blow(prefix: str, pile: PreparedPile, blow: Blow) -> Iterator[Metric]:
     for entry in blow_values(pile, blow):
-        if entry.value is not None:
-            yield Metric(f"{prefix}.{entry.name}", entry.value, entry.unit)
+        yield from _metric(prefix, entry)
+
+
+def _metric(prefix: str, entry: BlowValue) -> Iterator[Metric]:
+    if entry.value is not None:
+        yield Metric(f"{prefix}.{entry.name}", entry.value, entry.unit)

@@ -4,10 +4,13 @@ from collections.abc import Iterator, Sequence
 
 from rockshed.components.common.units import kJ, kN, mm
 
+from ...formulas.pile_driving import GATES_SOURCE, HILEY_SOURCE
 from ...sites.pile.preparation import PreparedPile
 from ...tables import Table
-from .blows import FOOT, Blow
-from .summary import blow_values
+from .blows import FOOT, Blow, Point
+from .drivability import Stage
+from .formulas import stroke_of
+from .summary import BlowValue, blow_values, formula_values, stage_values
 
 MPa = 1e6
 """Pascal in a megapascal."""
@@ -51,35 +54,141 @@ def blow_table(pile: PreparedPile, blows: Sequence[Blow]) -> Table:
     return _table(pile, "blows", "blow", named)
 
 
-def graph_table(pile: PreparedPile, graph: Sequence[Blow]) -> Table:
-    """Return a row for each ultimate resistance of the bearing graph.
+def graph_tables(pile: PreparedPile, graph: Sequence[Point]) -> list[Table]:
+    """Return a row for each ultimate resistance, with dynamic formulas beside it.
 
     Parameters
     ----------
     pile : PreparedPile
         That was struck.
-    graph : sequence of Blow
+    graph : sequence of Point
+        One for each resistance.
+
+    Returns
+    -------
+    list of Table
+        Set, blow count, forces, stresses, energies at the first blow, at the last one where there
+        are several, and resistances by formulas.
+    """
+    first = [(f"{point.first.resistance / kN:g}", point.first) for point in graph]
+    last = [(f"{point.last.resistance / kN:g}", point.last) for point in graph]
+    tables = [_table(pile, "bearing graph", "R_u (kN)", first)]
+    if graph[0].last is not graph[0].first:
+        tables.append(_table(pile, f"bearing graph, blow {pile.site.blows}", "R_u (kN)", last))
+    return [*tables, formula_table(pile, [blow for _, blow in last])]
+
+
+def formula_table(pile: PreparedPile, blows: Sequence[Blow]) -> Table:
+    """Return the resistances that dynamic formulas make of computed sets, beside those computed.
+
+    Parameters
+    ----------
+    pile : PreparedPile
+        That was struck.
+    blows : sequence of Blow
         One for each resistance.
 
     Returns
     -------
     Table
-        Set, blow count, forces, stresses, energies.
+        Resistance, set, and the formulas with their deviation.
     """
-    named = [(f"{blow.resistance / kN:g}", blow) for blow in graph]
-    return _table(pile, "bearing graph", "R_u (kN)", named)
+    titles = [
+        *("R_u (kN)", "set (mm)", "Hiley (kN)", "Hiley - R_u (%)"),
+        *("Gates, FHWA (kN)", "Gates - R_u (%)"),
+    ]
+    table = Table(titles, right=titles, title="dynamic formulas for the computed sets")
+    for blow in blows:
+        cells = [f"{blow.resistance / kN:g}", f"{blow.set / mm:.2f}"]
+        for entry in formula_values(pile, blow):
+            if entry.value is None:
+                cells += ["-", "-"]
+            else:
+                deviation = 100.0 * (entry.value / blow.resistance - 1.0)
+                cells += [f"{entry.value / kN:.0f}", f"{deviation:+.0f}"]
+        table.add(*cells)
+    stroke = stroke_of(pile)
+    table.notes = [
+        f"Hiley: efficiency {stroke.efficiency:g}, restitution {stroke.restitution:g} of the "
+        f"softest cushion, quake {stroke.quake / mm:g} mm. Source: {HILEY_SOURCE}",
+        f"Gates: rated energy {stroke.rated_energy / kJ:.4g} kJ. Source: {GATES_SOURCE}",
+    ]
+    return table
+
+
+def stage_table(stages: Sequence[Stage]) -> Table:
+    """Return a row for each penetration.
+
+    Parameters
+    ----------
+    stages : sequence of Stage
+        Of the drivability analysis, one at least.
+
+    Returns
+    -------
+    Table
+        Resistances, blows, stresses, energy, and blows and time from the first penetration on.
+    """
+    wanted = stages[0].pile.site.drivability
+    assert wanted is not None
+    titles = [
+        "toe at (m)",
+        "shaft (kN)",
+        "toe (kN)",
+        f"blows / {wanted.per:g} m",
+        *(words for _, words, _, _ in _STAGE_COLUMNS),
+        "blows so far",
+    ]
+    has_rate = stages[0].pile.site.hammer.rate is not None
+    titles += ["time (min)"] if has_rate else []
+    table = Table(titles, right=titles, title="drivability")
+    for stage in stages:
+        table.add(*_stage_cells(stage, has_rate))
+    number = stages[0].pile.site.blows
+    table.notes = [f"blow {number} at each penetration; refusal: {wanted.refusal:g} blows and more"]
+    if not has_rate:
+        table.notes.append("the time is not known: give hammer.rate, as in `40 1/min`")
+    return table
+
+
+_STAGE_COLUMNS = tuple(
+    column
+    for column in _COLUMNS
+    if column[0] in ("set", "compression", "tension", "transferred_energy")
+)
+
+
+def _stage_cells(stage: Stage, has_rate: bool) -> Iterator[str]:
+    pile = stage.pile
+    yield f"{stage.penetration:g}"
+    yield f"{pile.shaft_resistance / kN:.0f}"
+    yield f"{pile.site.toe.resistance / kN:.0f}"
+    if stage.blow is None:
+        yield "own weight"
+    else:
+        yield "refusal" if stage.count is None else f"{stage.count:.1f}"
+    values = {entry.name: entry.value for entry in stage_values(stage)}
+    for name, _, size, digits in _STAGE_COLUMNS:
+        value = values[name]
+        yield "" if value is None else f"{value / size:.{digits}f}"
+    yield "no end" if stage.driven is None else f"{stage.driven:.0f}"
+    if has_rate:
+        yield "no end" if stage.time is None else f"{stage.time / _MINUTE:.1f}"
+
+
+_MINUTE = 60.0
 
 
 def _table(pile: PreparedPile, title: str, first: str, named: Sequence[tuple[str, Blow]]) -> Table:
     titles = [first, *(words for _, words, _, _ in _COLUMNS)]
     table = Table(titles, right=titles, title=title)
     for name, blow in named:
-        table.add(name, *_cells(pile, blow))
+        table.add(name, *_cells(blow_values(pile, blow)))
     return table
 
 
-def _cells(pile: PreparedPile, blow: Blow) -> Iterator[str]:
-    values = {entry.name: entry.value for entry in blow_values(pile, blow)}
+def _cells(entries: Sequence[BlowValue]) -> Iterator[str]:
+    values = {entry.name: entry.value for entry in entries}
     for name, _, size, digits in _COLUMNS:
         value = values[name]
         yield "refusal" if value is None else f"{value / size:.{digits}f}"
@@ -102,7 +211,7 @@ def in_words(blows: Sequence[Blow]) -> str:
 
 
 def notes(
-    pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Blow], wall_time: float
+    pile: PreparedPile, blows: Sequence[Blow], every: Sequence[Blow], wall_time: float
 ) -> list[str]:
     """Return remarks on a pile.
 
@@ -110,8 +219,8 @@ def notes(
     ----------
     pile : PreparedPile
         That was struck.
-    blows, graph : sequence of Blow
-        One after the other, and of the bearing graph.
+    blows, every : sequence of Blow
+        One after the other, and those of the bearing graph and of all penetrations too.
     wall_time : float
         That the blows took (s).
 
@@ -121,7 +230,7 @@ def notes(
         A sentence each.
     """
     total = sum(blow.set for blow in blows)
-    worst = max(abs(blow.unbalanced / blow.impact_energy) for blow in (*blows, *graph))
+    worst = max(abs(blow.unbalanced / blow.impact_energy) for blow in every)
     return [
         f"{in_words(blows)}, {total / mm:.1f} mm; rated energy {pile.rated_energy / kJ:.4g} kJ, "
         f"ram strikes with {blows[0].impact_energy / kJ:.4g} kJ; wave from head to toe in "
@@ -137,7 +246,7 @@ def warnings(blows: Sequence[Blow]) -> list[str]:
     Parameters
     ----------
     blows : sequence of Blow
-        Those of the bearing graph too.
+        Those of the bearing graph and of all penetrations too.
 
     Returns
     -------
@@ -159,3 +268,52 @@ def warnings(blows: Sequence[Blow]) -> list[str]:
             "the stiffness of the cushion"
         )
     return sentences
+
+
+def limit_warnings(pile: PreparedPile, blows: Sequence[Blow], stages: Sequence[Stage]) -> list[str]:
+    """Return where stresses exceed their limits, and where the pile does not go on.
+
+    Parameters
+    ----------
+    pile : PreparedPile
+        With the limits.
+    blows : sequence of Blow
+        One after the other.
+    stages : sequence of Stage
+        Of the drivability analysis.
+
+    Returns
+    -------
+    list of str
+        A sentence each.
+    """
+    sentences = []
+    named = [(f"blow {number}", blow) for number, blow in enumerate(blows, 1)]
+    driven = [(f"a toe at {s.penetration:g} m", s.blow) for s in stages if s.blow]
+    for kind in ("compression", "tension"):
+        limit = getattr(pile.site.limits, kind)
+        for group in (named, driven) if limit else ():
+            above = [(name, blow) for name, blow in group if getattr(blow, kind).max() > limit]
+            if above:
+                sentences.append(_exceeded(pile, kind, limit, above))
+    if stuck := [stage for stage in stages if stage.blow and stage.count is None]:
+        wanted = pile.site.drivability
+        assert wanted is not None
+        sentences.append(
+            f"the pile is not driven on with the toe at {stuck[0].penetration:g} m: more than "
+            f"{wanted.refusal:g} blows for {wanted.per:g} m"
+        )
+    return sentences
+
+
+def _exceeded(
+    pile: PreparedPile, kind: str, limit: float, above: Sequence[tuple[str, Blow]]
+) -> str:
+    name, worst = max(above, key=lambda entry: getattr(entry[1], kind).max())
+    stress = getattr(worst, kind)
+    more = f", and above the limit in {len(above) - 1} more" if len(above) > 1 else ""
+    return (
+        f"{kind} of {stress.max() / MPa:.1f} MPa with {name}, "
+        f"{pile.middles[stress.argmax()]:.1f} m "
+        f"below the head, exceeds the limit of {limit / MPa:g} MPa{more}"
+    )

@@ -3,8 +3,8 @@
 Everything that is wrong with a site is collected before it is refused.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate
 from typing import Any
@@ -18,15 +18,16 @@ from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
 from ...input_files.fields import doubts, explained
-from ...input_files.form import first, formed, if_formed, told_if_formed
+from ...input_files.form import first, formed
 from ...input_files.places import Key, Places
 from ...input_files.setting import setter
 from ..source import SiteLike, SiteSource, site_source
-from .checks import site_problems, time_problems
-from .site import QUAKE, SHAFT_DAMPING, PileSite, Section
+from .checks import design_problems, site_problems
+from .completion import bearing_area, completed
+from .design import PileDesign, RodSection
+from .ground import GroundProfile
+from .site import QUAKE, SHAFT_DAMPING, PileSite
 
-Settings = Callable[[PileSite], Iterator[tuple[str, Any, Key]]]
-"""Yields name, value and place of the parameters of a component."""
 SHORTEST, TRAVELS = 0.1, 20.0
 """Time of a blow where the site has none: the longer of this (s) and so many travel times."""
 
@@ -39,15 +40,18 @@ class PreparedPile:
     ----------
     source : SiteSource
         Where the site was read.
-    site : PileSite
-        Its data.
+    site : PileDesign
+        Its data, complete.
     warnings : tuple of str
         Values beyond what is usual.
+    given : PileSite, optional
+        Data as its file has them.
     """
 
     source: SiteSource
-    site: PileSite
+    site: PileDesign
     warnings: tuple[str, ...] = ()
+    given: PileSite | None = None
 
     @property
     def name(self) -> str:
@@ -57,12 +61,42 @@ class PreparedPile:
     @property
     def resistance(self) -> float:
         """Ultimate static resistance (N) of shaft and toe."""
-        return self.site.toe.resistance + sum(layer.resistance for layer in self.site.shaft)
+        return self.site.toe.resistance + self.shaft_resistance
+
+    @property
+    def shaft_resistance(self) -> float:
+        """Ultimate static resistance (N) of the shaft."""
+        layers = sum(layer.resistance for layer in self.site.shaft)
+        return layers + sum(part.resistance for part in self.site.friction)
+
+    @property
+    def weight(self) -> float:
+        """Weight (N) of rod, helmet and ram at rest."""
+        hammer = self.site.hammer.mass + self.site.helmet
+        if self.site.hammer.anvil:
+            hammer += self.site.hammer.anvil.mass
+        return self.site.gravity * self.site.mass + standard_gravity * hammer
 
     @property
     def rated_energy(self) -> float:
         """Energy (J) of the fall."""
-        return self.site.hammer.mass * standard_gravity * self.site.hammer.drop
+        return self.site.hammer.energy
+
+    def at(self, penetration: float) -> "PreparedPile":
+        """Return the pile with its toe at another depth (m) below the ground surface.
+
+        Only a pile in ground in layers has one.
+        """
+        ground, rod = self.site.ground, self.site.rod
+        if ground is None:
+            raise ValueError("the pile does not stand in ground in layers")
+        profile = GroundProfile(ground, self.site.soil)
+        changed = {
+            "ground": ground.model_copy(update={"penetration": penetration}),
+            "toe": profile.toe(penetration, bearing_area(ground, rod) or 0.0),
+            "friction": profile.friction(penetration, rod),
+        }
+        return replace(self, site=self.site.model_copy(update=changed))
 
     @cached_property
     def travel_time(self) -> float:
@@ -156,6 +190,17 @@ class PreparedPile:
             quake[leading] = layer.quake
             damping[leading] = layer.damping
             largest[leading] = part[leading]
+        for piece in self.site.friction:
+            upper = np.maximum(self.depths[:-1], piece.top)
+            lower = np.minimum(self.depths[1:], piece.bottom)
+            middle = (0.5 * (upper + lower) - piece.top) / (piece.bottom - piece.top)
+            mean = piece.upper + middle * (piece.lower - piece.upper)
+            part = mean * np.maximum(lower - upper, 0.0)
+            resistance += part
+            leading = part > largest
+            quake[leading] = piece.quake
+            damping[leading] = piece.damping
+            largest[leading] = part[leading]
         return {
             "shaft.resistance": resistance,
             "shaft.quake": quake,
@@ -188,11 +233,13 @@ def prepare(site: SiteLike, blows: int | None = None) -> PreparedPile:
     problems: list[Problem] = []
     data = formed(PileSite, source.content, where, problems)
     doubted = tuple(doubts(data, where))
-    pile = PreparedPile(source, data, doubted)
-    for of_component in (("Hammer", _hammer_settings), ("PileRod", _rod_settings)):
-        if_formed(_check_values, data, *of_component, where, problems)
     problems += site_problems(data, where)
-    problems += told_if_formed(_time_problems, pile)
+    design = completed(data, where, problems)
+    if design is None:
+        raise InputRefused(first(explained(problems, doubted)))
+    pile = PreparedPile(source, design, doubted, data)
+    problems += _value_problems(design, where)
+    problems += design_problems(pile, where)
     if not problems:
         problems += _refusals(pile)
     if problems:
@@ -200,7 +247,7 @@ def prepare(site: SiteLike, blows: int | None = None) -> PreparedPile:
     return pile
 
 
-def wave_speed(section: Section) -> float:
+def wave_speed(section: RodSection) -> float:
     """Return the speed (m/s) of longitudinal waves in a section of a rod, sqrt(E / rho)."""
     return float(np.sqrt(section.modulus / section.density))
 
@@ -215,17 +262,27 @@ def _refusals(pile: PreparedPile) -> list[Problem]:
     return []
 
 
-def _hammer_settings(site: PileSite) -> Iterator[tuple[str, Any, Key]]:
+def _hammer_settings(site: PileDesign) -> Iterator[tuple[str, Any, Key]]:
     """Yield name, value and place of the hammer's parameters."""
-    yield "mass", site.hammer.mass, ("hammer", "mass")
-    yield "drop_height", site.hammer.drop, ("hammer", "drop")
-    yield "efficiency", site.hammer.efficiency, ("hammer", "efficiency")
+    hammer = site.hammer
+    yield "mass", hammer.mass, ("hammer", "mass")
+    yield "drop_height", hammer.fall, ("hammer", "drop")
+    yield "efficiency", hammer.efficiency, ("hammer", "efficiency")
     if site.cushion is not None:
         yield "cushion.stiffness", site.cushion.stiffness, ("cushion", "stiffness")
         yield "cushion.restitution", site.cushion.restitution, ("cushion", "restitution")
+    if site.helmet:
+        yield "helmet.mass", site.helmet, ("helmet", "mass")
+    if site.pile_cushion is not None:
+        second = site.pile_cushion
+        yield "pile_cushion.stiffness", second.stiffness, ("pile_cushion", "stiffness")
+        yield "pile_cushion.restitution", second.restitution, ("pile_cushion", "restitution")
+    for part in ("anvil", "gas"):
+        for name, value in dict(getattr(hammer, part) or {}).items():
+            yield f"{part}.{name}", value, ("hammer", part, name)
 
 
-def _rod_settings(site: PileSite) -> Iterator[tuple[str, Any, Key]]:
+def _rod_settings(site: PileDesign) -> Iterator[tuple[str, Any, Key]]:
     """Yield name, value and place of the rod's parameters but for the resistances of the soil."""
     for i, section in enumerate(site.rod):
         for name in ("length", "area", "modulus", "density"):
@@ -239,16 +296,14 @@ def _rod_settings(site: PileSite) -> Iterator[tuple[str, Any, Key]]:
     yield "exchange", "sequential", ("rod",)
 
 
-def _check_values(
-    site: PileSite, name: str, settings: Settings, where: Places, problems: list[Problem]
-) -> None:
-    """Append the values that a component does not accept."""
-    setting = setter(component(name).instance(), where, problems)
-    for parameter, value, key in settings(site):
-        if "[" not in parameter:
-            setting(parameter, value, key)
-
-
-def _time_problems(pile: PreparedPile) -> Iterator[Problem]:
-    place = pile.source.places.of(("time",))
-    yield from time_problems(pile.site, place, pile.time, pile.step, pile.travel_time)
+def _value_problems(site: PileDesign, where: Places) -> list[Problem]:
+    """Return the values that the components do not accept."""
+    problems: list[Problem] = []
+    setting = setter(component("Hammer").instance(), where, problems)
+    for name, value, key in _hammer_settings(site):
+        setting(name, value, key)
+    setting = setter(component("PileRod").instance(), where, problems)
+    for name, value, key in _rod_settings(site):
+        if "[" not in name:
+            setting(name, value, key)
+    return problems

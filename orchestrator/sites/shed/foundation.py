@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rockshed.components.common.units import standard_gravity
 
 from ...input_files.places import Places
+from ..pile.design import PileDesign
 from ..pile.preparation import PreparedPile, wave_speed
-from ..pile.site import PileSite
 from ..source import SiteSource
 
 STIFF_END = 5.0
@@ -55,19 +55,19 @@ class SupportRod:
     weight: float
 
 
-def impedance(pile: PileSite) -> float:
+def impedance(pile: PileDesign) -> float:
     """Return the impedance EA/c at the head of a pile (N s/m).
 
     Parameters
     ----------
-    pile : PileSite
+    pile : PileDesign
         The pile.
     """
     head = pile.rod[0]
     return head.area * math.sqrt(head.modulus * head.density)
 
 
-def pile_rod(pile: PileSite, piles: float, exchange: float) -> SupportRod:
+def pile_rod(pile: PileDesign, piles: float, exchange: float) -> SupportRod:
     """Return piles that act together as one rod.
 
     The waves are given a speed with which the rod is a whole number of segments long: it changes
@@ -75,7 +75,7 @@ def pile_rod(pile: PileSite, piles: float, exchange: float) -> SupportRod:
 
     Parameters
     ----------
-    pile : PileSite
+    pile : PileDesign
         One of them.
     piles : float
         Their number, a fraction too.

@@ -11,8 +11,8 @@ from ...core.system.names import nearest
 from ...input_files.form import if_formed, read_toml
 from ...input_files.places import Key, Places
 from ...input_files.quantities import in_si
+from ..pile.design import PileDesign
 from ..pile.preparation import prepare as prepare_pile
-from ..pile.site import PileSite
 from .effective_width import ON_A_SLAB, ON_GIRDERS, RULES, Spread
 from .geometry import CushionPart, RockPart, RoofPart
 from .materials import DEFAULT_MATERIAL, sands, shipped_sands
@@ -302,7 +302,7 @@ def _concrete_corners(roof: Roof, where: Places, problems: list[Problem]) -> Cor
 
 def pile_part(
     project: ShedProject, folder: Path, where: Places, problems: list[Problem]
-) -> PileSite | None:
+) -> PileDesign | None:
     """Return the pile that stands under each end of each girder.
 
     Parameters
@@ -318,7 +318,7 @@ def pile_part(
 
     Returns
     -------
-    PileSite or None
+    PileDesign or None
         None where there are no piles, or the file is refused.
     """
     supports = project.supports
