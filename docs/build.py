@@ -47,7 +47,15 @@ CONTENTS = {
         "security",
         "limits",
     ),
-    "Physics": ("components/index", "rockfall", "formulas", "papers", "sonoda1993", "convergence"),
+    "Physics": (
+        "components/index",
+        "rockfall",
+        "formulas",
+        "papers",
+        "sonoda1993",
+        "convergence",
+        "piles",
+    ),
     "Reference": ("api/index", "api/components", "api/core", "api/analyses", "api/papers"),
     "Project": ("glossary", "contributing", "changelog"),
 }

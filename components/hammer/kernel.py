@@ -300,10 +300,12 @@ def publish(w, x, k):
 @kernel
 def _publish_train(w, x, k):
     """Write the outputs that anvil and helmet change."""
-    places, last = view(x, k, A.places), bodies(w) - 1
+    places = view(x, k, A.places)
+    last = bodies(w) - 1
     above = 1 if w[V.anvil_mass] > 0.0 else 0
     below = places[above + 1] if above < last else w[V.head_reached]
     w[V.cushion_compression] = max(places[above] - below, 0.0)
     if w[V.helmet_mass] > 0.0:
-        w[V.helmet_position], w[V.helmet_velocity] = places[last], view(x, k, A.speeds)[last]
+        w[V.helmet_position] = places[last]
+        w[V.helmet_velocity] = view(x, k, A.speeds)[last]
     w[V.energy_kinetic], w[V.energy_gravity] = kinetic(w, x, k), lifted(w, x, k)

@@ -15,10 +15,11 @@ from .declarations import LAYOUT, MOST_BODIES
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
-_SWEEPS, _ALIKE = 1000, 1e-13
-"""Sweeps over the springs, and part of the largest force by which two may differ at the end."""
-_UNLIKE = 1e-7
-"""Part by which they differ where the forces have not settled."""
+_SWEEPS, _MANY = 1000, 40
+"""Sweeps over the springs at most, and those after which forces may differ more."""
+_ALIKE, _SIMILAR, _UNLIKE = 1e-12, 1e-7, 1e-5
+"""Parts of the force of a rigid ram by which a force may change in the last sweep: usually, after
+many sweeps (a spring at rest has its mean force from rounded ways), and at most."""
 UNSETTLED = -1.0
 """Returned in the place of a force that has not settled."""
 
@@ -64,7 +65,8 @@ def assemble(w, x, k):
         pressed[i], forces[i] = 0.0, 0.0
     mass[0], speed[0], place[0] = w[V.mass], w[V.impact_velocity], w[V.head_reached] - w[V.gap]
     view(x, k, A.elapsed)[0] = 0.0
-    n, under = bodies(w), 0
+    n = bodies(w)
+    under = 0
     if w[V.anvil_mass] > 0.0:
         mass[1] = w[V.anvil_mass]
         stiffness[0], restitution[0] = w[V.anvil_stiffness], w[V.anvil_restitution]
@@ -157,26 +159,27 @@ def _balance(gas, dt, w, x, k):
     Returns whether they have settled.
     """
     forces, n = view(x, k, A.spring_forces), bodies(w)
-    change, largest = 0.0, 0.0
-    for _ in range(_SWEEPS):
-        change, largest = 0.0, 0.0
+    scale = w[V.head_impedance] * w[V.impact_velocity] + w[V.mass] * w[V.gravity]
+    change = 0.0
+    for sweep in range(_SWEEPS):
+        change = 0.0
         for i in range(n):
             force = _spring(i, dt, w, x, k)
             if i == 0:
                 force = max(force, gas)
             change = max(change, abs(force - forces[i]))
-            largest = max(largest, force)
             forces[i] = force
-        if change <= _ALIKE * largest:
+        if change <= (_ALIKE if sweep < _MANY else _SIMILAR) * scale:
             break
-    return change <= _UNLIKE * largest
+    return change <= _UNLIKE * scale
 
 
 @kernel
 def _spring(i, dt, w, x, k):
     """Return the mean force (N) of spring i in a step, with those of its neighbours as they are."""
     mass, speed, forces = view(x, k, A.masses), view(x, k, A.speeds), view(x, k, A.spring_forces)
-    n, weight = bodies(w), w[V.gravity] * w[V.weight]
+    n = bodies(w)
+    weight = w[V.gravity] * w[V.weight]
     above = forces[i - 1] if i > 0 else 0.0
     half = 0.5 * dt / mass[i]
     upper = speed[i] + 0.5 * dt * weight + half * above
@@ -213,7 +216,8 @@ def _book(i, upper, lower, w, x, k):
 
     Called before the body below has moved, with the one above moved already.
     """
-    force, pressed = view(x, k, A.spring_forces)[i], view(x, k, A.pressed)
+    force = view(x, k, A.spring_forces)[i]
+    pressed = view(x, k, A.pressed)
     stiffness, restitution = view(x, k, A.stiffnesses)[i], view(x, k, A.restitutions)[i]
     way = upper - lower
     start = -_gap(i, w, x, k) - upper
@@ -276,7 +280,8 @@ def lifted(w, x, k):
 def elastic(w, x, k):
     """Return the elastic energy (J) of all springs."""
     pressed, stiffness = view(x, k, A.pressed), view(x, k, A.stiffnesses)
-    restitution, total = view(x, k, A.restitutions), 0.0
+    restitution = view(x, k, A.restitutions)
+    total = 0.0
     for i in range(bodies(w)):
         if stiffness[i] > 0.0:
             total += stored(-_gap(i, w, x, k), pressed[i], stiffness[i], restitution[i])

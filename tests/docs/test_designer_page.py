@@ -1,13 +1,12 @@
-"""The designer's page has every key of a project, as the form declares it."""
+"""The pages of input files have every key, as the forms declare them."""
 
-from pathlib import Path
+import pytest
 
-from docs.tables.project_fields import BEGIN, END, table
-
-PAGE = Path(__file__).parents[2] / "docs" / "designer.md"
+from docs.tables.project_fields import BEGIN, END, FORMS, table
 
 
-def test_the_table_of_the_page_is_made_from_the_form():
-    text = PAGE.read_text(encoding="utf-8")
+@pytest.mark.parametrize("page", FORMS, ids=lambda page: page.stem)
+def test_the_table_of_the_page_is_made_from_the_form(page):
+    text = page.read_text(encoding="utf-8")
     shown = text.partition(BEGIN)[2].partition(END)[0].strip()
-    assert shown == table(), "python -m docs.tables.project_fields writes it anew"
+    assert shown == table(page), "python -m docs.tables.project_fields writes it anew"

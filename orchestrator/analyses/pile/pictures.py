@@ -195,13 +195,19 @@ def envelopes(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
             left.plot(blow.residual / kN, depth, color=INK, label=after, **style)
         for axes in (stress, left):
             axes.axvline(0.0, color=GREY, linewidth=0.7)
-            for layer in (*pile.site.shaft, *pile.site.friction):
-                axes.axhspan(layer.top, layer.bottom, color=SAND, alpha=0.18, linewidth=0.0)
+            for top, bottom in _with_friction(pile):
+                axes.axhspan(top, bottom, color=SAND, alpha=0.18, linewidth=0.0)
             legend(axes)
         stress.set(xlabel="stress (MPa), tension to the left", ylabel="depth below the head (m)")
         stress.set_ylim(pile.depths[-1], 0.0)
         left.set(xlabel="residual force (kN)")
     return figure
+
+
+def _with_friction(pile: PreparedPile) -> list[tuple[float, float]]:
+    """Return the depths (m) between which soil holds the shaft."""
+    layers = [(layer.top, layer.bottom) for layer in pile.site.shaft]
+    return layers + [(part.top, part.bottom) for part in pile.site.friction]
 
 
 def blow_by_blow(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
@@ -301,12 +307,18 @@ def _counted(pile: PreparedPile, blow: Blow) -> float | None:
     return None if count is None or count >= _refusal(pile) else count
 
 
+def _known(pile: PreparedPile, blows: Sequence[Blow]) -> list[tuple[float, Blow]]:
+    """Return the blows that have a count, with it."""
+    counted = [(_counted(pile, blow), blow) for blow in blows]
+    return [(count, blow) for count, blow in counted if count is not None]
+
+
 def _resistance_over(
     pile: PreparedPile, blows: Sequence[Blow], edge: float, line: tuple[Axes, str, str]
 ) -> None:
     """Draw R_u over the blow count on axes, with dashes and a label; refusals at the edge."""
     axes, dashes, label = line
-    known = [(count, blow) for blow in blows if (count := _counted(pile, blow)) is not None]
+    known = _known(pile, blows)
     values = [blow.resistance / kN for _, blow in known]
     form: dict[str, Any] = {"color": INK, "markersize": 4.0}
     axes.plot([count for count, _ in known], values, f"o{dashes}", label=f"R_u, {label}", **form)
@@ -317,7 +329,7 @@ def _resistance_over(
 
 def _formulas_over(pile: PreparedPile, blows: Sequence[Blow], axes: Axes) -> None:
     """Draw what Hiley and Gates make of the sets."""
-    known = [(count, blow) for blow in blows if (count := _counted(pile, blow)) is not None]
+    known = _known(pile, blows)
     count = [count for count, _ in known]
     found = [by_formulas(pile, blow) for _, blow in known]
     hiley = [entry.hiley / kN for entry in found]
@@ -328,7 +340,7 @@ def _formulas_over(pile: PreparedPile, blows: Sequence[Blow], axes: Axes) -> Non
 
 def _stresses_over(pile: PreparedPile, blows: Sequence[Blow], line: tuple[Axes, str, str]) -> None:
     axes, dashes, label = line
-    known = [(count, blow) for blow in blows if (count := _counted(pile, blow)) is not None]
+    known = _known(pile, blows)
     count = [count for count, _ in known]
     pressed = [blow.compression.max() / MPa for _, blow in known]
     pulled = [blow.tension.max() / MPa for _, blow in known]

@@ -28,6 +28,7 @@ from .tables import (
     limit_warnings,
     notes,
     stage_table,
+    unverified,
     warnings,
 )
 
@@ -100,6 +101,7 @@ class PileResult(Result):
         """Values of the site that are not usual, and doubts about the blows, a sentence each."""
         return [
             *self.pile.warnings,
+            *unverified(self.pile),
             *warnings(self.every_blow),
             *limit_warnings(self.pile, self.blows, self.stages),
         ]

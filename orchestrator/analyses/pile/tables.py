@@ -237,6 +237,26 @@ def notes(
         f"{1e3 * pile.travel_time:.3g} ms; computed in {wall_time:.2f} s",
         f"energy balance closed to {100.0 * worst:.2g} % of the impact energy; "
         f"blows / 0.3 m = {FOOT:g} m / set",
+        *(f"{name}: {source}" for name, source, _ in _sources(pile)),
+    ]
+
+
+def _sources(pile: PreparedPile) -> Iterator[tuple[str, str, bool]]:
+    """Yield name, source and proof of all that is taken from a table."""
+    site = pile.site
+    if site.hammer.model:
+        yield site.hammer.model, site.hammer.source, site.hammer.verified
+    for spring in (site.cushion, site.pile_cushion):
+        if spring and spring.source:
+            yield f"cushion of {spring.material}", spring.source, spring.verified
+
+
+def unverified(pile: PreparedPile) -> list[str]:
+    """Return the hammers and materials whose source could not be read, a sentence each."""
+    return [
+        f"{name}: the source of its values could not be read ({source}); give your own"
+        for name, source, verified in _sources(pile)
+        if not verified
     ]
 
 

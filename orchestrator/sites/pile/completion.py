@@ -8,7 +8,7 @@ from ...input_files.places import Key, Places
 from .design import Friction, PileDesign, RodSection
 from .ground import WATER, GroundProfile
 from .hammers import ram, spring
-from .site import Ground, PileParts, PileSite, Section, Soil, ToeSoil
+from .site import Ground, NamedSoil, PileParts, PileSite, Section, ToeSoil
 
 _NEAR = 1e-9
 """Part by which two lengths may differ that are meant to be equal."""
@@ -192,7 +192,7 @@ def _ground_problems(site: PileSite, ground: Ground, where: Places) -> Iterator[
 
 
 def _soil_problems(
-    name: str, soil: Soil, by_stress: bool, is_wet: bool, where: Places
+    name: str, soil: NamedSoil, by_stress: bool, is_wet: bool, where: Places
 ) -> Iterator[Problem]:
     """Yield the faults of one soil."""
     key: Key = ("soil", name)

@@ -8,7 +8,7 @@ from pydantic import Field
 from rockshed.components.common.units import standard_gravity
 
 from ...input_files.form import Data
-from .site import Anvil, Gas, Ground, PileParts, Soil, ToeSoil
+from .site import Anvil, Gas, Ground, NamedSoil, PileParts, ToeSoil
 
 
 class Ram(Data):
@@ -34,6 +34,8 @@ class Ram(Data):
         Force of the burning gas over time.
     model, source : str
         Name in the table of hammers, and source of its row.
+    verified : bool
+        Whether that source could be read.
     """
 
     kind: str = "drop"
@@ -46,10 +48,11 @@ class Ram(Data):
     gas: Gas | None = None
     model: str = ""
     source: str = ""
+    verified: bool = True
 
     @property
     def energy(self) -> float:
-        """Rated energy (J)."""
+        """Rated energy m g h (J) of the whole fall."""
         return self.mass * standard_gravity * self.drop
 
     @property
@@ -59,11 +62,13 @@ class Ram(Data):
 
 
 class Spring(Data):
-    """A cushion: stiffness (N/m), restitution, and the words of what it is made of."""
+    """A cushion: stiffness (N/m), restitution, its material, and the source of that if verified."""
 
     stiffness: float
     restitution: float = 1.0
     material: str = ""
+    source: str = ""
+    verified: bool = True
 
 
 class RodSection(Data):
@@ -133,7 +138,7 @@ class PileDesign(PileParts):
         Along the rod, beside the layers ``shaft``.
     ground : Ground or None
         From which ``friction`` and ``toe`` were derived.
-    soil : dict of str to Soil
+    soil : dict of str to NamedSoil
         Its soils.
     """
 
@@ -145,7 +150,7 @@ class PileDesign(PileParts):
     toe: ToeSoil
     friction: list[Friction] = Field(default_factory=list)
     ground: Ground | None = None
-    soil: dict[str, Soil] = Field(default_factory=dict)
+    soil: dict[str, NamedSoil] = Field(default_factory=dict)
 
     @property
     def length(self) -> float:

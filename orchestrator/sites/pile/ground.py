@@ -9,7 +9,7 @@ from itertools import accumulate, pairwise
 from rockshed.components.common.units import standard_gravity
 
 from .design import Friction, RodSection
-from .site import Ground, Soil, ToeSoil
+from .site import Ground, NamedSoil, ToeSoil
 
 WATER = 1000.0
 """Density of water (kg/m3)."""
@@ -55,19 +55,19 @@ class GroundProfile:
     ----------
     ground : Ground
         Layers and water table.
-    soils : mapping of str to Soil
+    soils : mapping of str to NamedSoil
         By name.
     """
 
     ground: Ground
-    soils: dict[str, Soil]
+    soils: dict[str, NamedSoil]
 
     @property
     def bounds(self) -> list[float]:
         """Depths (m) of the surface and of the lower ends of the layers."""
         return [0.0, *(layer.bottom for layer in self.ground.layers)]
 
-    def soil_at(self, depth: float) -> tuple[str, Soil]:
+    def soil_at(self, depth: float) -> tuple[str, NamedSoil]:
         """Return name and soil of the layer at a depth (m); at a bound, of the one below."""
         place = bisect_right(self.bounds[1:], depth)
         name = self.ground.layers[min(place, len(self.ground.layers) - 1)].soil
@@ -97,7 +97,7 @@ class GroundProfile:
                 if max(values) > 0.0:
                     yield from _limited(Piece(upper, lower, values[0], values[1], layer.soil), soil)
 
-    def _unlimited(self, soil: Soil, top: float, depth: float) -> float:
+    def _unlimited(self, soil: NamedSoil, top: float, depth: float) -> float:
         """Return the unit friction (Pa) while driving at a depth (m) in a layer from ``top`` on."""
         if soil.beta is not None:
             return soil.driving * soil.beta * self.stress(depth)
@@ -152,7 +152,7 @@ class GroundProfile:
         return ToeSoil(resistance=unit * area, quake=soil.toe_quake, damping=soil.toe_damping)
 
 
-def _limited(piece: Piece, soil: Soil) -> Iterator[Piece]:
+def _limited(piece: Piece, soil: NamedSoil) -> Iterator[Piece]:
     """Yield a piece whose friction has a largest value: what is below it, and what is cut."""
     limit = soil.driving * (soil.friction_limit or math.inf)
     low, high = sorted((piece.upper, piece.lower))

@@ -13,7 +13,7 @@ from ...core.system.names import nearest
 from ...input_files.form import Data
 from ...input_files.places import Key, Places
 from .design import Ram, Spring
-from .site import Cushion, Hammer
+from .site import DrivingCushion, Hammer
 
 
 class CushionMaterial(Data):
@@ -69,6 +69,7 @@ def ram(given: Hammer, where: Places, problems: list[Problem]) -> Ram | None:
     """
     values = dict(given)
     source = ""
+    verified = True
     if given.model is not None:
         model = hammer_models().get(given.model)
         if model is None:
@@ -77,7 +78,8 @@ def ram(given: Hammer, where: Places, problems: list[Problem]) -> Ram | None:
             problems.append(Problem(place, text, nearest(given.model, hammer_models())))
             return None
         values = _filled(given, model)
-        source = model.source + ("" if model.verified else " (not verified)")
+        source = model.source
+        verified = model.verified
     problems += [Problem(where.of(key), text, remedy) for key, text, remedy in _faults(values)]
     if problems:
         return None
@@ -93,6 +95,7 @@ def ram(given: Hammer, where: Places, problems: list[Problem]) -> Ram | None:
         gas=values["gas"],
         model=given.model or "",
         source=source,
+        verified=verified,
     )
 
 
@@ -136,13 +139,13 @@ def _faults(values: Mapping[str, Any]) -> list[tuple[Key, str, str]]:
 
 
 def spring(
-    given: Cushion | None, name: str, where: Places, problems: list[Problem]
+    given: DrivingCushion | None, name: str, where: Places, problems: list[Problem]
 ) -> Spring | None:
     """Return a cushion with its stiffness, E A / t where a material is given.
 
     Parameters
     ----------
-    given : Cushion or None
+    given : DrivingCushion or None
         As the file has it.
     name : str
         Its table in the file.
@@ -168,7 +171,7 @@ def spring(
 
 
 def _of_material(
-    given: Cushion, name: str, where: Places, problems: list[Problem]
+    given: DrivingCushion, name: str, where: Places, problems: list[Problem]
 ) -> Spring | None:
     """Return a cushion of a material, an area and a thickness."""
     before = len(problems)
@@ -191,5 +194,9 @@ def _of_material(
     restitution = given.restitution if given.restitution is not None else own
     stiffness = modulus * given.area / given.thickness
     return Spring(
-        stiffness=stiffness, restitution=restitution, material=given.material or "own modulus"
+        stiffness=stiffness,
+        restitution=restitution,
+        material=given.material or "own modulus",
+        source=material.source if material and given.modulus is None else "",
+        verified=material is None or given.modulus is not None or material.verified,
     )

@@ -97,7 +97,7 @@ class Hammer(Data):
     gas: Gas | None = None
 
 
-class Cushion(Data):
+class DrivingCushion(Data):
     """A spring without tension: its ``stiffness``, or a material with area and thickness.
 
     It returns the square of ``restitution`` of its energy.
@@ -148,13 +148,15 @@ class Section(Data):
 
 
 class ShaftLayer(Data):
-    """Soil along the shaft between two depths (m) below the head.
+    """NamedSoil along the shaft between two depths (m) below the head.
 
     resistance: ultimate one of the whole layer (N); quake (m); damping (s/m).
     """
 
-    top: Annotated[Distance, Field(alias="from")]
-    bottom: Annotated[Length, Field(alias="to")]
+    top: Annotated[
+        Distance, Field(alias="from", description="depth of its upper end below the head")
+    ]
+    bottom: Annotated[Length, Field(alias="to", description="depth of its lower end")]
     resistance: Resistance = field(
         "ultimate resistance of the layer", ..., usual=(500.0, 1e9), likely=("kN", "MN", "tf")
     )
@@ -163,7 +165,7 @@ class ShaftLayer(Data):
 
 
 class ToeSoil(Data):
-    """Soil under the toe: ultimate resistance (N), quake (m), damping (s/m)."""
+    """NamedSoil under the toe: ultimate resistance (N), quake (m), damping (s/m)."""
 
     resistance: Force = field(
         "ultimate resistance", ..., usual=(500.0, 1e9), likely=("kN", "MN", "tf")
@@ -191,7 +193,7 @@ class BearingGraph(Data):
     )
 
 
-class Soil(Data):
+class NamedSoil(Data):
     """A soil by name: unit friction and toe resistance, each constant, growing, or by stress.
 
     Friction is ``friction`` + ``friction_growth`` times the depth below the layer's top, or
@@ -236,10 +238,10 @@ class Soil(Data):
     )
 
 
-class Layer(Data):
+class GroundLayer(Data):
     """A layer of a soil, from the end of the one above (or the surface) down to ``to`` (m)."""
 
-    soil: str
+    soil: str = Field(description="name of its soil")
     bottom: Length = field(
         "depth of its lower end below the ground surface",
         ...,
@@ -259,7 +261,7 @@ class Ground(Data):
     toe_area: Area | None = field(
         "area on which the toe bears; that of a solid section", usual=(1e-3, 20.0)
     )
-    layers: Annotated[list[Layer], Field(min_length=1, max_length=100)]
+    layers: Annotated[list[GroundLayer], Field(min_length=1, max_length=100)]
 
 
 class Drivability(Data):
@@ -289,16 +291,18 @@ class Limits(Data):
 
 
 class PileParts(Data):
-    """What a pile has in its file as in its computation.
+    """The part of a pile that its file and its computation share.
 
     time: of a blow (s), from the stroke on, by default 0.1 s or 20 travel times of a wave.
     gauge: depth of the gauge (m).
     """
 
-    name: str = ""
-    description: str = ""
-    blows: Annotated[int, Field(ge=1, le=MOST_BLOWS)] = 1
-    segments: Annotated[int, Field(ge=1, le=MOST_SEGMENTS)] = 100
+    name: str = Field("", description="name of the results; that of the file")
+    description: str = Field("", description="a line for people")
+    blows: Annotated[int, Field(ge=1, le=MOST_BLOWS, description="number of blows")] = 1
+    segments: Annotated[
+        int, Field(ge=1, le=MOST_SEGMENTS, description="parts of equal travel time")
+    ] = 100
     time: Duration | None = field("time of a blow", usual=(1e-3, 10.0), likely=("ms",))
     gravity: Acceleration = field("acceleration of gravity", standard_gravity)
     gauge: Distance = field("depth of the gauge", 0.0)
@@ -315,10 +319,10 @@ class PileSite(PileParts):
     """
 
     hammer: Hammer
-    cushion: Cushion | None = None
+    cushion: DrivingCushion | None = None
     helmet: Helmet | None = None
-    pile_cushion: Cushion | None = None
+    pile_cushion: DrivingCushion | None = None
     rod: Annotated[list[Section], Field(min_length=1)]
     toe: ToeSoil | None = None
     ground: Ground | None = None
-    soil: dict[str, Soil] = Field(default_factory=dict)
+    soil: dict[str, NamedSoil] = Field(default_factory=dict)
