@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from ...core.errors import Problem
+from ...input_files.form import if_formed, told_if_formed
 from ...input_files.places import Key, Places
 from .design import Friction, PileDesign, RodSection
 from .ground import WATER, GroundProfile
@@ -32,14 +33,16 @@ def completed(site: PileSite, where: Places, problems: list[Problem]) -> PileDes
         None where a value is missing.
     """
     found: list[Problem] = []
-    hammer = ram(site.hammer, where, found)
-    cushion = spring(site.cushion, "cushion", where, found)
-    pile_cushion = spring(site.pile_cushion, "pile_cushion", where, found)
-    rod = [_section(section, i, where, found) for i, section in enumerate(site.rod)]
-    found += _train_problems(site, where)
-    toe, friction = _soil(site, [section for section in rod if section], where, found)
+    hammer = if_formed(lambda: ram(site.hammer, where, found))
+    cushion = if_formed(lambda: spring(site.cushion, "cushion", where, found))
+    pile_cushion = if_formed(lambda: spring(site.pile_cushion, "pile_cushion", where, found))
+    given = if_formed(getattr, site, "rod") or ()
+    rod = [if_formed(_section, section, i, where, found) for i, section in enumerate(given)]
+    found += told_if_formed(_train_problems, site, where)
+    known = [section for section in rod if section]
+    toe, friction = if_formed(_soil, site, known, where, found) or (None, [])
     problems += found
-    if found or hammer is None or toe is None:
+    if problems or hammer is None or toe is None:
         return None
     parts = {name: getattr(site, name) for name in PileParts.model_fields}
     return PileDesign(
@@ -48,7 +51,7 @@ def completed(site: PileSite, where: Places, problems: list[Problem]) -> PileDes
         cushion=cushion,
         helmet=site.helmet.mass if site.helmet else 0.0,
         pile_cushion=pile_cushion,
-        rod=[section for section in rod if section],
+        rod=known,
         toe=toe,
         friction=friction,
         ground=site.ground,
@@ -133,9 +136,9 @@ def _soil(
     for key in [name for name in ("toe", "shaft") if getattr(site, name)]:
         text = f"the soil is given twice, as ground and as {key}"
         problems.append(Problem(where.of((key,)), text, "leave one of the two out"))
-    found = list(_ground_problems(site, site.ground, where))
+    found = told_if_formed(_ground_problems, site, site.ground, where)
     if not found and len(rod) == len(site.rod):
-        found += _pile_problems(site, site.ground, rod, where)
+        found += told_if_formed(_pile_problems, site, site.ground, rod, where)
     problems += found
     if problems:
         return None, []

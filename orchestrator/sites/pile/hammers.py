@@ -67,7 +67,7 @@ def ram(given: Hammer, where: Places, problems: list[Problem]) -> Ram | None:
     Ram or None
         None where something is missing.
     """
-    values = dict(given)
+    values = {name: getattr(given, name) for name in Hammer.model_fields}
     source = ""
     verified = True
     if given.model is not None:
@@ -101,7 +101,8 @@ def ram(given: Hammer, where: Places, problems: list[Problem]) -> Ram | None:
 
 def _filled(given: Hammer, model: HammerModel) -> dict[str, Any]:
     """Return the values of a hammer, those of the model where the file has none."""
-    own = {name: value for name, value in dict(given).items() if value is not None}
+    named = {name: getattr(given, name) for name in Hammer.model_fields}
+    own = {name: value for name, value in named.items() if value is not None}
     strokes = {"drop", "energy"}
     kept = strokes if strokes & own.keys() else set()
     table = {name: value for name, value in dict(model).items() if name not in kept}

@@ -10,7 +10,7 @@ from rockshed.components.common.units import standard_gravity
 from rockshed.components.sand_cushion.measures import contact_frequency
 from rockshed.components.sand_cushion.models import MODELS, SPREAD
 
-from ..pile.site import PileSite
+from ..pile.design import PileDesign
 from .foundation import STIFF_END, SupportRod, impedance, pile_rod
 from .site import Numerics, SandMaterial
 from .yielding import Corners
@@ -257,7 +257,7 @@ def layout(
     cushion: CushionPart,
     roof: RoofPart,
     numerics: Numerics,
-    pile: PileSite | None = None,
+    pile: PileDesign | None = None,
 ) -> ShedLayout:
     """Derive everything that follows from the parts of a shed.
 
@@ -267,7 +267,7 @@ def layout(
         The parts.
     numerics : Numerics
         Those of the rest that are given.
-    pile : PileSite, optional
+    pile : PileDesign, optional
         Under each end of each girder.
 
     Returns
@@ -336,13 +336,13 @@ def end_stiffness(roof: RoofPart, girders: float, element: float) -> float:
 
 
 def support_exchange(
-    pile: PileSite | None, roof: RoofPart, girders: float, element: float
+    pile: PileDesign | None, roof: RoofPart, girders: float, element: float
 ) -> float:
     """Return the longest exchange step that the supports allow (s).
 
     Parameters
     ----------
-    pile : PileSite or None
+    pile : PileDesign or None
         Under them; without piles they allow any.
     roof : RoofPart
         One girder.
