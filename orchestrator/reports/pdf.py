@@ -16,9 +16,12 @@ from .form import Chapter, Document, Illustration
 TEMPLATE = Path(__file__).parent / "report.typ"
 MARK = "rockshed report"
 """Keyword in the document by which it is known as one of this program."""
-_LONG_WORD = re.compile(r"[^\s\u200b]{24}")
-_BREAKS = re.compile(r"([/\\_.,=&?])(?=\w)")
-"""Signs after which a long name may go on in the next line."""
+_LONGEST_WORD = 24
+"""Letters of a name that is never broken, at most."""
+_WORDS = re.compile(r"(\s+)")
+_NUMBER = re.compile(r"[\[({=]?[+-]?\d[\d.,]*(?:e[+-]?\d+)?[\]),;}]*", re.IGNORECASE)
+_BREAKS = re.compile(r"(?<=[/\\_,=&?.])(?=[^\W\d])")
+"""Places after a sign and before a letter, where a long name may go on in the next line."""
 _LONGEST_LISTING = 400
 """Lines of a listing, at most: the page and the files of the result have it all."""
 
@@ -37,9 +40,9 @@ def write_pdf(report: Document, file: Path) -> None:
 
     with TemporaryFolder("rockshed-") as folder:
         content = {
-            "title": _breakable(report.title),
-            "lines": [_breakable(line) for line in report.lines],
-            "status": _breakable(report.status),
+            "title": pieces(report.title),
+            "lines": [pieces(line) for line in report.lines],
+            "status": pieces(report.status),
             "mark": MARK,
             "chapters": [
                 _chapter(chapter, number, folder) for number, chapter in enumerate(report.chapters)
@@ -61,7 +64,7 @@ def _chapter(chapter: Chapter, number: int, folder: Path) -> dict[str, Any]:
     return {
         "title": chapter.title,
         "alarm": chapter.alarm,
-        "paragraphs": [_breakable(text) for text in chapter.paragraphs],
+        "paragraphs": [pieces(text) for text in chapter.paragraphs],
         "listing": "\n".join(lines),
         "tables": [_table(table) for table in chapter.tables],
         "pictures": drawn,
@@ -81,8 +84,8 @@ def _table(table: Table) -> dict[str, Any]:
         "columns": list(table.columns),
         "right": [title in table.right for title in table.columns],
         "wide": [_width(table, place) for place in range(len(table.columns))],
-        "rows": [[_breakable(cell) for cell in row] for row in table.rows],
-        "notes": [_breakable(note) for note in table.notes],
+        "rows": [[pieces(cell) for cell in row] for row in table.rows],
+        "notes": [pieces(note) for note in table.notes],
     }
 
 
@@ -91,10 +94,38 @@ def _width(table: Table, place: int) -> bool:
     return max((len(row[place]) for row in table.rows), default=0) > 28
 
 
-def _breakable(text: str) -> str:
-    """Return a text with places where long names and digests may be broken."""
-    softer = _BREAKS.sub("\\1\u200b", text)
-    return _LONG_WORD.sub(lambda word: f"{word[0]}\u200b", softer)
+def pieces(text: str) -> list[str]:
+    """Divide a text where a line may end in the middle of a long name or digest.
+
+    A number is never divided, and nothing is added to the text: the pieces joined are the text.
+
+    Parameters
+    ----------
+    text : str
+        Of the report.
+
+    Returns
+    -------
+    list of str
+        Whole words stay together, as lines may end between them anyway.
+    """
+    made = [""]
+    for word in _WORDS.split(text):
+        first, *rest = _parts(word)
+        made[-1] += first
+        made += rest
+    return made
+
+
+def _parts(word: str) -> list[str]:
+    """Divide a long word: after signs, and where it has none, at the longest length."""
+    if len(word) <= _LONGEST_WORD or _NUMBER.fullmatch(word):
+        return [word]
+    return [
+        part[start : start + _LONGEST_WORD]
+        for part in _BREAKS.split(word)
+        for start in range(0, len(part), _LONGEST_WORD)
+    ]
 
 
 def is_own(head: bytes) -> bool:
