@@ -12,6 +12,7 @@ from rockshed.components.common.units import ms, standard_gravity
 
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..sites.shed.geometry import ShedLayout, end_stiffness
+from ..sites.shed.materials import caution
 from ..sites.shed.preparation import PreparedShed
 from ..sites.shed.site import ShedProject
 from ..sites.shed.words import in_words
@@ -240,10 +241,12 @@ def _shared(found: ShedLayout) -> dict[str, SharedValue]:
 
 def _project(shed: PreparedShed) -> dict[str, Any]:
     """Return the project as the provenance of a run keeps it."""
+    derived = asdict(shed.layout)
+    sand = shed.layout.cushion.sand.model_dump(exclude={"like"})
     return {
         "file": str(shed.source.file) if shed.source.file else "",
         "content": dict(shed.source.content),
-        "derived": asdict(shed.layout),
+        "derived": {**derived, "cushion": {**derived["cushion"], "sand": sand}},
     }
 
 
@@ -260,7 +263,8 @@ def design(project: ShedProject, found: ShedLayout) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``rock``, ``cushion``, ``roof`` of one girder, and ``criteria``, in SI units.
+        ``rock``, ``cushion``, ``roof`` of one girder, and ``criteria``, in SI units; ``notes``,
+        what a reader has to know.
     """
     rock, cushion, roof = found.rock, found.cushion, found.roof
     return {
@@ -296,6 +300,7 @@ def design(project: ShedProject, found: ShedLayout) -> dict[str, Any]:
             for name, limit, unit in _criteria(project, found)
             if limit is not None
         ],
+        "notes": [text] if (text := caution(project.material, cushion.material)) else [],
     }
 
 

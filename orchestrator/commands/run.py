@@ -34,6 +34,8 @@ from .screen import CHECK_FAILED, COLD_START, INTERRUPTED, RUN_FAILED, Screen, o
 from .streams import stdout_for_results, tell_leftovers
 
 _OF_CASES = ("values", "sizes", "coupling", "model", "load_cell", "runtime", "in_process")
+_SIZES = {"discs": "sand discs", "elements": "beam elements"}
+"""Sizes that tell how long a run takes, in words."""
 OPTIONS = (
     *_OF_CASES,
     "folder",
@@ -207,6 +209,8 @@ def _simulate(
         if "runtime" in facts:
             reason = in_options(facts["runtime_reason"], OPTIONS)
             screen.note(f"{facts['runtime']} FMUs ({reason})")
+        if size := _size_in_words(system):
+            screen.note(size)
         folder = output_dir or _folder(system, screen)
         if is_cold(system.job.components):
             progress.describe(COLD_START)
@@ -223,6 +227,17 @@ def _simulate(
         except RunFailed as failure:
             done: Run = failure.run
             return done
+
+
+def _size_in_words(system: System) -> str:
+    """Return how large a run of a case or project will be; empty of a system file."""
+    of_components = system.job.facts.get("sizes", {})
+    sizes = {size: number for told in of_components.values() for size, number in told.items()}
+    spec = system.spec
+    words = [f"{sizes[size]:,} {word}" for size, word in _SIZES.items() if size in sizes]
+    exchanges = round(spec.stop_time / spec.exchange_step)
+    until = f"{exchanges:,} exchanges until {1e3 * spec.stop_time:g} ms"
+    return f"size: {', '.join([*words, until])}" if words else ""
 
 
 def _folder(system: System, screen: Screen) -> Path:

@@ -1,5 +1,6 @@
 """Text files as people have them: one reader for all, and what is wrong with them in words."""
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from datetime import date, time
@@ -14,6 +15,11 @@ DEEPEST = 40
 """Tables and lists in one another that a file has at most."""
 _LONGEST = 60
 """Letters of a value that a message shows."""
+_AT_LINE = re.compile(r"at line (\d+)")
+_UNQUOTED = re.compile(
+    r"(?P<key>\s*[\w.\"-]+\s*)=\s*(?P<number>[+-]?\d[\d.,]*)(?P<unit>\s*[^\W\d][\w/^*.²³⁴]*|\s*°)?\s*(?:#.*)?$"
+)
+"""A line with a bare value that TOML cannot read: ``mass = 1,8 t``."""
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -87,12 +93,13 @@ def toml_content(path: Path, text: str) -> dict[str, Any]:
     InputRefused
         It is no TOML, nested too deeply, or has a number of too many digits.
     """
-    reason = ""
+    reason, remedy = "", "correct the file"
     content: dict[str, Any] = {}
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         reason = f"is not valid TOML: {error}"
+        remedy = _remedy_of_line(text, str(error))
     except RecursionError:
         reason = _too_deep()
     except (ValueError, OverflowError) as error:  # Python reads no integer of so many digits
@@ -100,8 +107,23 @@ def toml_content(path: Path, text: str) -> dict[str, Any]:
     if not reason and _is_too_deep(content):
         reason = _too_deep()
     if reason:
-        raise InputRefused([Problem(str(path), reason, "correct the file")])
+        raise InputRefused([Problem(str(path), reason, remedy)])
     return content
+
+
+def _remedy_of_line(text: str, error: str) -> str:
+    """Return what to do about a line that is no TOML: a value with a unit needs quotes."""
+    at = _AT_LINE.search(error)
+    lines = text.splitlines()
+    line = lines[int(at[1]) - 1] if at and int(at[1]) <= len(lines) else ""
+    found = _UNQUOTED.match(line)
+    if found is None:
+        return "correct the file"
+    number, unit = found["number"].replace(",", "."), (found["unit"] or "").strip()
+    key = found["key"].strip()
+    if not unit:
+        return f"a number has a decimal point and no comma: {key} = {number}"
+    return f'a value with a unit stands in quotes, with a decimal point: {key} = "{number} {unit}"'
 
 
 def _first_sentence(error: Exception) -> str:

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Mapping
 
 from rockshed.components.common.units import SCREEN_UNITS
 
-from ..tables import Table
+from ..tables import Table, digits
 from .estimate import FormulaValue
 
-_SCALES = {"N": ("kN", 0), "m": ("m", 2)}
-"""Unit on the screen and decimals, by the unit of an estimate."""
+_UNITS = {"N": "kN", "m": "m"}
+"""Unit on the screen, by the unit of an estimate."""
 _WORDS = {True: "yes", False: "no", None: "not known"}
 
 
@@ -39,9 +39,9 @@ def table_of(
     columns = ("quantity", "formula", "value", "unit", *beside, "in its range", "verified")
     made = Table(columns, right=("value", *beside), title=title)
     for estimate in listed:
-        unit, decimals = _SCALES[estimate.unit]
+        unit = _UNITS[estimate.unit]
         value = estimate.value / SCREEN_UNITS[unit]
-        shown = f"{value:,.{decimals}f}" if value >= 100.0 else f"{value:.3g}"
+        shown = digits(value, 3)
         against = [_deviation(estimate, of) for of in beside.values()]
         range_and_proof = (_WORDS[estimate.within_range], _WORDS[estimate.verified])
         made.add(estimate.quantity, estimate.name, shown, unit, *against, *range_and_proof)

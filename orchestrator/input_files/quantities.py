@@ -25,6 +25,9 @@ _QUANTITY = re.compile(rf"({_NUMBER})\s*(\S.*)?")
 _FACTOR = r"[A-Za-zµμΩ]+(?:(?:\^|\*\*)?-?[1-9])?"
 _UNIT = re.compile(rf"(?:1|{_FACTOR})(?:\s*[*./ ]\s*{_FACTOR})*")
 _POWER = re.compile(r"([A-Za-zµμΩ])(?:\^|\*\*)?(-?[1-9])")
+_COMMA = re.compile(r"[+-]?\d+(?:[.,]\d+)*,\d+(?:[.,]\d+)*")
+"""Begins a number with a comma, between decimals or thousands."""
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d+)?")
 _LONGEST = 40
 """Letters of a quantity, at most."""
 _SIGNS = str.maketrans({"²": "2", "³": "3", "⁴": "4", "·": ".", "°": "deg"})
@@ -87,6 +90,11 @@ def in_si(text: str, unit: str) -> float:
     ValueError
         It is no number with a unit, the unit does not exist or is of another kind; with a remedy.
     """
+    if comma := _COMMA.match(text.strip()):
+        raise ValueError(
+            f"must have a decimal point and no comma between digits: write "
+            f"{_without_comma(comma[0])} (given: {shown(text)})"
+        )
     found = _QUANTITY.fullmatch(text.strip().translate(_SIGNS))
     if found is None or len(text) > _LONGEST:
         raise ValueError(
@@ -101,6 +109,14 @@ def in_si(text: str, unit: str) -> float:
         return _converted(number * _unit(written), text, unit)
     except PintError as error:
         raise ValueError(f"{shown(text)}: {written} is no unit to count in") from error
+
+
+def _without_comma(number: str) -> str:
+    """Return how a number with commas may have been meant: its decimals or its thousands."""
+    is_decimal = number.count(",") == 1 and number.rfind(",") > number.rfind(".")
+    decimal = number.replace(".", "").replace(",", ".") if is_decimal else ""
+    whole = number.replace(",", "") if _THOUSANDS.fullmatch(number) else ""
+    return " or ".join(filter(None, [decimal, whole])) or "1234.5, for instance"
 
 
 def _converted(given: "Quantity[float]", text: str, unit: str) -> float:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from rockshed.components.common.units import SCREEN_UNITS
 
+from ..core.results.facts import table_of
 from ..core.results.metric import Beside, Metric
 from ..core.results.reading import StoredRun
 from ..references import EXPERIMENT, PAPER, Known, References
@@ -16,7 +17,8 @@ from .doubts import warnings as warnings
 from .energy import driven, impact_energy, weightless
 from .headlines import headlines
 from .mesh import mesh_in_words
-from .reported import reported
+from .reported import ReportedMetric, reported
+from .screen_units import is_shown_in, screen_unit
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ _SETTLED = (
 """Metrics of filtered forces, and of the same forces as they are."""
 _ABOVE = 1.01
 """Ratio of both from which on the filter's overshoot is explained."""
+_DIGITS = 4
+"""Digits of a number, at most; those before the point are all written."""
 _FORCE = (Scale("kN", 2), Scale("kgf", 0))
 _ENERGY = (Scale("J", 2), Scale("kgf cm", 1))
 _TIME = (Scale("ms", 2),)
@@ -202,13 +206,13 @@ def rows(run: StoredRun, known: Mapping[str, Known]) -> list[ComparedRow]:
         for name in _ROWS
         for metric in computed
         if names.without_component(metric.name) == name
-        for row in _headline_rows(metric, name)
+        for row in _headline_rows(run, metric, name)
     ]
     shown += [row for metric in computed for row in _utilisation_rows(metric)]
     shown += [
         row
         for entry in reported(run)
-        for row in _rows(entry.metric.name, (Scale(entry.unit, entry.decimals),), entry.metric)
+        for row in _rows(entry.metric.name, _scales(run, [_declared(entry)]), entry.metric)
     ]
     if not shown:
         return [_plain(metric) for metric in run.metrics.values()]
@@ -286,11 +290,24 @@ def _plain(metric: Metric) -> ComparedRow:
     return ComparedRow(metric.name, "" if metric.unit == "1" else metric.unit, value)
 
 
-def _headline_rows(metric: Metric, name: str) -> Iterator[ComparedRow]:
+def _headline_rows(run: StoredRun, metric: Metric, name: str) -> Iterator[ComparedRow]:
     """Yield the rows of a headline metric; of one among several, with the name of its component."""
     label, scales = _ROWS[name]
     owner = metric.name.removesuffix(name)
-    return _rows(f"{owner}{label}", scales, metric)
+    return _rows(f"{owner}{label}", _scales(run, scales), metric)
+
+
+def _declared(entry: ReportedMetric) -> Scale:
+    return Scale(entry.unit, entry.decimals)
+
+
+def _scales(run: StoredRun, scales: Sequence[Scale]) -> list[Scale]:
+    """Return the units in which a run is shown: kgf for cases of papers, kJ of large energies."""
+    return [
+        replace(scale, unit=screen_unit(scale.unit, run))
+        for scale in scales
+        if is_shown_in(scale.unit, run)
+    ]
 
 
 def _utilisation_rows(metric: Metric) -> Iterator[ComparedRow]:
@@ -319,7 +336,9 @@ def _rows(label: str, scales: Sequence[Scale], metric: Metric) -> Iterator[Compa
 def _written(value: float, scale: Scale) -> str:
     shown = value / SCREEN_UNITS[scale.unit]
     if abs(shown) < _HUGE:
-        return f"{shown:{scale.sign}z.{scale.decimals}f}"
+        before_point = len(f"{abs(shown):.0f}")
+        decimals = min(scale.decimals, max(_DIGITS - before_point, 0))
+        return f"{shown:{scale.sign}z.{decimals}f}"
     return f"{shown:{scale.sign}.3g}"
 
 
@@ -354,7 +373,7 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
         about right (≈) come from, what the end of the run has cut off, why a settled force is
         above the peak, and how far the results hang on the mesh.
     """
-    remarks = list(_references(run).remarks)
+    remarks = [*_references(run).remarks, *_of_design(run)]
     remarks += [
         f"{name}: its gravity is 0, so moment and reactions are those beyond its own weight"
         for name in weightless(run)
@@ -370,6 +389,12 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     still = [_STILL] if still_in_contact(run) else []
     mesh = [text] if (text := mesh_in_words(run)) else []
     return [*remarks, *dict.fromkeys(origins), *still, *_overshooting(run), *mesh]
+
+
+def _of_design(run: StoredRun) -> list[str]:
+    """Return what the project of a run says of itself."""
+    told = table_of(run.provenance, "design").get("notes", ())
+    return [str(text) for text in told] if isinstance(told, list | tuple) else []
 
 
 def _overshooting(run: StoredRun) -> list[str]:

@@ -13,6 +13,7 @@ from ..metrics.cushion import both_forces, curve_of, cut_off, settled, thickness
 from ..metrics.load_curve import DEPTH
 from ..metrics.practice import with_handbook
 from ..metrics.roles import column
+from ..metrics.screen_units import is_shown_in
 from ..metrics.values import extreme
 from ..references import Known
 from ..tables import digits
@@ -57,7 +58,7 @@ def forces(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> Non
 
 
 def force_axes(run: StoredRun, cushion: str, known: KnownMetrics, axes: Axes) -> None:
-    """Draw both forces in kN, with kgf at the right, and lines for a legend.
+    """Draw both forces in kN, in cases of papers with kgf at the right, and lines for a legend.
 
     Parameters
     ----------
@@ -81,7 +82,13 @@ def force_axes(run: StoredRun, cushion: str, known: KnownMetrics, axes: Axes) ->
     axes.set(xlabel="time (ms)", ylabel="force (kN)")
     over_time(axes, time)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    second_scale(axes, kN / kgf, "(kgf)")
+    _kgf_beside(run, axes)
+
+
+def _kgf_beside(run: StoredRun, axes: Axes) -> None:
+    """Add a scale in kgf to forces in kN, for cases of papers."""
+    if is_shown_in("kgf", run):
+        second_scale(axes, kN / kgf, "(kgf)")
 
 
 def _settled_forces(run: StoredRun, cushion: str, axes: Axes) -> None:
@@ -160,7 +167,7 @@ def load(run: StoredRun, cushion: str, known: KnownMetrics, file: Path) -> None:
         axes.axhline(0.0, color=GREY, linewidth=0.7)
         axes.set(xlabel="penetration (cm)", ylabel="load (kN)")
         axes.set_xlim(left=0.0)
-        second_scale(axes, kN / kgf, "(kgf)")
+        _kgf_beside(run, axes)
         legend(axes)
 
 

@@ -18,6 +18,7 @@ from ..core.results.reading import StoredRun
 from ..metrics.energy import has_yielded, load_at_rest
 from ..metrics.names import without_component
 from ..metrics.roles import members_of
+from ..metrics.screen_units import is_shown_in, screen_unit
 from ..tables import digits
 from .envelope import draw_envelope
 from .references import KnownMetrics, draw_references
@@ -134,6 +135,13 @@ class DeclaredPicture:
             _share_time(run, [axes for axes, panel in drawn if not panel.is_envelope])
 
 
+def _as_shown(told: Mapping[str, Any], run: StoredRun) -> Mapping[str, Any]:
+    """Return a declared panel in the units in which the run is shown."""
+    second = told.get("second_unit", "")
+    shown = screen_unit(told["unit"], run)
+    return {**told, "unit": shown, "second_unit": second if is_shown_in(second, run) else ""}
+
+
 def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
     """Return the pictures that the components of a run declare.
 
@@ -151,7 +159,7 @@ def declared_pictures(run: StoredRun) -> list[DeclaredPicture]:
     for component, facts in run.provenance["components"].items():
         for picture in facts.get("pictures", ()):
             panels = pictures.setdefault(picture["name"], [])
-            for told in picture["panels"]:
+            for told in (_as_shown(panel, run) for panel in picture["panels"]):
                 shared = [p for p in panels if p.common and p.told == told]
                 panels += [] if shared else [DeclaredPanel(told)]
                 (shared or panels[-1:])[0].components.append(component)

@@ -15,6 +15,7 @@ from rockshed.components.common.units import ms
 from ..core.results.reading import StoredRun
 from ..metrics.energy import carried_work, impact_energy, machine_work, system_residual
 from ..metrics.roles import Member, recorded
+from ..metrics.screen_units import screen_size, screen_unit
 from .style import GREY, INK, WIDTH, figure, legend_beside, literal, over_time
 
 
@@ -86,10 +87,11 @@ def _stack(run: StoredRun, axes: Axes) -> None:
     """Draw the layers, and the energy that there should be."""
     time = run.series["time"] / ms
     shown = list(layers(run))
+    size = screen_size("J", run)
     if shown:  # no part may have any energy
         axes.stackplot(
             time,
-            [layer.values for layer in shown],
+            [layer.values / size for layer in shown],
             colors=[layer.colour for layer in shown],
             labels=[layer.label for layer in shown],
             edgecolor="white",
@@ -98,13 +100,13 @@ def _stack(run: StoredRun, axes: Axes) -> None:
     there_should_be = expected(run)
     axes.plot(
         time,
-        there_should_be.values,
+        there_should_be.values / size,
         color=INK,
         linewidth=0.9,
         linestyle="--",
         label=there_should_be.label,
     )
-    axes.set(ylabel="energy (J)")
+    axes.set(ylabel=f"energy ({screen_unit('J', run)})")
     over_time(axes, time)
     legend_beside(axes)
 

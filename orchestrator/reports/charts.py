@@ -18,6 +18,7 @@ from ..metrics.energy import driven
 from ..metrics.load_curve import DEPTH
 from ..metrics.practice import with_handbook
 from ..metrics.roles import column
+from ..metrics.screen_units import screen_size, screen_unit
 from ..pictures.declared import (
     DeclaredPanel,
     DeclaredPicture,
@@ -194,10 +195,11 @@ def _energy(run: StoredRun) -> Iterator[Chart]:
     found = list(layers(run))
     if not found:
         return
-    curves = [ChartCurve(e.label, time, e.values, e.colour, layer=True) for e in found]
+    size = screen_size("J", run)
+    curves = [ChartCurve(e.label, time, e.values / size, e.colour, layer=True) for e in found]
     line = expected(run)
-    curves.append(ChartCurve(_flat(line.label), time, line.values, line.colour, "dash"))
-    yield Chart(_TIME, "energy (J)", curves)
+    curves.append(ChartCurve(_flat(line.label), time, line.values / size, line.colour, "dash"))
+    yield Chart(_TIME, f"energy ({screen_unit('J', run)})", curves)
     error = balance_error(run)
     if error is not None:
         curve = ChartCurve("error of the balance", time, error.values, error.colour)

@@ -10,20 +10,10 @@ from rockshed.components.catalogue import NAMES, component
 from ..core.results.facts import table_of, tables_of
 from ..core.results.reading import StoredRun
 from ..tables import Table, digits
+from .quantities import criterion, quantity
 
 _LONGEST = 300
 """Letters of a value in a table, at most."""
-_UNITS = {
-    **dict.fromkeys(("mass", "deck_mass"), "kg"),
-    **dict.fromkeys(("radius", "drop_height", "thickness", "width", "effective_width"), "m"),
-    **dict.fromkeys(("height", "spacing", "span", "place", "disc_radius", "clearance"), "m"),
-    **dict.fromkeys(("speed", "velocity_x", "velocity_y"), "m/s"),
-    **dict.fromkeys(("modulus", "elastic_modulus", "cohesion", "yield_stress"), "Pa"),
-    **dict.fromkeys(("section_modulus", "plastic_modulus"), "m3"),
-    **dict.fromkeys(("stop_time", "exchange_step", "output_interval", "state_interval"), "s"),
-    **{"density": "kg/m3", "area": "m2", "second_moment": "m4", "friction_angle": "rad"},
-}
-"""Units of the numbers of a design and of a project, by name."""
 _LARGE = 1e7
 """Numbers from here on are written with an exponent."""
 
@@ -64,10 +54,18 @@ def differences(run: StoredRun) -> Table | None:
         The run.
     """
     told = table_of(run.provenance, "differences")
-    made = Table(("changed", "value"), right=("value",), title="Other than in the case")
+    made = Table(("changed", "value", "unit"), right=("value",), title="Other than in the case")
     for name, value in told.items():
-        made.add(str(name), value_text(value))
+        made.add(str(name), value_text(value), _unit_of(run, str(name)))
     return made if len(made) else None
+
+
+def _unit_of(run: StoredRun, name: str) -> str:
+    """Return the unit of a parameter, or of a shared value by one of its targets."""
+    targets = table_of(run.provenance, "system", "shared", name).get("targets", (name,))
+    component, _, parameter = str(next(iter(targets), "")).partition(".")
+    known = table_of(run.provenance, "components", component, "parameters", parameter)
+    return _unit(known.get("unit"))
 
 
 def shared_values(run: StoredRun) -> Table | None:
@@ -79,11 +77,11 @@ def shared_values(run: StoredRun) -> Table | None:
         The run.
     """
     told = table_of(run.provenance, "system", "shared")
-    made = Table(("shared value", "value (SI)", "of"), right=("value (SI)",))
+    made = Table(("shared value", "value", "unit", "of"), right=("value",))
     for name in told:
         entry = table_of(told, name)
         targets = ", ".join(map(str, entry.get("targets", ())))
-        made.add(str(name), value_text(entry.get("value", "")), targets)
+        made.add(str(name), value_text(entry.get("value", "")), _unit_of(run, str(name)), targets)
     return made if len(made) else None
 
 
@@ -153,13 +151,14 @@ def project_tables(run: StoredRun) -> Iterator[Table]:
         The run.
     """
     design = table_of(run.provenance, "design")
+    roof = str(table_of(design, "roof").get("kind", ""))
     for part, entries in design.items():
         if isinstance(entries, Mapping):
-            yield _plain(part, entries)
+            yield _plain(part, entries, roof)
     made = Table(("criterion", "limit", "unit"), right=("limit",), title="criteria")
     for entry in tables_of(design, "criteria"):
-        limit = value_text(entry.get("limit", ""))
-        made.add(str(entry.get("name", "")), limit, _unit(entry.get("unit")))
+        known = criterion(str(entry.get("name", "")), str(entry.get("unit", "1")))
+        made.add(known.words, known.text(entry.get("limit", "")), known.unit)
     if len(made):
         yield made
 
@@ -173,7 +172,8 @@ def derived(run: StoredRun) -> Table | None:
         The run.
     """
     entries = table_of(run.provenance, "project", "derived")
-    return _plain("", dict(_flat(entries, ""))) if entries else None
+    roof = str(table_of(entries, "roof").get("kind", ""))
+    return _plain("", entries, roof) if entries else None
 
 
 def _flat(entries: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
@@ -185,10 +185,12 @@ def _flat(entries: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
             yield f"{prefix}{name}", value
 
 
-def _plain(title: str, entries: Mapping[str, Any]) -> Table:
+def _plain(title: str, entries: Mapping[str, Any], roof: str) -> Table:
+    """Return the quantities of a table in words, each with its unit."""
     made = Table(("quantity", "value", "unit"), title=title)
     for name, value in _flat(entries, ""):
-        if value is not None:
-            unit = "" if isinstance(value, str) else _UNITS.get(name.rpartition(".")[2], "")
-            made.add(str(name).replace("_", " "), value_text(value), unit)
+        known = quantity(name, roof)
+        if known is not None and known.has(value):
+            unit = "" if isinstance(value, str) else known.unit
+            made.add(known.words, known.text(value), unit)
     return made

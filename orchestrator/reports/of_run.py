@@ -83,11 +83,16 @@ def title_of(run: StoredRun) -> str:
     words = [
         _mass(mass) if mass else "",
         f"from {digits(height, 3)} m" if height else "",
-        f"on {digits(thickness, 3)} m of sand" if thickness else "",
+        f"on {digits(thickness, 3)} m of {_material(cushion)}" if thickness else "",
         f"over {roof['section']}" if roof.get("section") else "",
     ]
     told = " ".join(filter(None, words))
     return f"{name}: {told}" if told else name
+
+
+def _material(cushion: Mapping[str, Any]) -> str:
+    """Return the name of the material of a cushion; of a cushion without one, sand."""
+    return str(next(iter(table_of(cushion, "materials")), "sand"))
 
 
 def _mass(mass: float) -> str:

@@ -34,6 +34,7 @@ from ..core.system.system import (
     system_from,
     with_values,
 )
+from ..input_files.form import read_toml
 from ..input_files.quantities import doubt, in_si
 from ..metrics.filtering import LOAD_CELL_ROWS
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
@@ -230,6 +231,7 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
+    read_toml(Path(request.target))  # of one that cannot be read nothing else is known
     for argument, remedy, asked in (
         ("sizes", "build its FMUs in these sizes", request.sizes),
         ("model", "set the parameters of its sand", request.model),

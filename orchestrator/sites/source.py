@@ -44,13 +44,15 @@ class SiteSource:
         return self.file.stem if self.file else "site"
 
 
-def site_source(site: SiteLike, **replaced: Any) -> SiteSource:
+def site_source(site: SiteLike, called: str = "site", **replaced: Any) -> SiteSource:
     """Read a site.
 
     Parameters
     ----------
     site : path, mapping or Data
         A TOML file, or its content.
+    called : str
+        What messages call one that was made in Python.
     **replaced
         Values of keys that replace those of the site; None leaves the site's.
 
@@ -67,8 +69,8 @@ def site_source(site: SiteLike, **replaced: Any) -> SiteSource:
     changes = {key: value for key, value in replaced.items() if value is not None}
     if isinstance(site, Data):
         content = site.model_dump(by_alias=True, exclude_unset=True)
-        return SiteSource({**content, **changes}, Places("site", replaced=tuple(changes)))
+        return SiteSource({**content, **changes}, Places(called, replaced=tuple(changes)))
     if isinstance(site, Mapping):
-        return SiteSource({**site, **changes}, Places("site", replaced=tuple(changes)))
+        return SiteSource({**site, **changes}, Places(called, replaced=tuple(changes)))
     content, places = read_toml(Path(site))
     return SiteSource({**content, **changes}, replace(places, replaced=tuple(changes)), Path(site))

@@ -161,7 +161,7 @@ def test_a_balance_that_does_not_close_is_warned_of():
     lost = made_up(**{"rock.energy.residual": -19.9 * np.linspace(0.0, 1.0, 401)})
     assert "does not close: -22 % of the impact energy" in comparison.warnings(lost)[0]
     row = next(row for row in comparison.rows(lost, {}) if row.label == "energy residual / E0")
-    assert row.computed == "-22.000"
+    assert row.computed == "-22.00"
     closed = made_up(**{"rock.energy.residual": 2.1 * np.linspace(0.0, 1.0, 401)})
     assert comparison.warnings(closed) == []
 

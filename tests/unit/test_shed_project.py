@@ -290,6 +290,54 @@ def test_a_value_beyond_what_is_usual_is_computed_with_a_warning_that_names_the_
     assert any(text in warning for warning in told), told
 
 
+def test_a_mass_that_lacks_its_ton_is_refused_with_the_number_of_discs_and_the_unit():
+    (told,) = refusals(changed(rock={"mass": 2.5}))
+    assert "a rock of 2.5 kg" in told
+    assert "sand discs of" in told
+    assert "if 2.5 t is meant, write that unit" in told
+    asked = changed(rock={"mass": 2.5}, numerics={"disc_radius": "6 mm"})
+    assert any("2.5 t" in warning for warning in prepare(asked).warnings)
+
+
+@pytest.mark.parametrize(
+    ("name", "offered"),
+    [("HEB 305", "HE 300 B"), ("IPE305", "IPE 300"), ("H-400x400x13x20", "H-400x400x13x21")],
+)
+def test_a_section_that_does_not_exist_is_answered_with_those_next_in_size(name, offered):
+    (told,) = refusals(changed(roof={"section": name}))
+    assert f"did you mean {offered}" in told
+
+
+def test_a_limit_of_the_deflection_may_be_written_as_engineers_do():
+    limits = [prepare(changed(criteria={"deflection": text})) for text in ("L/250", "span/250")]
+    assert {entry.project.criteria.deflection_of(9.0) for entry in limits} == {0.036}
+
+
+def test_a_material_without_its_stiffness_is_warned_of_and_one_of_the_table_is_not():
+    own = changed(material={"gravel": {"density": "19 kN/m3"}}, cushion={"material": "gravel"})
+    (told,) = prepare(own).warnings
+    assert "material 'gravel' has no modulus" in told
+    assert "Sonoda" in told
+    stiff = changed(material={"gravel": {"modulus": "4 MPa"}}, cushion={"material": "gravel"})
+    assert prepare(stiff).warnings == ()
+    assert prepare(PROJECT).warnings == ()
+
+
+def test_a_material_of_the_project_has_a_caution_among_the_notes_of_its_results():
+    own = changed(material={"gravel": {"modulus": "4 MPa"}}, cushion={"material": "gravel"})
+    (note,) = shed_case(prepare(own)).facts["design"]["notes"]
+    assert note.startswith("gravel is a material of the project")
+    assert shed_case(prepare(PROJECT)).facts["design"]["notes"] == []
+
+
+def test_the_values_of_a_material_tell_from_which_one_they_are_taken():
+    own = changed(material={"gravel": {"density": "19 kN/m3"}}, cushion={"material": "gravel"})
+    sand = prepare(own).layout.cushion.sand
+    assert sand.description == "own material, like compacted sand"
+    assert sand.source["modulus"].startswith("that of compacted sand: calibrated")
+    assert sand.source["density"] == "given with the project"
+
+
 # ---------------------------------------------------------------- what is derived
 
 

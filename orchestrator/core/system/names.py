@@ -8,6 +8,8 @@ _RANGE = re.compile(r"\[(?:\*|(\d+)\.\.(\d+))\]")
 _LONGEST_NUMBER = 18
 """Digits of an index of an array, at most."""
 
+_MOST_LISTED = 12
+"""Names that are all listed where none comes near."""
 MOST_ELEMENTS = 1_000_000
 """Elements of an array that a shorthand stands for, at most."""
 
@@ -100,5 +102,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
         return f"did you mean {' or '.join(close)}?"
     if not names:
         return "there are none"
-    more = ", ..." if len(names) > 12 else ""
-    return f"there are {', '.join(names[:12])}{more}"
+    if len(names) > _MOST_LISTED:
+        close = get_close_matches(name, names, 3, 0.0)
+        return f"the nearest of {len(names):,} are {', '.join(close)}"
+    return f"there are {', '.join(names)}"

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from rockshed.components.common.units import kN, standard_gravity
+from rockshed.components.common.units import kN, mm, standard_gravity
 from rockshed.components.pile_rod.declarations import SIZES as RODS
 from rockshed.components.sand_cushion.declarations import SIZES
 from rockshed.components.sand_cushion.models import SPREAD
@@ -10,11 +10,13 @@ from rockshed.components.sand_cushion.models import SPREAD
 from ...core.errors import Problem
 from ...input_files.form import told_if_formed
 from ...input_files.places import Key, Places
-from .geometry import ShedLayout, line_mass
+from .geometry import DISCS_IN_RADIUS, DISCS_IN_THICKNESS, ShedLayout, line_mass
 from .site import ShedProject
 
 _FIT = 1e-9
 """Part by which a length may be exceeded by rounding."""
+MOST_DISCS = 10_000
+"""Sand discs that follow from a project without being asked for, at most; usual are some 600."""
 FEWEST_LAYERS = 4.0
 """Disc diameters in the thickness, at least."""
 
@@ -39,6 +41,7 @@ def fit_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iter
     yield from _width_problems(project, found, where)
     yield from _rock_problems(found, where)
     yield from _disc_problems(found, where)
+    yield from _number_problems(project, found, where)
     yield from _start_problems(found, where)
     yield from _time_problems(found, where)
     yield from _rod_problems(found, where)
@@ -101,6 +104,24 @@ def _disc_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
     if widest > found.rock.radius:
         text = f"discs of up to {widest:.4g} m are no sand to a rock of {found.rock.radius:.4g} m"
         yield _at(where, key, text, "reduce it")
+
+
+def _number_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield derived discs that are so many that a value without its unit is likely."""
+    if project.numerics.disc_radius is not None or found.discs <= MOST_DISCS:
+        return
+    by_rock = (
+        found.rock.radius / DISCS_IN_RADIUS < 0.5 * found.cushion.thickness / DISCS_IN_THICKNESS
+    )
+    rock = ("rock", "size" if project.rock.mass is None else "mass")
+    text = (
+        f"a rock of {found.rock.mass:.4g} kg and {2.0 * found.rock.radius:.3g} m on a cushion of "
+        f"{found.cushion.thickness:.3g} m times {found.cushion.width:.3g} m makes {found.discs:,} "
+        f"sand discs of {2.0 * found.disc_radius / mm:.3g} mm; {MOST_DISCS:,} are the most that "
+        "are taken unasked"
+    )
+    remedy = "is a unit missing? else give numerics.disc_radius, or a smaller cushion.width"
+    yield _at(where, rock if by_rock else ("cushion", "thickness"), text, remedy)
 
 
 def _start_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+from rockshed.components.common.units import MPa
+
 from ...core.errors import Problem
 from ...core.system.names import nearest
 from ...input_files.form import if_formed
@@ -67,7 +69,57 @@ def _base(
 
 def _completed_sand(material: SandMaterial, base: SandMaterial) -> SandMaterial:
     """Return a material with the values of the one it is like, and the sources of all of them."""
+    like = material.like or DEFAULT_MATERIAL
     given = {key: value for key in STATE if (value := getattr(material, key)) is not None}
-    source = {**base.source, **{key: material.source.get(key, OWN_SOURCE) for key in given}}
-    description = material.description or base.description
+    taken = {key: f"that of {like}: {text}" for key, text in base.source.items()}
+    source = {**taken, **{key: material.source.get(key, OWN_SOURCE) for key in given}}
+    description = material.description or f"own material, like {like}"
     return base.model_copy(update={**given, "source": source, "description": description})
+
+
+def doubts_of_stiffness(own: Mapping[str, SandMaterial], name: str, where: Places) -> list[str]:
+    """Return a warning where the stiffness of a cushion is that of another material.
+
+    Parameters
+    ----------
+    own : mapping of str to SandMaterial
+        Materials of the project.
+    name : str
+        Of the material of the cushion.
+    where : Places
+        Of the values of the project.
+
+    Returns
+    -------
+    list of str
+        A sentence with its place; none of a material that ships, or whose modulus is given.
+    """
+    material = own.get(name)
+    if material is None or material.modulus is not None:
+        return []
+    like = material.like or DEFAULT_MATERIAL
+    base = shipped_sands().get(like, shipped_sands()[DEFAULT_MATERIAL])
+    return [
+        f"{where.of(('material', name))}: material {name!r} has no modulus: the stiffness of "
+        f"{like} is assumed, E_bar = {float(base.modulus or 0.0) / MPa:.3g} MPa, calibrated to "
+        "the sand of Sonoda et al. (1993) and to no other; forces and penetration follow it "
+        "(docs/designer.md, Materials, tells how to find it)"
+    ]
+
+
+def caution(own: Mapping[str, SandMaterial], name: str) -> str:
+    """Return what a reader of results has to know of a material; empty of one that ships.
+
+    Parameters
+    ----------
+    own : mapping of str to SandMaterial
+        Materials of the project.
+    name : str
+        Of the material of the cushion.
+    """
+    if name not in own:
+        return ""
+    return (
+        f"{name} is a material of the project: no test with it stands behind these results, which "
+        "are compared with tests on the sand of Sonoda et al. (1993) only"
+    )

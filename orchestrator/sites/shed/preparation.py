@@ -18,6 +18,7 @@ from ...input_files.places import Places
 from ..source import SiteLike, SiteSource, site_source
 from .checks import fit_problems, support_problems
 from .geometry import CushionPart, RockPart, RoofPart, ShedLayout, layout
+from .materials import doubts_of_stiffness
 from .parts import cushion_part, pile_part, rock_part, roof_part
 from .site import ShedProject
 
@@ -116,7 +117,7 @@ def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> Prep
     InputRefused
         Everything that is wrong with the project, with line and column.
     """
-    source = _changed(site_source(project), changes or {})
+    source = _changed(site_source(project, "project"), changes or {})
     where = source.places
     problems: list[Problem] = []
     data = formed(ShedProject, source.content, where, problems)
@@ -130,6 +131,7 @@ def prepare(project: SiteLike, changes: Mapping[str, Any] | None = None) -> Prep
     found = if_formed(_laid_out, data, parts, source.folder, where, problems)
     if problems or found is None:
         raise InputRefused(first(explained(problems, doubted)))
+    doubted += tuple(doubts_of_stiffness(data.material, found.cushion.material, where))
     return PreparedShed(source, data, found, doubted, dict(changes or {}))
 
 

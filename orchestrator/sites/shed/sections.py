@@ -128,12 +128,27 @@ def section(name: str, where: str, problems: list[Problem]) -> RolledSection | N
     found = by_key.get(_key(name))
     if found is None:
         begins = [known for known in sections() if _key(known).startswith(_key(name))]
-        remedy = nearest(name, sections())
+        remedy = _nearest_size(name) or nearest(name, sections())
         if begins and _key(name):
             remedy = f"there is {', '.join(begins[:5])}"
         text = f"there is no section {name!r} in the tables"
         problems.append(Problem(where, text, f"{remedy}; or give area, second_moment and height"))
     return found
+
+
+_NUMBER = re.compile(r"\d+")
+
+
+def _nearest_size(name: str) -> str:
+    """Offer the sections of a series whose sizes come nearest; nothing of an unknown series."""
+    series, sizes = _NUMBER.sub("#", _key(name)), list(map(int, _NUMBER.findall(_key(name))))
+    alike = [known for known in sections() if _NUMBER.sub("#", _key(known)) == series]
+    far = {
+        known: sum(abs(int(n) - size) for n, size in zip(_NUMBER.findall(_key(known)), sizes))
+        for known in alike
+    }
+    close = sorted(alike, key=far.__getitem__)[:3]
+    return f"did you mean {' or '.join(close)}?" if close else ""
 
 
 def _key(name: str) -> str:

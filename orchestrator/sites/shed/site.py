@@ -38,7 +38,7 @@ SolidFraction = Annotated[float, Field(ge=0.5, le=0.9, strict=True)]
 """Part of a layer that its discs fill, in the plane."""
 
 
-_PART_OF_SPAN = re.compile(r"span\s*/\s*(\d+(?:\.\d+)?)")
+_PART_OF_SPAN = re.compile(r"(?:span|[lL])\s*/\s*(\d+(?:\.\d+)?)")
 
 
 def _deflection_limit(value: Any) -> str | float:
@@ -63,15 +63,15 @@ def _deflection_limit(value: Any) -> str | float:
 
 
 DeflectionLimit = Annotated[str | float, BeforeValidator(_deflection_limit)]
-"""A length (m), or ``span/300``."""
+"""A length (m), or ``span/300``, which may be written ``L/300``."""
 
 
 class StrikingRock(Data):
     """The rock, and how it arrives at the surface of the cushion."""
 
-    mass: Mass | None = field("mass; or size, or both", usual=(1.0, 5e5), likely=("t",))
+    mass: Mass | None = field("mass; or size, or both", usual=(20.0, 5e5), likely=("t",))
     size: Length | None = field(
-        "diameter of a sphere, edge of a block", usual=(0.05, 10.0), likely=("cm", "mm")
+        "diameter of a sphere, edge of a block", usual=(0.1, 10.0), likely=("cm", "mm")
     )
     density: Density | None = field(
         "density; 2600 kg/m3 unless mass and size are given",
