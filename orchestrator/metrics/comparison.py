@@ -16,6 +16,13 @@ from .cushion import still_in_contact, still_sinking
 from .doubts import warnings as warnings
 from .energy import driven, impact_energy, weightless
 from .headlines import headlines
+from .meanings import (
+    COUPLING_MEANING,
+    COUPLING_ROW,
+    MEANINGS,
+    UTILISATION_MEANING,
+    UTILISATION_ROW,
+)
 from .mesh import mesh_in_words
 from .reported import ReportedMetric, reported
 from .screen_units import is_shown_in, screen_unit
@@ -387,8 +394,20 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
         if reference.note
     ]
     still = [_STILL] if still_in_contact(run) else []
+    still += _narrow(run)
     mesh = [text] if (text := mesh_in_words(run)) else []
     return [*remarks, *dict.fromkeys(origins), *still, *_overshooting(run), *mesh]
+
+
+def _narrow(run: StoredRun) -> list[str]:
+    """Say it where the load on the roof is narrower than the rock."""
+    values = {names.without_component(metric.name): metric.value for metric in headlines(run)}
+    if float(values.get(names.SPREAD_ANGLE, 0.0)) >= 0.0:
+        return []
+    return [
+        f"spread angle below 0: 90 % of the load lie within {float(values[names.LOAD_MOST]):.2g} m "
+        "of its centre, nearer than the edge of the rock: the cushion does not spread it"
+    ]
 
 
 def _of_design(run: StoredRun) -> list[str]:
@@ -435,6 +454,40 @@ def table(run: StoredRun, known: Mapping[str, Known]) -> Table:
         shown = (text for value, deviation in cells for text in (value, _percent(deviation)))
         made.add(row.label, row.unit, row.computed, *shown)
     return made
+
+
+def meanings(run: StoredRun) -> Table:
+    """Return the meanings of the rows that the table of a run has.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    Table
+        A row for each row of the table that is not clear by itself.
+    """
+    computed = {names.without_component(metric.name) for metric in headlines(run)}
+    shown = {_ROWS[name][0].strip(): words for name, words in MEANINGS.items() if name in computed}
+    if any(names.criterion_of(name) for name in computed):
+        shown[UTILISATION_ROW] = UTILISATION_MEANING
+    if next(_couplings(run), None):
+        shown[COUPLING_ROW] = COUPLING_MEANING
+    made = Table(("row", "meaning"))
+    for label, words in shown.items():
+        made.add(label, words)
+    return made
+
+
+def every_meaning() -> dict[str, str]:
+    """Return the meanings of all rows that a table may have, by their labels."""
+    return {
+        **{_ROWS[name][0].strip(): words for name, words in MEANINGS.items()},
+        UTILISATION_ROW: UTILISATION_MEANING,
+        COUPLING_ROW: COUPLING_MEANING,
+    }
 
 
 def _percent(deviation: float | None) -> str:

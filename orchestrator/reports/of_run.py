@@ -7,7 +7,7 @@ from rockshed.components.common.units import ms, tonne
 
 from ..core.results.facts import number_of, table_of, tables_of
 from ..core.results.reading import StoredRun
-from ..metrics import contents
+from ..metrics import comparison, contents
 from ..metrics.caption import models
 from ..metrics.contents import ForeignStateError
 from ..metrics.practice import formula_table
@@ -54,6 +54,7 @@ def report_of_run(
     chapters = [
         *_warnings(run),
         *_results(run),
+        *_meanings(run),
         *_formulas(run),
         *_effective_width(run),
         *_illustrations(run),
@@ -135,6 +136,12 @@ def _results(run: Run) -> Iterator[Chapter]:
         deviation = "Deviations from what others found are computed / reference - 1."
         told = [deviation] if len(made.columns) > len(("quantity", "unit", "computed")) else []
         yield Chapter("Results", [*told, *run.notes], [made])
+
+
+def _meanings(run: Run) -> Iterator[Chapter]:
+    """Yield the meanings of the rows, on the page only when they are asked for."""
+    if run.time.size and len(made := comparison.meanings(run)):
+        yield Chapter("What the rows mean", tables=[made], folded=True)
 
 
 def _formulas(run: StoredRun) -> Iterator[Chapter]:
@@ -231,6 +238,9 @@ def _assumptions(run: StoredRun) -> Chapter:
     """Return what the figures rest on: models, what is calibrated, width, frame."""
     told = [_FRAME]
     told += [f"Model: {text}." for text in models(run)]
+    told += [str(text) for text in table_of(run.provenance, "design").get("notes", ())]
+    if words := run.provenance.get("coupling_words"):
+        told.append(f"Coupling {run.provenance['coupling']}: {words}.")
     for component in run.provenance["components"]:
         known = contents.measures(run, component)
         assumed = getattr(known, "assumptions", None)

@@ -284,7 +284,12 @@ def _from_case(
     if problems:
         raise InputRefused(problems)
     sources: dict[str, Source] = {}
-    facts: dict[str, Any] = {**chosen.facts, "coupling": coupling, "sizes": sizes}
+    facts: dict[str, Any] = {
+        **chosen.facts,
+        "coupling": coupling,
+        "coupling_words": chosen.couplings[coupling],
+        "sizes": sizes,
+    }
     if request.model:
         facts["model"] = request.model
     if request.in_process:
