@@ -50,6 +50,7 @@ CONTENTS = {
     "Physics": (
         "components/index",
         "rockfall",
+        "forecasts",
         "formulas",
         "papers",
         "sonoda1993",
@@ -93,6 +94,7 @@ MODULES = {
             "rockshed.analyses.calibration.run",
             "rockshed.analyses.study.run",
             "rockshed.analyses.study.factors",
+            "rockshed.analyses.back_analysis.run",
         ),
     ),
     "papers": (

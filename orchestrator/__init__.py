@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import formulas
+    from .analyses.back_analysis.run import calibrate_rockfall
     from .analyses.calibration.run import calibrate
     from .analyses.convergence.run import converge
     from .analyses.pile.run import pile
@@ -50,6 +51,7 @@ _HOMES = {
     "UnknownName": "core.errors",
     "build_fmu": "runs.building",
     "calibrate": "analyses.calibration.run",
+    "calibrate_rockfall": "analyses.back_analysis.run",
     "converge": "analyses.convergence.run",
     "case": "runs.system",
     "component": "runs.subsystem",
@@ -84,6 +86,7 @@ __all__ = [
     "__version__",
     "build_fmu",
     "calibrate",
+    "calibrate_rockfall",
     "case",
     "component",
     "converge",

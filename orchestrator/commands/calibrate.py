@@ -11,6 +11,7 @@ DEFAULT = "sand"
 """Subject of a call that names none."""
 SUBJECTS = {
     "sand": "Find E_bar of a sand from a spring constant or a load-penetration curve.",
+    "rockfall": "Infer the ground of a slope from where rocks came to rest; forecast another.",
 }
 """Subjects by name, each a module ``calibrate_NAME``, with the first line of its help."""
 

@@ -13,7 +13,7 @@ from .csv_table import CsvTable, read_csv
 from .form import LARGEST
 from .quantities import in_si
 
-_TITLE = re.compile(r"\s*(\w+?)\s*[\[(_ ]\s*([A-Za-z0-9/]+)\s*[\])]?\s*")
+_TITLE = re.compile(r"\s*([\w. ]+?)\s*[\[(_ ]\s*([A-Za-z0-9/]+)\s*[\])]?\s*")
 
 
 def titled_columns(
