@@ -22,7 +22,7 @@ A section that yields has more of them: :mod:`.yielding`.
 from collections import namedtuple
 
 from ..common.kernels import kernel, view
-from .declarations import FIXED, LAYOUT, SPRUNG, YIELDING
+from .declarations import CRACKING, FIXED, LAYOUT, SPRUNG, YIELDING
 from .yielding import locked_and_elastic_energy, rate_energy, relieve, slip
 
 V, A = LAYOUT.scalar, LAYOUT.array
@@ -42,12 +42,13 @@ half-bar. It has no weight."""
 
 Chain = namedtuple(
     "Chain",
-    "n supports fixed spacing bending axial bearing spring plate drag viscosity gravity yielding",
+    "n supports fixed spacing bending axial bearing spring plate drag viscosity gravity yielding "
+    "cracking",
 )
 """Constants: numbers of discs and supports, whether the outer ones are fixed, R (m), EI/R2 (N),
 EA/R (N/m), stiffness of an inner support (N/m), of the spring under an end (N/m, 0: rigid) and the
 mass of that end (kg), Rayleigh factors of mass (1/s) and stiffness (s),
-gravity (m/s2), whether the section yields."""
+gravity (m/s2), whether the section yields, and whether its first corner is cracking."""
 
 
 @kernel
@@ -70,6 +71,7 @@ def chain(w, k):
         w[V.damping_stiffness],
         w[V.gravity],
         w[V.section_bending] == YIELDING,
+        w[V.section_corner1_kind] == CRACKING,
     )
 
 

@@ -9,6 +9,7 @@ from ..common.units import cm, cm2, cm4, kgf
 
 SIMPLE, FIXED, SPRUNG = 1, 2, 3
 ELASTIC, YIELDING = 1, 2
+YIELD, CRACKING = 1, 2
 SLIDERS = 3
 """Elements in parallel that slip, one for each corner of the moment-curvature line."""
 
@@ -29,6 +30,11 @@ _YIELDING = (
     "section.corner3.moment",
     "section.corner3.curvature",
     "section.hardening_ratio",
+    "section.corner1.kind",
+    "section.corner1.hogging_moment",
+    "section.corner2.hogging_moment",
+    "section.corner3.hogging_moment",
+    "section.corner_hogging_curvature",
 )
 _AT_REST = (
     *_YIELDING,
@@ -157,7 +163,7 @@ LAYOUT = Layout(
         choice(
             "section.bending",
             "elastic, or yielding along the corners of a moment-curvature line with kinematic "
-            "hardening, alike in both directions",
+            "hardening, alike in both directions unless corners have hogging moments",
             ("elastic", "yielding"),
             "elastic",
         ),
@@ -166,6 +172,27 @@ LAYOUT = Layout(
         _corner("section.corner2.curvature", "curvature at the second corner", "1/m"),
         _corner("section.corner3.moment", "bending moment at the third corner, 0 without one"),
         _corner("section.corner3.curvature", "curvature at the third corner", "1/m"),
+        choice(
+            "section.corner1.kind",
+            "what the first corner is: yield, unloading with the elastic slope, or cracking, "
+            "unloading towards the origin",
+            ("yield", "cracking"),
+            "yield",
+        ),
+        *(
+            _corner(
+                f"section.corner{number}.hogging_moment",
+                f"bending moment with tension above at the {place} corner, between slopes as "
+                "below; 0 at all corners: as below",
+            )
+            for number, place in enumerate(("first", "second", "third"), 1)
+        ),
+        _corner(
+            "section.corner_hogging_curvature",
+            "curvature with tension above that counts as that of the last corner in "
+            "curvature_ratio; 0: where the slopes lead",
+            "1/m",
+        ),
         param(
             "section.hardening_ratio",
             "slope of the moment-curvature line past its last corner, as a part of the elastic one",
@@ -320,7 +347,8 @@ LAYOUT = Layout(
         ),
         out(
             "plastic_curvature",
-            "plastic part of the curvature at the disc's centre, positive with tension below",
+            "curvature at the disc's centre that would stay without a moment, positive with "
+            "tension below",
             "1/m",
             size="elements",
             initial_dependencies=_AT_REST,
@@ -472,11 +500,11 @@ LAYOUT = Layout(
         ),
         out(
             "energy.plastic",
-            "energy that the yielding section has dissipated",
+            "energy that the section has dissipated by yielding and cracking",
             "J",
             initial_dependencies=(),
             role=Role.PLASTIC,
-            label="plastic work in the beam",
+            label="yielding and cracking of the beam",
         ),
         out(
             "energy.work.contact",
@@ -522,7 +550,11 @@ LAYOUT = Layout(
         State("unit.load", lambda sizes: sizes["elements"]),
         State("slider.share", lambda sizes: SLIDERS),
         State("slider.limit", lambda sizes: SLIDERS),
+        State("slider.hogging_limit", lambda sizes: SLIDERS),
+        State("last_corner", lambda sizes: 2),
         State("slipped", _slipped),
+        State("cracked.below", _padded),
+        State("cracked.above", _padded),
         State("hinge.length", _padded),
         State("elastic_moment", _padded),
         State("moment_rate", _padded),

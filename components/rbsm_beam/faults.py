@@ -17,7 +17,10 @@ FAULTS = {
     "N.m at curvatures section.corner1.moment/EI, {section.corner2.curvature}, "
     "{section.corner3.curvature} 1/m, then section.hardening_ratio = {section.hardening_ratio}; "
     "give section.corner1.moment > 0 and, for every further corner, a larger curvature and no "
-    "smaller moment, so that the slope never rises (0 and 0 leave a corner out)",
+    "smaller moment, so that the slope never rises (0 and 0 leave a corner out); hogging moments "
+    "{section.corner1.hogging_moment}, {section.corner2.hogging_moment}, "
+    "{section.corner3.hogging_moment} N.m are given for all of these corners or for none, and do "
+    "not fall",
     BAD_SPRING: "elastic supports and support.stiffness belong together, and support.stiffness is "
     "{support.stiffness} N/m: give supports = elastic and a stiffness above 0, or none",
     NO_REST: "the section yields under the weights at the start and does not come to rest with "

@@ -31,7 +31,14 @@ from .chain import (
 from .declarations import LAYOUT
 from .faults import BAD_CORNERS, BAD_SPRING, BOX_OFF_BEAM, DIVERGED, NO_PLACE, NO_REST
 from .statics import rest, set_midspan_influence, stable_step
-from .yielding import curvature_ratio, residual_deflection, set_lengths, set_sliders, unslip
+from .yielding import (
+    curvature_ratio,
+    permanent,
+    residual_deflection,
+    set_lengths,
+    set_sliders,
+    unslip,
+)
 
 V, A = LAYOUT.scalar, LAYOUT.array
 
@@ -337,13 +344,13 @@ def _publish_yielding(c, w, x, k):
     """Write plastic curvatures and rotations, the residual deflection, the largest curvature."""
     if not c.yielding:
         return
-    offset, length = view(x, k, A.offset), view(x, k, A.hinge_length)
+    length = view(x, k, A.hinge_length)
     curvature, turned = view(w, k, A.plastic_curvature), view(w, k, A.support_plastic_rotation)
     stiffness = c.bending * c.spacing * c.spacing
     for i in range(c.n):
-        curvature[i] = offset[i + 1] / stiffness
-    turned[0] = offset[0] / stiffness * length[0] * c.spacing
-    turned[1] = offset[c.n + 1] / stiffness * length[c.n + 1] * c.spacing
+        curvature[i] = permanent(c, i + 1, x, k) / stiffness
+    turned[0] = permanent(c, 0, x, k) / stiffness * length[0] * c.spacing
+    turned[1] = permanent(c, c.n + 1, x, k) / stiffness * length[c.n + 1] * c.spacing
     w[V.midspan_residual_deflection] = residual_deflection(c, x, k)
     w[V.curvature_ratio] = max(w[V.curvature_ratio], curvature_ratio(c, x, k))
 

@@ -4,7 +4,7 @@ import math
 
 from ..common.kernels import kernel, view
 from .chain import END_HINGE, WALL_HINGE, A, V, box_share, deform, follow
-from .yielding import unslip
+from .yielding import close_cracks, unslip
 
 POWER_ITERATIONS = 80
 """Number of power iterations.
@@ -67,6 +67,7 @@ def _plastic_change(c, w, x, k):
         before[i] = offset[i]
     for i in range(len(slipped)):
         slipped[i] = 0.0
+    close_cracks(x, k)
     follow(c, w, x, k)
     change, largest = 0.0, 0.0
     for i in range(c.n + 2):

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from functools import partial
 from typing import Any
 
-from rockshed.components.common.units import ms, standard_gravity
+from rockshed.components.common.units import kN, ms, standard_gravity
 
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
 from ..sites.shed.geometry import ShedLayout, end_stiffness
@@ -267,6 +267,7 @@ def design(project: ShedProject, found: ShedLayout) -> dict[str, Any]:
         what a reader has to know.
     """
     rock, cushion, roof = found.rock, found.cushion, found.roof
+    text = caution(project.material, cushion.material)
     return {
         "rock": {
             "mass": rock.mass,
@@ -300,8 +301,25 @@ def design(project: ShedProject, found: ShedLayout) -> dict[str, Any]:
             for name, limit, unit in _criteria(project, found)
             if limit is not None
         ],
-        "notes": [text] if (text := caution(project.material, cushion.material)) else [],
+        "notes": [*_remarks(found), *([text] if text else [])],
     }
+
+
+def _remarks(found: ShedLayout) -> list[str]:
+    """Return what a reader of the results has to know of the section."""
+    roof = found.roof
+    if roof.kind != "concrete":
+        return []
+    bears = f"{roof.hogging_capacity * found.girders / kN:.4g} kN m"
+    if roof.top_bar_diameter:
+        return [
+            f"bars above as given: in hogging the strip bears {bears}; between cracking and yield "
+            "its stiffness is taken as in sagging"
+        ]
+    return [
+        f"no bars above (roof.concrete.top_bar_diameter): in hogging the strip bears {bears}, "
+        "which cracks it, and breaks past that (criterion curvature)"
+    ]
 
 
 def _criteria(project: ShedProject, found: ShedLayout) -> list[tuple[str, float | None, str]]:
@@ -313,13 +331,16 @@ def _criteria(project: ShedProject, found: ShedLayout) -> list[tuple[str, float 
     roof = found.roof
     stress = given.stress
     moment = given.plastic_moment
-    crushing = 1.0 if roof.kind == "concrete" and roof.corners else None
+    concrete = roof.kind == "concrete"
+    crushing = 1.0 if concrete and roof.corners else None
+    hogging = roof.hogging_capacity * found.girders if concrete else None
     if roof.yield_stress is not None:
         stress = stress or (roof.yield_stress if roof.kind == "girders" else None)
         moment = moment or roof.yield_stress * roof.plastic_modulus * found.girders
     return [
         ("stress", stress, "Pa"),
-        ("plastic moment", moment, "N.m"),
+        ("sagging moment" if concrete else "plastic moment", moment, "N.m"),
+        ("hogging moment", hogging, "N.m"),
         ("curvature", crushing, "1"),
         ("deflection", given.deflection_of(roof.span), "m"),
         ("pile set", given.pile_set, "m"),

@@ -26,6 +26,7 @@ from .meanings import (
 from .mesh import mesh_in_words
 from .reported import ReportedMetric, reported
 from .screen_units import is_shown_in, screen_unit
+from .structure_notes import on_structures
 
 
 @dataclass(frozen=True)
@@ -96,17 +97,19 @@ _ROWS: Mapping[str, tuple[str, tuple[Scale, ...]]] = {
     names.SPREAD_ANGLE: ("  spread angle (45 is practice)", (Scale("deg", 0),)),
     names.DEFLECTION: ("peak midspan deflection", (Scale("mm", 3),)),
     names.RESIDUAL_DEFLECTION: ("residual midspan deflection", (Scale("mm", 3),)),
-    names.PEAK_MOMENT: ("peak bending moment", (Scale("kN m", 3),)),
+    names.PEAK_MOMENT: ("peak bending moment (+ sagging, - hogging)", (Scale("kN m", 3),)),
     names.PEAK_MOMENT_AT: ("  at", _TIME),
     names.PEAK_MOMENT_PLACE: ("  at x =", _PLACE),
-    names.PEAK_SHEAR: ("peak shear force", (Scale("kN", 2),)),
+    names.PEAK_SAGGING: ("peak sagging moment", (Scale("kN m", 3),)),
+    names.PEAK_HOGGING: ("peak hogging moment", (Scale("kN m", 3),)),
+    names.PEAK_SHEAR: ("peak shear force (+ left part pushes up)", (Scale("kN", 2),)),
     names.PEAK_SHEAR_AT: ("  at", _TIME),
     names.PEAK_SHEAR_PLACE: ("  at x =", _PLACE),
-    names.PEAK_STRESS: ("peak bending stress", (Scale("MPa", 1),)),
-    names.PEAK_REACTION: ("peak support reaction", (Scale("kN", 2),)),
+    names.PEAK_STRESS: ("peak bending stress, elastic: M/W", (Scale("MPa", 1),)),
+    names.PEAK_REACTION: ("peak reaction of a support, upwards", (Scale("kN", 2),)),
     names.PEAK_REACTION_AT: ("  at", _TIME),
-    names.CURVATURE_RATIO: ("largest curvature / last corner's", (Scale("1", 2),)),
-    names.PLASTIC_WORK: ("plastic work in the beam", _ENERGY),
+    names.CURVATURE_RATIO: ("largest curvature / where capacity ends", (Scale("1", 2),)),
+    names.PLASTIC_WORK: ("work of yielding and cracking", _ENERGY),
     names.IMPACT_ENERGY: ("impact energy E0", _ENERGY),
     names.BEAM_ENERGY: ("peak beam energy (5), (6)", _ENERGY),
     names.BEAM_ENERGY_FROM_STRAIN: ("peak beam energy (7)", _ENERGY),
@@ -125,6 +128,7 @@ _TOO_SHORT = "the run ends before the rock has come to a stop: nothing is compar
 _TOO_SHALLOW = (
     "the rock is not driven 4 cm deep: there is no secant spring constant; let the run end later"
 )
+_FAILED = "the run has failed: nothing is compared, and nothing is said about the design"
 _STILL = (
     "the force on the rock has not ended: impulse and duration would be larger with a later stop "
     "time"
@@ -163,7 +167,7 @@ def known_of(run: StoredRun) -> Mapping[str, Known]:
     mapping of str to Known
         By the name of the metric; empty if the run ended before the rock had come to a stop.
     """
-    return {} if still_sinking(run) else _references(run).known
+    return {} if run.has_failed or still_sinking(run) else _references(run).known
 
 
 def _references(run: StoredRun) -> References:
@@ -376,15 +380,18 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
     Returns
     -------
     list of str
-        Why something is not compared, weights that are left out, where references that are only
-        about right (≈) come from, what the end of the run has cut off, why a settled force is
-        above the peak, and how far the results hang on the mesh.
+        Why something is not compared, what the numbers of a structure are, weights left out, where
+        references that are only about right (≈) come from, what the end of the run has cut off,
+        why a settled force is above the peak, and how far the results hang on the mesh.
     """
     remarks = [*_references(run).remarks, *_of_design(run)]
     remarks += [
         f"{name}: its gravity is 0, so moment and reactions are those beyond its own weight"
         for name in weightless(run)
     ]
+    if run.has_failed:
+        return [*remarks, _FAILED]
+    remarks += on_structures(run)
     if still_sinking(run):
         return [*remarks, _TOO_SHALLOW if driven(run) else _TOO_SHORT]
     origins = [

@@ -89,9 +89,9 @@ def formula_values(run: StoredRun) -> list[FormulaValue]:
     Returns
     -------
     list of FormulaValue
-        Empty where the run is no impact of a rock on a cushion.
+        Empty where the run is no impact of a rock on a cushion, or has failed.
     """
-    impact = impact_of(run)
+    impact = None if run.has_failed else impact_of(run)
     try:
         return [] if impact is None else estimates(impact)
     except ValueError:  # a value that no formula takes: results of a run that went astray

@@ -22,11 +22,17 @@ from .values import of_each
 
 STRESS = "stress"
 """Criterion: bending stress of the elastic section (Pa)."""
+SAGGING, HOGGING = "sagging moment", "hogging moment"
+"""Criteria of a section whose capacities differ (N m)."""
+CURVATURE = "curvature"
+"""Criterion: curvature in that at which the section has no more capacity."""
 
 _MEASURES: Mapping[str, Sequence[str]] = {
     STRESS: (names.PEAK_STRESS,),
     "plastic moment": (names.PEAK_MOMENT,),
-    "curvature": (names.CURVATURE_RATIO,),
+    SAGGING: (names.PEAK_SAGGING,),
+    HOGGING: (names.PEAK_HOGGING,),
+    CURVATURE: (names.CURVATURE_RATIO,),
     "deflection": (names.DEFLECTION,),
     "reaction": (names.PEAK_REACTION,),
     "penetration": (names.PENETRATION,),
@@ -74,11 +80,13 @@ def _elastic_stress(run: StoredRun, structure: str) -> float | None:
     Returns
     -------
     float or None
-        None where the design knows no section modulus, so that a stress means nothing (cracked
-        concrete), or the structure tells no section.
+        None where a stress means nothing (the design knows no section modulus, or concrete may
+        crack), or the structure tells no section.
     """
     roof = _part(run, "roof")
     if not isinstance(roof, Mapping) or not roof.get("section_modulus"):
+        return None
+    if roof.get("kind") == "concrete" and yields(run, structure):
         return None
     height = parameter(run, structure, Role.SECTION_HEIGHT)
     second_moment = parameter(run, structure, Role.SECOND_MOMENT)
@@ -89,7 +97,9 @@ def _elastic_stress(run: StoredRun, structure: str) -> float | None:
 
 
 def of_design(run: StoredRun, found: Iterable[Metric]) -> Iterator[Metric]:
-    """Yield the bending stress, and the share of each criterion's limit that the run has reached.
+    """Yield stress, sagging and hogging, and the share of each limit that the run has reached.
+
+    Of a run that has failed nothing is yielded: it says nothing about a design.
 
     Parameters
     ----------
@@ -98,10 +108,15 @@ def of_design(run: StoredRun, found: Iterable[Metric]) -> Iterator[Metric]:
     found : iterable of Metric
         Its other headline metrics.
     """
-    stresses = list(of_each(run, structures(run), _peak_stress))
-    yield from stresses
-    known = [*found, *stresses]
-    for criterion, limit in criteria(run).items():
+    if run.has_failed:
+        return
+    limits = criteria(run)
+    bent = list(of_each(run, structures(run), _peak_stress))
+    if HOGGING in limits:
+        bent += of_each(run, structures(run), _sagging_and_hogging)
+    yield from bent
+    known = [*found, *bent]
+    for criterion, limit in limits.items():
         value = _largest(known, _MEASURES.get(criterion, ()))
         if value is not None:
             yield Metric(names.utilisation(criterion), value / limit)
@@ -111,6 +126,13 @@ def _peak_stress(run: StoredRun, structure: str) -> Iterator[Metric]:
     stress = _elastic_stress(run, structure)
     if stress is not None:
         yield Metric(names.PEAK_STRESS, stress, "Pa")
+
+
+def _sagging_and_hogging(run: StoredRun, structure: str) -> Iterator[Metric]:
+    moments = all_samples(run, structure, Role.BENDING_MOMENT)
+    if moments.size:
+        yield Metric(names.PEAK_SAGGING, max(0.0, float(moments.max())), "N.m")
+        yield Metric(names.PEAK_HOGGING, max(0.0, -float(moments.min())), "N.m")
 
 
 def _largest(found: Iterable[Metric], wanted: Sequence[str]) -> float | None:
@@ -139,10 +161,13 @@ def exceeded(run: StoredRun, found: Iterable[Metric]) -> Iterator[str]:
         criterion = names.criterion_of(names.without_component(metric.name))
         if criterion not in limits or float(metric.value) <= 1.0:
             continue
-        if criterion != STRESS:
-            yield _past(criterion, float(metric.value), limits[criterion])
-        elif not yielding:
-            yield _past_yield(float(metric.value), limits[criterion], _source(run, criterion))
+        share, limit = float(metric.value), limits[criterion]
+        if criterion == STRESS and not yielding:
+            yield _past_yield(share, limit, _source(run, criterion))
+        elif criterion == CURVATURE:
+            yield _past_capacity(share)
+        else:
+            yield _past(criterion, share, limit)
 
 
 def _source(run: StoredRun, criterion: str) -> str:
@@ -162,9 +187,20 @@ def _past_yield(share: float, limit: float, source: str) -> str:
     )
 
 
+def _past_capacity(share: float) -> str:
+    """Say that a section was bent beyond the curvature at which its capacity ends."""
+    return (
+        f"curvature past its limit: {share:.3g} times that at which the section has no more "
+        "capacity (concrete is crushed, or cracks where no bars cross): what comes after means "
+        "nothing; change the design"
+    )
+
+
 _SHOWN = {
+    STRESS: ("MPa (elastic, M/W)", MPa),
     "plastic moment": ("kN m", kN),
-    "curvature": ("times the curvature of the last corner", 1.0),
+    SAGGING: ("kN m", kN),
+    HOGGING: ("kN m", kN),
     "deflection": ("mm", mm),
     "reaction": ("kN", kN),
     "penetration": ("cm", cm),

@@ -12,6 +12,7 @@ from ..metrics.caption import models
 from ..metrics.contents import ForeignStateError
 from ..metrics.practice import formula_table
 from ..metrics.roles import parameters as values_of
+from ..metrics.structure_notes import on_structures
 from ..metrics.width_band import width_band_table
 from ..pictures import RunPicture, pictures_of
 from ..runs.run import Run
@@ -250,6 +251,7 @@ def _assumptions(run: StoredRun) -> Chapter:
     if width:
         rule = f", by the rule {cushion['rule']}" if cushion.get("rule") else ""
         told.append(f"Effective width of the plane model: {digits(width, 4)} m{rule}.")
+    told += on_structures(run)
     return Chapter("Assumptions", list(dict.fromkeys(told)))
 
 

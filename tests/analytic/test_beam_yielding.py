@@ -184,6 +184,81 @@ def test_of_the_work_on_a_section_nothing_is_lost_and_plastic_work_never_falls(t
     assert stored + made["energy.plastic"] == pytest.approx(work, abs=2e-3 * scale)
 
 
+CRACKING = {
+    **TRILINEAR,
+    "section__corner1__kind": "cracking",
+    "section__corner1__hogging_moment": 0.5 * CAPACITY,
+    "section__corner2__hogging_moment": 0.62 * CAPACITY,
+    "section__corner3__hogging_moment": 0.64 * CAPACITY,
+}
+"""A strip that cracks at half of its capacity, with fewer bars above than below."""
+
+
+def test_cracked_concrete_unloads_to_the_origin_until_its_bars_yield():
+    made, _ = section(**CRACKING)
+    for largest in (0.9, 1.4):  # bars yield at 1.5
+        top = bend(made, largest * CAPACITY / EI)
+        assert top == pytest.approx(on_the_line(largest * CAPACITY / EI))
+        made["energy.plastic"] = 0.0
+        for share in (0.7, 0.3, 0.0, 0.9):
+            now = bend(made, share * largest * CAPACITY / EI)
+            assert now == pytest.approx(share * top, abs=1e-9)
+        assert made["energy.plastic"] == 0.0
+        assert yielding.permanent(chain.chain(made.w, made.k), 3, made.x, made.k) == 0.0
+
+
+def test_hogging_has_moments_of_its_own_and_cracks_apart_from_sagging():
+    made, _ = section(**CRACKING)
+    bend(made, 1.4 * CAPACITY / EI)  # cracked below
+    assert bend(made, -0.4 * CAPACITY / EI) == pytest.approx(-0.4 * CAPACITY)
+    for curvature, moment in ((0.8, 0.62), (1.3, 0.64)):  # slopes 0.4 and 0.04, as below
+        assert bend(made, -curvature * CAPACITY / EI) == pytest.approx(-moment * CAPACITY)
+    made, _ = section(**CRACKING)
+    bend(made, 3.0 * CAPACITY / EI)
+    stays = yielding.permanent(chain.chain(made.w, made.k), 3, made.x, made.k)
+    assert 0.0 < stays < 1.5 * CAPACITY
+    assert bend(made, stays / EI) == pytest.approx(0.0, abs=1e-9)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.floats(-8.0, 8.0), min_size=1, max_size=8))
+def test_of_the_work_on_a_cracking_section_nothing_is_lost(turns):
+    made, length = section(**CRACKING)
+    c = chain.chain(made.w, made.k)
+    work, moment, place = 0.0, 0.0, 0.0
+    for turn in turns:
+        for curvature in np.linspace(place, turn, 80):
+            lost = made["energy.plastic"]
+            now = bend(made, curvature * CAPACITY / EI)
+            work += 0.5 * (moment + now) * (curvature - place) * CAPACITY / EI * length
+            moment, place = now, curvature
+            assert made["energy.plastic"] >= lost
+    stored = yielding.locked_and_elastic_energy(c, made.x, made.k)
+    scale = CAPACITY**2 / EI * length * (1.0 + np.abs(np.diff([0.0, *turns])).sum())
+    assert stored + made["energy.plastic"] == pytest.approx(work, abs=2e-3 * scale)
+
+
+def test_a_strip_that_only_cracked_comes_back_to_where_it_was():
+    made = beam(25, damping__mass=2500.0, **CRACKING)
+    under(8.0 * CAPACITY / SPAN * 0.8 * spread(25), made)
+    cracked = made["midspan.deflection"]
+    assert made["energy.plastic"] > 0.0
+    under(0.0 * spread(25), made)
+    assert made["midspan.residual_deflection"] == 0.0
+    assert abs(made["midspan.deflection"]) < 1e-3 * cracked
+
+
+def test_fixed_ends_without_bars_above_bear_what_cracks_them_and_no_more():
+    weak = {f"section__corner{n}__hogging_moment": 0.2 * CAPACITY for n in (1, 2, 3)}
+    weak["section__corner_hogging_curvature"] = 0.2 * CAPACITY / EI
+    made = beam(25, supports="fixed", damping__mass=3000.0, **{**CRACKING, **weak})
+    load = 8.0 * CAPACITY / SPAN * 0.8
+    under(load * spread(25), made, ramp=0.2, hold=0.2)
+    assert made["support.moment"] == pytest.approx([-0.2 * CAPACITY] * 2, rel=0.1)
+    assert made["midspan.moment"] == pytest.approx((0.8 - 0.2) * CAPACITY, rel=0.05)
+    assert made["curvature_ratio"] > 1.0
+
+
 # ------------------------------------------------------------------ impulses
 
 

@@ -152,6 +152,37 @@ def test_a_limit_that_is_passed_is_doubted(simple):
     assert not any("past" in text for text in warnings(designed(simple, stress=1.01 * stress)))
 
 
+def test_every_utilisation_above_one_is_doubted_and_none_below(simple):
+    limits = {"stress": 1.0, "plastic_moment": 1.0, "sagging_moment": 1.0, "deflection": 1e-9}
+    run = designed(simple, **limits, hogging_moment=1e12, reaction=1.0)
+    shares = {m.name: m.value for m in headlines(run) if m.name.startswith("utilisation by ")}
+    assert len(shares) == 6
+    for name, share in shares.items():
+        told = [text for text in warnings(run) if text.startswith(f"{name[15:]} past ")]
+        assert len(told) == (share > 1.0), name
+
+
+def test_a_run_that_has_failed_says_nothing_about_the_design(simple):
+    run = designed(simple, stress=1.0, plastic_moment=1.0, deflection=1e-9)
+    run = replace(run, provenance={**run.provenance, "status": "failed"})
+    assert not any(" past " in text for text in warnings(run))
+    assert not any("utilisation" in row.label for row in comparison.rows(run, {}))
+    assert any("nothing is said about the design" in text for text in comparison.notes(run, {}))
+
+
+def test_moment_and_reaction_are_told_of_one_girder_with_dead_load_and_signs(simple):
+    run = designed(simple)
+    design = run.provenance["design"]
+    for kind, words in (("girders", "of one girder: "), ("concrete", "of a metre: ")):
+        roof = {**design["roof"], "kind": kind, "girders": 2.0}
+        own = {**run.provenance, "design": {**design, "roof": roof}}
+        told = comparison.notes(replace(run, provenance=own), {})
+        moment = (STEEL + 100.0) * GRAVITY * SPAN**2 / 8 / 2.0 / 1e3
+        assert any(f"{words}{moment:.4g} kN m" in text for text in told)
+    assert any("sagging" in text for text in told)
+    assert any("dead load" in text and "mm" in text for text in told)
+
+
 def test_a_beam_that_yields_shows_what_stays_and_no_doubt_about_its_stress():
     moment = (STEEL + 100.0) * GRAVITY * SPAN**2 / 8
     corners = {
@@ -167,3 +198,4 @@ def test_a_beam_that_yields_shows_what_stays_and_no_doubt_about_its_stress():
     assert run.metrics["largest_curvature_curvature_of_the_last_corner"].value > 1.0
     texts = warnings(designed(run, stress=1.0))
     assert not any("stress past yield" in text for text in texts)
+    assert any("stress past its limit" in text and "M/W" in text for text in texts)

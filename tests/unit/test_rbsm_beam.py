@@ -218,6 +218,8 @@ def test_a_yielding_beam_goes_on_from_its_state_to_the_bit():
         {"section.corner3.moment": 400.0, "section.corner3.curvature": 1.1e-3},
         {"section.corner3.moment": 160.0},
         {"section.hardening_ratio": 0.9},
+        {"section.corner1.hogging_moment": 80.0},
+        {"section.corner1.hogging_moment": 80.0, "section.corner2.hogging_moment": 70.0},
     ],
 )
 def test_corners_that_make_no_moment_curvature_line_are_refused(corners):

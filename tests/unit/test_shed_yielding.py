@@ -97,6 +97,24 @@ def test_fibres_of_the_strip_give_the_same_moments():
         assert forces(low, curvature)[1] == pytest.approx(moment, rel=1e-4)
 
 
+def test_a_strip_without_bars_above_hogs_up_to_cracking_only():
+    corners = strip_corners(STRIP, CONCRETE, BARS)
+    assert corners.hogging_moments == (corners.moments[0],) * 3
+    assert corners.hogging_curvature == corners.curvatures[0]
+    assert corners.cracks
+
+
+def test_hogging_is_sagging_of_the_strip_upside_down():
+    alike = replace(STRIP, upper_area=2000e-6, upper_depth=0.06)
+    corners = strip_corners(alike, CONCRETE, BARS)
+    assert corners.hogging_moments == pytest.approx(corners.moments)
+    assert corners.hogging_curvature == pytest.approx(corners.curvatures[-1])
+    fewer = strip_corners(replace(alike, upper_area=1000e-6), CONCRETE, BARS)
+    assert fewer.hogging_moments[-1] == pytest.approx(345e3 * 0.43, rel=0.05)  # steel and its arm
+    with pytest.raises(StripError, match="in hogging, the steel yields"):
+        strip_corners(replace(alike, upper_area=500e-6), CONCRETE, BARS)
+
+
 def test_a_strip_that_breaks_without_a_warning_is_refused():
     with pytest.raises(StripError, match="crushes before the steel yields"):
         strip_corners(replace(STRIP, steel_area=20000e-6), CONCRETE, BARS)

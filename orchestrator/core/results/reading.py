@@ -74,6 +74,11 @@ class StoredRun:
         return str(self.provenance["status"])
 
     @property
+    def has_failed(self) -> bool:
+        """Whether the run broke down, so that its results mean nothing for a design."""
+        return self.status == "failed"
+
+    @property
     def error(self) -> str | None:
         """Reason for the end of a run that failed, else None."""
         return self.provenance.get("error")

@@ -39,6 +39,7 @@ def fit_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iter
         With the field of the project that is at fault.
     """
     yield from _width_problems(project, found, where)
+    yield from _criteria_problems(project, where)
     yield from _rock_problems(found, where)
     yield from _disc_problems(found, where)
     yield from _number_problems(project, found, where)
@@ -63,6 +64,14 @@ def _width_problems(project: ShedProject, found: ShedLayout, where: Places) -> I
             f"{project.roof.number}"
         )
         yield _at(where, ("cushion", "effective_width"), text, "reduce it, or raise roof.number")
+
+
+def _criteria_problems(project: ShedProject, where: Places) -> Iterator[Problem]:
+    """Yield a limit of the stress of concrete that cracks."""
+    cracks = project.roof.concrete is not None and project.roof.bending == "yielding"
+    if cracks and project.criteria.stress is not None:
+        text = "a strip that cracks has no stress M/W"
+        yield _at(where, ("criteria", "stress"), text, "limit plastic_moment or deflection")
 
 
 def _rock_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:

@@ -124,6 +124,10 @@ class RoofPart:
         Of the spring under each of its ends (N/m); 0 where the supports are not elastic.
     corners : Corners or None
         Of the moment-curvature line; None for an elastic section.
+    hogging_capacity : float
+        Moment that a strip of concrete bears with tension above (N m).
+    top_bar_diameter : float
+        Of the bars above in a strip of concrete (m); 0 without any.
     """
 
     kind: str
@@ -142,6 +146,8 @@ class RoofPart:
     supports: str = "simple"
     support_stiffness: float = 0.0
     corners: Corners | None = None
+    hogging_capacity: float = 0.0
+    top_bar_diameter: float = 0.0
 
 
 @dataclass(frozen=True)

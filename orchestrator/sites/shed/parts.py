@@ -18,7 +18,7 @@ from .geometry import CushionPart, RockPart, RoofPart
 from .materials import DEFAULT_MATERIAL, sands, shipped_sands
 from .reinforced_concrete import Bars, Concrete, Strip, StripError, strip_corners
 from .sections import section
-from .site import Roof, ShedProject, StrikingRock
+from .site import ConcreteStrip, Roof, ShedProject, StrikingRock
 from .steels import DEFAULT_STEEL, Steel, steels
 from .yielding import Corners, SteelSection, steel_corners
 
@@ -264,6 +264,8 @@ def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> R
         supports=_ENDS.get(project.supports.kind, "simple"),
         support_stiffness=project.supports.stiffness or 0.0,
         corners=None if roof.bending == "elastic" else corners,
+        hogging_capacity=corners.hogging_moments[-1],
+        top_bar_diameter=strip.top_bar_diameter or 0.0,
     )
 
 
@@ -285,19 +287,46 @@ def _concrete_corners(roof: Roof, where: Places, problems: list[Problem]) -> Cor
         text = "roof.concrete: cover is half of the thickness or more: the bars are not below"
         problems.append(Problem(where.of(("roof", "concrete", "cover")), text, "reduce it"))
         return None
-    steel = 0.25 * math.pi * strip.bar_diameter**2 / strip.bar_spacing
+    if not (upper := _upper_bars(strip, where, problems)):
+        return None
+    steel = _bar_area(strip.bar_diameter, strip.bar_spacing)
     tensile = 0.3e6 * (strip.concrete_strength / 1e6) ** (2.0 / 3.0)
     try:
         return strip_corners(
-            Strip(1.0, strip.thickness, steel, strip.thickness - strip.cover),
+            Strip(1.0, strip.thickness, steel, strip.thickness - strip.cover, *upper),
             Concrete(strip.concrete_strength, tensile, _concrete_modulus(roof)),
             Bars(strip.bar_yield_stress),
         )
     except StripError as error:
         text = f"roof.concrete: {error}"
-        remedy = "change bar_diameter, bar_spacing or thickness"
+        remedy = "change diameter or spacing of the bars, or thickness"
         problems.append(Problem(where.of(("roof", "concrete")), text, remedy))
         return None
+
+
+def _bar_area(diameter: float, spacing: float) -> float:
+    """Return the area of bars in a metre (m2)."""
+    return 0.25 * math.pi * diameter**2 / spacing
+
+
+def _upper_bars(
+    strip: ConcreteStrip, where: Places, problems: list[Problem]
+) -> tuple[float, float] | None:
+    """Return area (m2) and depth (m) of the bars above in a metre, 0 without any; None if wrong."""
+    if strip.top_bar_diameter is None:
+        for key in ("top_bar_spacing", "top_cover"):
+            if getattr(strip, key) is not None:
+                text = f"roof.concrete: {key} is given, and there are no bars above"
+                place = where.of(("roof", "concrete", key))
+                problems.append(Problem(place, text, "give top_bar_diameter, or leave it out"))
+                return None
+        return 0.0, 0.0
+    depth = strip.top_cover or strip.cover
+    if depth >= 0.5 * strip.thickness:
+        text = "roof.concrete: top_cover is half of the thickness or more: the bars are not above"
+        problems.append(Problem(where.of(("roof", "concrete", "top_cover")), text, "reduce it"))
+        return None
+    return _bar_area(strip.top_bar_diameter, strip.top_bar_spacing or strip.bar_spacing), depth
 
 
 def pile_part(

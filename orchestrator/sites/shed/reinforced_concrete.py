@@ -3,11 +3,15 @@
 Plane sections stay plane. Concrete in compression follows the parabola-rectangle of the codes
 (EN 1992-1-1, 3.1.7, with exponent 2), in tension it carries nothing once it has cracked; steel is
 elastic-perfectly plastic. Between the three points the line is straight, which leaves out tension
-stiffening. Bending that opens the lower face; the compression steel may be 0.
+stiffening. Sagging opens the lower face, hogging the upper one; the bars of either may be 0.
+
+A cracked strip unloads towards the origin until its bars yield, as cracks close (origin-oriented
+part), and each face cracks by itself; past that, bars slip with the slope of the cracked strip.
+Between cracking and yield the slope in hogging is that in sagging.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .yielding import Corners
 
@@ -97,9 +101,22 @@ class Strip:
         """Second moment of area of the gross section (m4)."""
         return self.width * self.height**3 / 12.0
 
+    def turned(self) -> "Strip":
+        """Return the strip upside down."""
+        return Strip(
+            self.width,
+            self.height,
+            self.upper_area,
+            self.height - self.upper_depth,
+            self.steel_area,
+            self.height - self.depth,
+        )
+
 
 def strip_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
-    """Return cracking, yield and ultimate of a strip as the corners of its line.
+    """Return cracking, yield and ultimate of a strip as the corners of its line, on both faces.
+
+    Without bars above, hogging is borne up to cracking only.
 
     Parameters
     ----------
@@ -122,6 +139,25 @@ def strip_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
         The concrete crushes before the steel yields, or the steel cannot bear what cracks the
         concrete.
     """
+    below = _face_corners(strip, concrete, bars)
+    if strip.upper_area == 0.0:
+        cracking = below.moments[0]
+        above = Corners((cracking,) * len(below.moments), (below.curvatures[0],))
+    else:
+        try:
+            above = _face_corners(strip.turned(), concrete, bars)
+        except StripError as error:
+            raise StripError(f"in hogging, {error}") from error
+    return replace(
+        below,
+        hogging_moments=above.moments,
+        hogging_curvature=above.curvatures[-1],
+        cracks=True,
+    )
+
+
+def _face_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
+    """Return cracking, yield and ultimate of a strip that bends open below."""
     elastic = concrete.elastic_modulus * strip.second_moment
     cracking = concrete.tensile_strength * strip.second_moment / (0.5 * strip.height)
     section = _Section(strip, concrete, bars)

@@ -160,6 +160,19 @@ class ConcreteStrip(Data):
         "diameter of the bars below", ..., usual=(5e-3, 0.06), likely=("mm", "cm")
     )
     bar_spacing: Length = field("distance of the bars", ..., usual=(0.04, 1.0), likely=("mm", "cm"))
+    top_bar_diameter: Length | None = field(
+        "diameter of the bars above; none: hogging is borne up to cracking only",
+        usual=(5e-3, 0.06),
+        likely=("mm", "cm"),
+    )
+    top_bar_spacing: Length | None = field(
+        "distance of the bars above; that of those below", usual=(0.04, 1.0), likely=("mm", "cm")
+    )
+    top_cover: Length | None = field(
+        "from the upper surface to the middle of the bars above; the cover below",
+        usual=(0.01, 0.3),
+        likely=("cm", "mm"),
+    )
     concrete_strength: Pressure = field(
         "compressive strength of the concrete", ..., usual=(8e6, 2e8), likely=("MPa", "kgf/cm2")
     )
@@ -231,7 +244,8 @@ class Criteria(Data):
         "of the bending stress; the yield stress", usual=(1e6, 1.5e9), likely=("MPa", "kgf/cm2")
     )
     plastic_moment: Moment | None = field(
-        "of the moment of the girders that take part; yield stress times plastic modulus",
+        "of the moment of the girders that take part, of concrete in sagging; yield stress times "
+        "plastic modulus, of concrete the moment at which it crushes",
         usual=(1e2, 1e9),
         likely=("kN.m",),
     )

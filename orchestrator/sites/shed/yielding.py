@@ -16,7 +16,7 @@ _CORNERS = 3
 
 @dataclass(frozen=True)
 class Corners:
-    """Corners of the moment-curvature line of a section, alike in both directions.
+    """Corners of the moment-curvature line of a section.
 
     Attributes
     ----------
@@ -26,11 +26,20 @@ class Corners:
         Curvature there (1/m); the first is the first moment over E I.
     hardening_ratio : float
         Slope past the last corner, as a part of the elastic one.
+    hogging_moments : tuple of float
+        Moment with tension above at each corner (N m), along slopes as below; empty: alike.
+    hogging_curvature : float
+        Curvature with tension above that counts as that of the last corner (1/m); 0: alike.
+    cracks : bool
+        Whether the first corner is cracking, so that unloading leads to the origin.
     """
 
     moments: tuple[float, ...]
     curvatures: tuple[float, ...]
     hardening_ratio: float = 0.0
+    hogging_moments: tuple[float, ...] = ()
+    hogging_curvature: float = 0.0
+    cracks: bool = False
 
     def parameters(self, girders: float = 1.0) -> dict[str, float | str]:
         """Return the parameters of the beam that this line gives it.
@@ -53,6 +62,10 @@ class Corners:
             values[f"section.corner{number}.moment"] = moment
             if number > 1:
                 values[f"section.corner{number}.curvature"] = curvature
+        for number, moment in enumerate(self.hogging_moments, 1):
+            values[f"section.corner{number}.hogging_moment"] = girders * moment
+        values["section.corner_hogging_curvature"] = self.hogging_curvature
+        values["section.corner1.kind"] = "cracking" if self.cracks else "yield"
         return {**values, "section.hardening_ratio": self.hardening_ratio}
 
 
