@@ -311,14 +311,14 @@ def _remarks(found: ShedLayout) -> list[str]:
     if roof.kind != "concrete":
         return []
     bears = f"{roof.hogging_capacity * found.girders / kN:.4g} kN m"
-    if roof.top_bar_diameter:
+    if roof.hogging_capacity > roof.cracking_moment:
         return [
             f"bars above as given: in hogging the strip bears {bears}; between cracking and yield "
             "its stiffness is taken as in sagging"
         ]
     return [
-        f"no bars above (roof.concrete.top_bar_diameter): in hogging the strip bears {bears}, "
-        "which cracks it, and breaks past that (criterion curvature)"
+        "no bars above, or too few (roof.concrete.top_bar_diameter): in hogging the strip bears "
+        f"{bears}, which cracks it, and breaks past that (criterion curvature)"
     ]
 
 

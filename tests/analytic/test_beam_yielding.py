@@ -251,6 +251,7 @@ def test_a_strip_that_only_cracked_comes_back_to_where_it_was():
 def test_fixed_ends_without_bars_above_bear_what_cracks_them_and_no_more():
     weak = {f"section__corner{n}__hogging_moment": 0.2 * CAPACITY for n in (1, 2, 3)}
     weak["section__corner_hogging_curvature"] = 0.2 * CAPACITY / EI
+    weak["section__hardening_ratio"] = 0.0
     made = beam(25, supports="fixed", damping__mass=3000.0, **{**CRACKING, **weak})
     load = 8.0 * CAPACITY / SPAN * 0.8
     under(load * spread(25), made, ramp=0.2, hold=0.2)

@@ -126,8 +126,8 @@ class RoofPart:
         Of the moment-curvature line; None for an elastic section.
     hogging_capacity : float
         Moment that a strip of concrete bears with tension above (N m).
-    top_bar_diameter : float
-        Of the bars above in a strip of concrete (m); 0 without any.
+    cracking_moment : float
+        Moment that cracks a strip of concrete (N m).
     """
 
     kind: str
@@ -147,7 +147,7 @@ class RoofPart:
     support_stiffness: float = 0.0
     corners: Corners | None = None
     hogging_capacity: float = 0.0
-    top_bar_diameter: float = 0.0
+    cracking_moment: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -265,7 +265,7 @@ def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> R
         support_stiffness=project.supports.stiffness or 0.0,
         corners=None if roof.bending == "elastic" else corners,
         hogging_capacity=corners.hogging_moments[-1],
-        top_bar_diameter=strip.top_bar_diameter or 0.0,
+        cracking_moment=corners.moments[0],
     )
 
 

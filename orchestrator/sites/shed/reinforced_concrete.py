@@ -23,8 +23,15 @@ BLOCK_FACTOR = 0.85
 """Strength in the section over that of a cylinder: under a lasting load, as codes take it."""
 
 
+_OVER_REINFORCED = "the concrete crushes before the steel yields: give less steel or more height"
+
+
 class StripError(ValueError):
     """A strip has no line of cracking, yield and ultimate: it breaks without a warning."""
+
+
+class BrittleError(StripError):
+    """The bars bear less than what cracks the concrete."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +123,8 @@ class Strip:
 def strip_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
     """Return cracking, yield and ultimate of a strip as the corners of its line, on both faces.
 
-    Without bars above, hogging is borne up to cracking only.
+    Without bars above, or with fewer than bear what cracks it, hogging is borne up to cracking
+    only.
 
     Parameters
     ----------
@@ -140,12 +148,12 @@ def strip_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
         concrete.
     """
     below = _face_corners(strip, concrete, bars)
-    if strip.upper_area == 0.0:
-        cracking = below.moments[0]
-        above = Corners((cracking,) * len(below.moments), (below.curvatures[0],))
-    else:
+    above = Corners((below.moments[0],) * len(below.moments), (below.curvatures[0],))
+    if strip.upper_area > 0.0:
         try:
             above = _face_corners(strip.turned(), concrete, bars)
+        except BrittleError:
+            pass  # as without them
         except StripError as error:
             raise StripError(f"in hogging, {error}") from error
     return replace(
@@ -164,11 +172,9 @@ def _face_corners(strip: Strip, concrete: Concrete, bars: Bars) -> Corners:
     yielding = section.at_yield()
     ultimate = section.at_ultimate()
     if ultimate[1] <= yielding[1]:
-        raise StripError(
-            "the concrete crushes before the steel yields: give less steel or more height"
-        )
+        raise StripError(_OVER_REINFORCED)
     if yielding[0] <= cracking:
-        raise StripError(
+        raise BrittleError(
             f"the steel yields at {yielding[0] / 1e3:.4g} kN m and the concrete cracks at "
             f"{cracking / 1e3:.4g} kN m only: the strip breaks when it cracks; give more steel"
         )
@@ -187,10 +193,13 @@ class _Section:
     def at_yield(self) -> tuple[float, float]:
         """Return moment (N m) and curvature (1/m) when the lower bars begin to yield."""
         strip, strain = self.strip, self.bars.yield_strain
+        deepest = (1.0 - 1e-9) * strip.depth
+        if self._balance(deepest, strain * deepest / (strip.depth - deepest)) <= 0.0:
+            raise StripError(_OVER_REINFORCED)  # all of the concrete cannot make them yield
         axis = _root(
             lambda x: self._balance(x, strain * x / (strip.depth - x)),
             1e-9 * strip.depth,
-            (1.0 - 1e-9) * strip.depth,
+            deepest,
         )
         curvature = strain / (strip.depth - axis)
         return self._moment(axis, curvature * axis), curvature
