@@ -1,4 +1,4 @@
-"""What the numbers of a structure are: of how many girders, with which loads, of which sign."""
+"""Notes on the numbers of a structure: of how many girders, with which loads, of which sign."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -161,7 +161,8 @@ def exceeded(run: StoredRun, found: Iterable[Metric]) -> Iterator[str]:
         criterion = names.criterion_of(names.without_component(metric.name))
         if criterion not in limits or float(metric.value) <= 1.0:
             continue
-        share, limit = float(metric.value), limits[criterion]
+        share = float(metric.value)
+        limit = limits[criterion]
         if criterion == STRESS and not yielding:
             yield _past_yield(share, limit, _source(run, criterion))
         elif criterion == CURVATURE:
