@@ -30,16 +30,23 @@ MEANINGS: Mapping[str, str] = {
     names.SPREAD_ANGLE: "from the rock's edge at the surface down to where 90 % of the load end, "
     "from the vertical; below 0 the load ends nearer to its centre than the rock's edge",
     names.DEFLECTION: "largest deflection at midspan, with that under dead load",
-    names.RESIDUAL_DEFLECTION: "deflection that stays after the run beyond that under dead load",
+    names.RESIDUAL_DEFLECTION: "deflection at midspan that would stay if all loads and weights "
+    "were taken away: of yielded girders or bars, and of faces of concrete that broke without bars; "
+    "cracks alone close",
     names.PEAK_MOMENT: "largest bending moment of all that takes part, with that of dead load; "
     "above 0 with tension below, below 0 with tension above, as at fixed ends",
-    names.PEAK_SHEAR: "largest shear force of all that takes part, with that of dead load",
-    names.PEAK_STRESS: "bending moment / elastic section modulus",
+    names.PEAK_SHEAR: "largest shear force of all that takes part, with that of dead load; "
+    "above 0 where the part on its left pushes the other up",
+    names.PEAK_SAGGING: "largest moment with tension below, of a section whose capacities differ",
+    names.PEAK_HOGGING: "largest moment with tension above, as an amount",
+    names.PEAK_STRESS: "bending moment / elastic section modulus, W, as if the section were "
+    "elastic, also where it has yielded; concrete that may crack has none",
     names.PEAK_REACTION: "largest force on one support, of all that takes part, with that of dead "
     "load; above 0 where the roof presses down",
     names.CURVATURE_RATIO: "largest curvature / that of the last corner of the moment-curvature "
-    "line: of steel the plastic moment, of concrete its crushing",
-    names.PLASTIC_WORK: "energy that the yielding section has dissipated",
+    "line: of steel the plastic moment, of concrete its crushing, or cracking where no bars cross; "
+    "above 1 of concrete what comes after means nothing",
+    names.PLASTIC_WORK: "energy that the section has dissipated by yielding and cracking",
     names.IMPACT_ENERGY: "kinetic energy of the rock in the first row, a little above the surface: "
     "less than mass times g times height by that way",
     names.BEAM_ENERGY: "largest elastic energy of the beam less that under dead load; (5), (6) "

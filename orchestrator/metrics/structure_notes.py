@@ -79,8 +79,8 @@ def _yielding(run: StoredRun, roof: Any) -> Iterator[str]:
     if isinstance(roof, Mapping) and roof.get("kind") == "concrete":
         yield (
             "concrete has cracked: it unloads towards the origin until its bars yield, so a "
-            "residual deflection is that of bars which have yielded; the work of cracking counts "
-            "as dissipated"
+            "residual deflection is that of bars which have yielded, or of a face that broke "
+            "without bars; the work of cracking counts as dissipated"
         )
     else:
         yield "the section has yielded: M/W is the stress that an elastic section would have"
