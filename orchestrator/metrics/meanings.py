@@ -30,9 +30,9 @@ MEANINGS: Mapping[str, str] = {
     names.SPREAD_ANGLE: "from the rock's edge at the surface down to where 90 % of the load end, "
     "from the vertical; below 0 the load ends nearer to its centre than the rock's edge",
     names.DEFLECTION: "largest deflection at midspan, with that under dead load",
-    names.RESIDUAL_DEFLECTION: "deflection at midspan that would stay if all loads and weights "
-    "were taken away: of yielded girders or bars, and of faces of concrete that broke without bars; "
-    "cracks alone close",
+    names.RESIDUAL_DEFLECTION: "deflection at midspan that would stay without loads and weights: "
+    "of yielded girders or bars, and of faces of concrete that broke without bars; cracks alone "
+    "close",
     names.PEAK_MOMENT: "largest bending moment of all that takes part, with that of dead load; "
     "above 0 with tension below, below 0 with tension above, as at fixed ends",
     names.PEAK_SHEAR: "largest shear force of all that takes part, with that of dead load; "
