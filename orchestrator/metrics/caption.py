@@ -10,6 +10,7 @@ from rockshed.components.common.units import ms
 from ..core.results.reading import StoredRun
 from ..tables import digits
 from . import contents
+from .divergence import note_of
 from .roles import parameter, parameters
 
 _MOST = 12
@@ -38,6 +39,7 @@ def caption(run: StoredRun) -> list[str]:
         f"{_cut(facts['name'], _LONGEST)}: {description}".removesuffix(": "),
         *filter(None, [changed and f"changed: {changed}", *models(run)]),
         scheme(run),
+        *note_of(run),
     ]
 
 

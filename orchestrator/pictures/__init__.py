@@ -14,6 +14,7 @@ from ..core.results.reading import StoredRun
 from ..metrics.comparison import known_of
 from ..metrics.contents import ForeignStateError, reader_of
 from ..metrics.cushion import cushions
+from ..metrics.divergence import until_divergence
 from ..metrics.energy import driven
 from ..metrics.pressure import roof_pressure
 from ..metrics.roles import members
@@ -116,8 +117,9 @@ def pictures_of(run: StoredRun) -> list[RunPicture]:
     Parameters
     ----------
     run : StoredRun
-        The run.
+        The run; of one that has failed, what comes after it has run away is not drawn.
     """
+    run = until_divergence(run)
     from .energy import energy  # matplotlib is imported when something is drawn
 
     known = known_of(run)

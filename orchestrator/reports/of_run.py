@@ -10,6 +10,7 @@ from ..core.results.reading import StoredRun
 from ..metrics import comparison, contents
 from ..metrics.caption import models
 from ..metrics.contents import ForeignStateError
+from ..metrics.divergence import note_of, until_divergence
 from ..metrics.practice import formula_table
 from ..metrics.roles import parameters as values_of
 from ..metrics.structure_notes import on_structures
@@ -186,10 +187,11 @@ def _illustrations(run: StoredRun) -> Iterator[Chapter]:
     """Yield the pictures that the results allow; of the others, why there are none."""
     if not run.time.size:
         return
+    run = until_divergence(run)
     charts = charts_of(run)
     films: dict[str, Film | None] = {}
     made: list[Illustration] = []
-    remarks: list[str] = []
+    remarks: list[str] = [f"{text[0].upper()}{text[1:]}." for text in note_of(run)]
     for picture in pictures_of(run):
         if missing := picture.missing(run):
             remarks.append(f"No picture {picture.name}: the run has no {', '.join(missing)}.")
