@@ -5,14 +5,19 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from rockshed.analyses.pile.pictures import bearing
 from rockshed.commands.app import app
 from rockshed.commands.results_place import results_folder
 from rockshed.core.results.run_folder import RunFolder, running_folder
 from rockshed.files import naming
+from rockshed.runs.projects import TEMPLATES
+from rockshed.sites.pile.preparation import prepare
 
 
 class Told:
@@ -72,3 +77,41 @@ def test_a_run_that_was_killed_before_its_first_row_is_called_that(tmp_path, mon
     assert shown.exit_code == 2, shown.output
     assert "no folder of a run" not in said
     assert "killed" in said
+
+
+UPWARDS = ["run", "lab-impact", "--in-process", "--set", "rock.velocity0.y=8"]
+"""A rock that never touches the sand: a run with a warning."""
+
+
+@pytest.mark.parametrize(("options", "code"), [([], 0), (["--strict"], 3)])
+def test_a_strict_run_with_a_warning_ends_with_code_3_and_keeps_its_results(
+    tmp_path, options, code
+):
+    place = ["--no-figures", "--stop-time", "0.002", "--output-dir", str(tmp_path / "run")]
+    shown = CliRunner().invoke(app, [*UPWARDS, *place, *options], env={"COLUMNS": "300"})
+    assert shown.exit_code == code, shown.output
+    assert "has never touched the sand" in shown.stderr
+    assert ("strict: the run has 1 warning" in shown.stderr) == bool(options)
+    assert (tmp_path / "run" / "run.json").is_file()
+    assert not (tmp_path / "run" / "figures").exists()
+
+
+def test_pictures_that_were_left_out_are_drawn_later(tmp_path):
+    folder = str(tmp_path / "o")
+    told = ["pile", str(TEMPLATES["pile"]), "--blows", "1", "--no-figures", "--output-dir", folder]
+    shown = CliRunner().invoke(app, told)
+    assert shown.exit_code == 0, shown.output
+    assert not (tmp_path / "o" / "figures").exists()
+    again = CliRunner().invoke(app, ["plot", folder])
+    assert again.exit_code == 0, again.output
+    assert (tmp_path / "o" / "figures" / "bearing.png").is_file()
+
+
+@pytest.mark.parametrize(("counts", "scale"), [((20.0, 60.0), "linear"), ((12.0, 6579.0), "log")])
+def test_a_resistance_near_refusal_leaves_the_others_of_a_bearing_graph_apart(counts, scale):
+    stresses = {"compression": np.array([1e7]), "tension": np.array([1e6])}
+    blows = [SimpleNamespace(resistance=1e3 * count, count=count, **stresses) for count in counts]
+    resistance, stress = bearing(prepare(TEMPLATES["pile"]), blows).axes[:2]
+    assert resistance.get_xscale() == stress.get_xscale() == scale
+    left, right = stress.transData.transform([(counts[0], 0.0), (counts[1], 0.0)])[:, 0]
+    assert right - left > 0.3 * stress.bbox.width

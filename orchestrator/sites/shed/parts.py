@@ -1,7 +1,7 @@
 """Rock, cushion and roof of a project with all their values, and what is wrong with them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from rockshed.components.common.units import standard_gravity
@@ -28,6 +28,8 @@ CONCRETE_DENSITY = 2500.0
 """Density (kg/m3) of reinforced concrete."""
 _TOLERANCE = 0.02
 """Part by which two values of one thing may differ."""
+MOST_PLASTIC = 2.0
+"""Plastic / elastic section modulus at most: of a rhombus; I-sections have 1.15, rectangles 1.5."""
 _STEEPEST = math.radians(85.0)
 _ENDS = {"fixed": "fixed", "elastic": "elastic"}
 """Ends of the beam by the kind of supports; of all others they are simple."""
@@ -226,15 +228,40 @@ def _section_values(roof: Roof, where: Places, problems: list[Problem]) -> dict[
         text = f"roof: section is missing, or {', '.join(missing)} of one of your own"
         problems.append(Problem(where.of(("roof",)), text, 'section = "H-400x400x13x21" for one'))
         return None
-    modulus = roof.section_modulus or 2.0 * float(roof.second_moment or 0.0) / float(
-        roof.height or 1.0
-    )
+    largest = 2.0 * float(roof.second_moment or 0.0) / float(roof.height or 1.0)
+    modulus = roof.section_modulus or largest
+    plastic = roof.plastic_modulus or modulus
+    wrong = [*_modulus_problems(modulus, largest, plastic, where)]
+    problems += wrong
+    if wrong:
+        return None
     return {
         **{name: float(getattr(roof, name)) for name in _OWN},
         "section_modulus": modulus,
-        "plastic_modulus": roof.plastic_modulus or modulus,
+        "plastic_modulus": plastic,
         "flange": 0.0,
     }
+
+
+def _modulus_problems(
+    modulus: float, largest: float, plastic: float, where: Places
+) -> Iterator[Problem]:
+    """Yield section moduli (m3) that no section has."""
+    if modulus > largest * (1.0 + _TOLERANCE):
+        text = (
+            f"roof.section_modulus: {modulus:.4g} m3 is above 2 I / height, {largest:.4g} m3: no "
+            "section has more"
+        )
+        place = where.of(("roof", "section_modulus"))
+        yield Problem(place, text, "correct it, second_moment or height")
+    shape = plastic / modulus
+    if not 1.0 - _TOLERANCE <= shape <= MOST_PLASTIC:
+        text = (
+            f"roof.plastic_modulus: {plastic:.4g} m3 is {shape:.3g} times the elastic one, and "
+            f"sections have 1 to {MOST_PLASTIC:g} times it"
+        )
+        place = where.of(("roof", "plastic_modulus"))
+        yield Problem(place, text, "correct it, or leave it out")
 
 
 def _concrete(project: ShedProject, where: Places, problems: list[Problem]) -> RoofPart | None:
