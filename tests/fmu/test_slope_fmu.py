@@ -89,7 +89,7 @@ def test_all_that_is_wrong_with_the_profile_is_logged(rock):
             {"end.x[3]": 1.0},
             "cell 3 (end.x[3] = 1 m): its right node must lie to the right of its left node",
         ),
-        ({"end.x[3]": 12.001}, "cell 3 (end.x[3] = 12.001 m): it is steeper than 89 degrees"),
+        ({"end.x[3]": 12.001}, "cell 3 (end.x[3] = 12.001 m): it is steeper than 89.9 degrees"),
         (
             {"friction[7]": 20.0},
             "cell 7 (friction[7] = 20, roughness[7] up to 0.1588, mu tan(phi) = 5.87",

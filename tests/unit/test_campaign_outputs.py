@@ -97,3 +97,11 @@ def test_trials_that_are_not_finished_are_told_and_shown_where_they_are(campaign
         for text in pictures.drawings(made)["ends"]().axes[1].get_legend().get_texts()
     ]
     assert "not finished: where they were: 3" in labels
+
+
+def test_percentiles_that_the_sample_does_not_bear_are_told(campaign):
+    told = [note for note in campaign.notes if "do not bear a percentile" in note]
+    assert any(
+        note.startswith("upper slope: 60 rocks pass") and "of 99 %:" in note for note in told
+    )
+    assert all("100 rocks" in note for note in told if "of 99 %:" in note)

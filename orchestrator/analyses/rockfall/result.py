@@ -28,7 +28,7 @@ from .files import (
 from .passages import ENDS, LinePassages, line_passages
 from .replay import MODES, Replay, check, events_of, replay
 from .summary import metrics_of
-from .tables import line_tables, notes
+from .tables import line_tables, notes, thin_lines
 
 
 class RockfallResult(Result):
@@ -135,7 +135,7 @@ class RockfallResult(Result):
         effort = f"{self.campaign.trials} trials in {self.wall_time:.2f} s"
         heading = f"{effort}, seed {self.campaign.seed}: {self._listed_ends()}"
         remarks = notes(bool(self.lines), self.slope.site.hypercube > 0)
-        return [heading, *self.slope.notes, *remarks]
+        return [heading, *self.slope.notes, *remarks, *thin_lines(self.lines)]
 
     def _listed_ends(self) -> str:
         return ", ".join(f"{number} {words}" for words, number in self.ends.items() if number)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from ...tables import Table, digits
 from .passages import QUANTITIES, LinePassages, PassageQuantity
-from .statistics import CONFIDENCE, SHARES, Percentile
+from .statistics import CONFIDENCE, SHARES, Percentile, rank
 
 _TITLES = [f"{100 * share:.0f} %" for share in SHARES]
 
@@ -94,4 +94,32 @@ def notes(has_lines: bool, hypercube: bool) -> list[str]:
             "The intervals are those of independent trials; a Latin hypercube is usually more "
             "precise."
         )
+    return sentences
+
+
+def thin_lines(lines: Sequence[LinePassages]) -> list[str]:
+    """Return the lines that so few rocks pass that a percentile of them is the largest value.
+
+    Parameters
+    ----------
+    lines : sequence of LinePassages
+        Of a campaign.
+
+    Returns
+    -------
+    list of str
+        A sentence each.
+    """
+    sentences = []
+    for line in lines:
+        beyond = [
+            share for share in SHARES if line.count and rank(line.count, share) == line.count - 1
+        ]
+        if beyond:
+            needed = round(1.0 / (1.0 - beyond[0]))
+            words = ", ".join(f"{100 * share:.0f} %" for share in beyond)
+            sentences.append(
+                f"{line.name}: {line.count} rocks pass, which do not bear a percentile of "
+                f"{words}: it is the largest value; {needed} rocks are the fewest for the first."
+            )
     return sentences
