@@ -12,7 +12,7 @@ from scipy import stats
 import rockshed
 from rockshed.analyses.saved import saved_result
 from rockshed.analyses.study import run as study_run
-from rockshed.analyses.study.designs import Point, design_problems, points
+from rockshed.analyses.study.designs import DesignPoint, design_problems, points
 from rockshed.analyses.study.factors import Factor, Interval, Levels, RandomValue, in_si
 from rockshed.analyses.study.records import MetricName, StudyRecords, StudyRun
 from rockshed.analyses.study.result import StudyResult
@@ -139,7 +139,7 @@ def test_a_grid_has_every_combination_once():
 
 def test_one_at_a_time_varies_one_factor_and_begins_with_none():
     found = points("oat", [LENGTH, SAND], 0, 0)
-    assert found[0] == Point({}, "base")
+    assert found[0] == DesignPoint({}, "base")
     assert [len(point.values) for point in found[1:]] == [1] * 5
 
 

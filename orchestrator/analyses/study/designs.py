@@ -29,7 +29,7 @@ MOST_POINTS = 100_000
 
 
 @dataclass(frozen=True)
-class Point:
+class DesignPoint:
     """One combination of values.
 
     Attributes
@@ -109,7 +109,7 @@ def _count(design: str, factors: Sequence[Factor], samples: int) -> int:
     }.get(design, samples)
 
 
-def points(design: str, factors: Sequence[Factor], samples: int, seed: int) -> list[Point]:
+def points(design: str, factors: Sequence[Factor], samples: int, seed: int) -> list[DesignPoint]:
     """Return the points of a design, in the order in which they are numbered.
 
     Parameters
@@ -125,16 +125,16 @@ def points(design: str, factors: Sequence[Factor], samples: int, seed: int) -> l
 
     Returns
     -------
-    list of Point
+    list of DesignPoint
         The same for the same arguments.
     """
     names = [factor.name for factor in factors]
     if design == GRID:
         combined = itertools.product(*(factor.levels() for factor in factors))
-        return [Point(dict(zip(names, values, strict=True))) for values in combined]
+        return [DesignPoint(dict(zip(names, values, strict=True))) for values in combined]
     if design == ONE_AT_A_TIME:
-        alone = [Point({f.name: value}) for f in factors for value in f.levels()]
-        return [Point({}, BASE), *alone]
+        alone = [DesignPoint({f.name: value}) for f in factors for value in f.levels()]
+        return [DesignPoint({}, BASE), *alone]
     if design == SOBOL:
         return _sobol(factors, samples, seed)
     return _drawn(factors, _probabilities(design, samples, len(factors), seed))
@@ -150,15 +150,17 @@ def _probabilities(design: str, samples: int, count: int, seed: int) -> FloatArr
     return np.random.default_rng(seed).random((samples, count))
 
 
-def _drawn(factors: Sequence[Factor], probabilities: FloatArray, role: str = "") -> list[Point]:
+def _drawn(
+    factors: Sequence[Factor], probabilities: FloatArray, role: str = ""
+) -> list[DesignPoint]:
     columns = {f.name: f.at(probabilities[:, i]) for i, f in enumerate(factors)}
     return [
-        Point({name: column[row] for name, column in columns.items()}, role)
+        DesignPoint({name: column[row] for name, column in columns.items()}, role)
         for row in range(len(probabilities))
     ]
 
 
-def _sobol(factors: Sequence[Factor], samples: int, seed: int) -> list[Point]:
+def _sobol(factors: Sequence[Factor], samples: int, seed: int) -> list[DesignPoint]:
     """Return the samples A and B, and for each factor A with the values of B for this factor.
 
     Source: Saltelli et al. 2010, Computer Physics Communications 181, 259-270, table 2 and the

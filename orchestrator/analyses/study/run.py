@@ -24,7 +24,7 @@ from ...runs.parameters import SystemValues
 from ...runs.request import Request, plain
 from ...runs.system import System
 from ..frame import StageProgress, counter, no_progress
-from .designs import GRID, RANDOM, SAMPLED, SOBOL, Point, design_problems, points
+from .designs import GRID, RANDOM, SAMPLED, SOBOL, DesignPoint, design_problems, points
 from .factors import Factor, Interval, Levels, RandomValue, Varied, in_si
 from .headline import headline_metrics
 from .records import MetricName, StudyRecords, StudyRun, metrics_by_identifier
@@ -64,7 +64,7 @@ class _Plan:
         Name of the design.
     factors : sequence of Factor
         That vary.
-    entries : sequence of (int, Point, int or None, Task)
+    entries : sequence of (int, DesignPoint, int or None, Task)
         Number of the point, counted from 1, the point, the packing and the run.
     origin : mapping of str to Any
         What is studied.
@@ -73,7 +73,7 @@ class _Plan:
     name: str
     design: str
     factors: Sequence[Factor]
-    entries: Sequence[tuple[int, Point, int | None, Task]]
+    entries: Sequence[tuple[int, DesignPoint, int | None, Task]]
     origin: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -309,7 +309,7 @@ def _packings(known: SystemValues, seeds: int, count: int, design: str) -> list[
 
 def _task(
     request: Request,
-    point: Point,
+    point: DesignPoint,
     seed: int | None,
     seed_name: str | None,
     label: str,
