@@ -1,5 +1,6 @@
 """Outputs of a campaign: motion at the lines, trials of the percentiles, trajectories, unfinished trials."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -105,3 +106,16 @@ def test_percentiles_that_the_sample_does_not_bear_are_told(campaign):
         note.startswith("upper slope: 60 rocks pass") and "of 99 %:" in note for note in told
     )
     assert all("100 rocks" in note for note in told if "of 99 %:" in note)
+
+
+def test_results_without_the_velocity_at_the_lines_can_still_be_read(campaign, tmp_path):
+    import pyarrow.parquet
+
+    folder = tmp_path / "older"
+    shutil.copytree(campaign.folder, folder)
+    table = pyarrow.parquet.read_table(folder / "trials.parquet")
+    kept = [name for name in table.column_names if ".velocity." not in name]
+    pyarrow.parquet.write_table(table.select(kept), folder / "trials.parquet")
+    stored = saved_result(folder)
+    assert np.isnan(stored.records.passages[:, :, PASSAGE.vx]).all()
+    assert stored.ends == campaign.ends

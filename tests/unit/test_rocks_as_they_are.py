@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import rockshed
+from rockshed.analyses.saved import saved_result
 from rockshed.components.slope_rockfall.records import OUTCOME, ROCK
 from rockshed.core.errors import InputRefused
 from rockshed.input_files.chance import RandomQuantity
@@ -128,6 +129,9 @@ def test_a_campaign_of_blocks_has_the_same_bits_on_any_threads_and_after_reading
     two = rockshed.rockfall(blocks, trials=1200, workers=2)
     np.testing.assert_array_equal(one.records.outcomes, two.records.outcomes)
     np.testing.assert_array_equal(one.records.passages, two.records.passages)
+    stored = saved_result(tmp_path / "out")
+    np.testing.assert_array_equal(stored.rocks, one.rocks)
+    np.testing.assert_array_equal(stored.replay(7).x, one.replay(7).x)
     path = one.replay(1100)
     assert path.x[-1] == pytest.approx(one.records.outcomes[1100, OUTCOME.x], abs=1e-9)
 

@@ -115,7 +115,9 @@ def test_a_run_of_a_batch_is_compared_with_its_own_design():
     for width in (1.0, 2.0):
         request = Request("project", {analysis.FIELD: width}, project=project, in_process=True)
         order = batch._order(Task(request), silent)
-        limits.append({entry["name"]: entry["limit"] for entry in order.facts["design"]["criteria"]})
+        limits.append(
+            {entry["name"]: entry["limit"] for entry in order.facts["design"]["criteria"]}
+        )
     assert limits[1]["plastic moment"] == pytest.approx(2.0 * limits[0]["plastic moment"])
 
 

@@ -18,6 +18,9 @@ from .passages import ENDS
 from .result import RockfallResult
 from .statistics import SHARES
 
+_LATER = ("velocity.x", "velocity.y")
+"""Values at a line that older results do not have; they are not known then."""
+
 
 def read_campaign(folder: Path, content: Mapping[str, Any]) -> RockfallResult:
     """Read a campaign.
@@ -85,7 +88,9 @@ def _records(campaign: Campaign, table: Any) -> TrialRecords:
     for i, line in enumerate(campaign.names):
         passages[:, i, PASSAGE.count] = _values(table, f"{line}.passages")
         for name, column, _ in AT_PASSAGE:
-            passages[:, i, column] = _values(table, f"{line}.{name}")
+            title = f"{line}.{name}"
+            is_older = name in _LATER and title not in table.column_names
+            passages[:, i, column] = np.nan if is_older else _values(table, title)
     peaks = np.full((campaign.trials, 0, len(PEAK)), -1.0, np.float32)
     return TrialRecords(passages, peaks, outcomes)
 
