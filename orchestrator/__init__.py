@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from .analyses.calibration.run import calibrate
     from .analyses.convergence.run import converge
     from .analyses.pile.run import pile
+    from .analyses.pile_matching.run import match_pile
     from .analyses.rockfall.run import rockfall
     from .analyses.study.factors import Interval, RandomValue
     from .analyses.study.run import StudyFailed, study
@@ -57,6 +58,7 @@ _HOMES = {
     "component": "runs.subsystem",
     "list_cases": "runs.catalogue",
     "list_components": "runs.catalogue",
+    "match_pile": "analyses.pile_matching.run",
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
     "report": "reports.writing",
@@ -93,6 +95,7 @@ __all__ = [
     "formulas",
     "list_cases",
     "list_components",
+    "match_pile",
     "pile",
     "read_run",
     "report",

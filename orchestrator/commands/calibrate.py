@@ -12,6 +12,7 @@ DEFAULT = "sand"
 SUBJECTS = {
     "sand": "Find E_bar of a sand from a spring constant or a load-penetration curve.",
     "rockfall": "Infer the ground of a slope from where rocks came to rest; forecast another.",
+    "pile": "Find the soil of a pile from force and velocity at its head.",
 }
 """Subjects by name, each a module ``calibrate_NAME``, with the first line of its help."""
 

@@ -8,6 +8,7 @@ envelopes.parquet     largest stresses and residual force in each segment, blow 
                       envelopes.csv
 bearing.parquet       a row for each ultimate resistance; as bearing.csv
 drivability.parquet   a row for each penetration; as drivability.csv
+rods.parquet          a row for each length of the rod of a penetration test; as rods.csv
 figures/              pictures
 ====================  ==========================================================================
 """
@@ -28,7 +29,8 @@ from ...sites.pile.preparation import PreparedPile
 from ...versions import versions
 from .blows import TRACES, Blow, Point
 from .drivability import Stage
-from .summary import BlowValue, blow_values, formula_values, stage_values
+from .rods import RodBlow
+from .summary import BlowValue, blow_values, formula_values, rod_values, stage_values
 
 _PACKAGES = ("numpy", "numba", "pyarrow")
 _WORDS = {
@@ -209,6 +211,22 @@ def drivability_table(stages: Sequence[Stage]) -> Any:
         Penetration (m), resistances (N), blows, time (s), and the values of the blow.
     """
     return result_table(_columns([stage_values(stage) for stage in stages], ""))
+
+
+def rods_table(rods: Sequence[RodBlow]) -> Any:
+    """Return a row for each length of the rod of a penetration test.
+
+    Parameters
+    ----------
+    rods : sequence of RodBlow
+        One at least.
+
+    Returns
+    -------
+    pyarrow.Table
+        Length (m), energy ratios, set (m), N, N for 60 %, customary factor.
+    """
+    return result_table(_columns([rod_values(rod) for rod in rods], ""))
 
 
 def _columns(rows: Sequence[Sequence[BlowValue]], prefix: str) -> list[Any]:

@@ -29,6 +29,7 @@ from ..frame import Drawing
 from .blows import Blow, Point
 from .drivability import Stage
 from .formulas import by_formulas
+from .rods import RodBlow, customary
 
 if TYPE_CHECKING:
     from .result import PileResult
@@ -88,6 +89,8 @@ def drawings(result: "PileResult") -> dict[str, Drawing]:
         figures["bearing"] = partial(bearing, pile, result.graph)
     if result.stages:
         figures["drivability"] = partial(depths, result.stages)
+    if result.rods:
+        figures["rods"] = partial(over_length, result.rods)
     return figures
 
 
@@ -382,6 +385,47 @@ def depths(stages: Sequence[Stage]) -> Figure:
         bearing.set(ylabel="depth of the toe below the ground (m)")
         bearing.set_ylim(1.03 * stages[-1].penetration, 0.0)
         for axes in (bearing, blows, stress, time):
+            legend(axes)
+    return figure
+
+
+def over_length(rods: Sequence[RodBlow]) -> Figure:
+    """Draw energy and N over the length of the rod of a penetration test.
+
+    Parameters
+    ----------
+    rods : sequence of RodBlow
+        By rising length.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Energies over that of the longest rod beside the customary factor; N, and N for 60 %.
+    """
+    pile = rods[-1].pile
+    words = "C_R: customary factor of the rod's length (Skempton 1986). N: blows per 0.3 m."
+    lengths = [rod.length for rod in rods]
+    longest = rods[-1]
+    with drawn([*caption(pile), words], WIDTH, 5.0) as figure:
+        energy, number = figure.subplots(2, 1, sharex=True)
+        whole = [rod.energy_ratio / longest.energy_ratio for rod in rods]
+        first = [rod.first_wave_ratio / longest.first_wave_ratio for rod in rods]
+        energy.plot(lengths, whole, "o-", color=TRANSMITTED, label="transferred energy")
+        energy.plot(lengths, first, "--", color=BEAM, label="first wave alone")
+        fine = np.linspace(lengths[0], lengths[-1], 500)
+        energy.plot(fine, [customary(length) for length in fine], ":", color=ROCK, label="C_R")
+        energy.set(ylabel="share of the longest rod's")
+        energy.set_ylim(0.0, 1.1 * max(whole))
+        known = [rod for rod in rods if rod.count is not None]
+        at = [rod.length for rod in known]
+        number.plot(at, [rod.count or 0.0 for rod in known], "o-", color=INK, label="N")
+        sixty = [rod.corrected or 0.0 for rod in known]
+        number.plot(at, sixty, "s-", color=TRANSMITTED, markersize=4.0, label="N for 60 %")
+        by_custom = [(rod.count or 0.0) * rod.customary for rod in known]
+        number.plot(at, by_custom, ":", color=ROCK, label="N C_R")
+        number.set(xlabel="length of the rod (m)", ylabel="blows per 0.3 m")
+        number.set_ylim(bottom=0.0)
+        for axes in (energy, number):
             legend(axes)
     return figure
 

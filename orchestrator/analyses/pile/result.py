@@ -16,10 +16,12 @@ from .files import (
     bearing_table,
     drivability_table,
     envelope_table,
+    rods_table,
     trace_table,
     write_facts,
     write_tables,
 )
+from .rods import RodBlow
 from .summary import metrics_of
 from .tables import (
     blow_table,
@@ -27,6 +29,7 @@ from .tables import (
     in_words,
     limit_warnings,
     notes,
+    rod_table,
     stage_table,
     unverified,
     warnings,
@@ -48,6 +51,8 @@ class PileResult(Result):
         Penetrations of the drivability analysis.
     wall_time : float
         Time (s) that the blows took.
+    rods : sequence of RodBlow
+        Blows of a penetration test on rods of several lengths.
     """
 
     kind = "pile"
@@ -59,12 +64,14 @@ class PileResult(Result):
         graph: Sequence[Point],
         stages: Sequence[Stage],
         wall_time: float,
+        rods: Sequence[RodBlow] = (),
     ) -> None:
         super().__init__()
         self.pile = pile
         self.blows = tuple(blows)
         self.graph = tuple(graph)
         self.stages = tuple(stages)
+        self.rods = tuple(rods)
         self.wall_time = wall_time
 
     @property
@@ -74,7 +81,7 @@ class PileResult(Result):
 
     def metric_list(self) -> list[Metric]:
         """Return the values of each blow, and of the whole."""
-        return list(metrics_of(self.pile, self.blows, self.graph, self.stages))
+        return list(metrics_of(self.pile, self.blows, self.graph, self.stages, self.rods))
 
     @property
     def summary(self) -> str:
@@ -89,7 +96,7 @@ class PileResult(Result):
         """All blows, those of the bearing graph and of the drivability too."""
         points = [blow for point in self.graph for blow in (point.first, point.last)]
         stages = [stage.blow for stage in self.stages if stage.blow]
-        return [*self.blows, *points, *stages]
+        return [*self.blows, *points, *stages, *(rod.blow for rod in self.rods)]
 
     @property
     def notes(self) -> list[str]:
@@ -119,6 +126,8 @@ class PileResult(Result):
             tables += graph_tables(self.pile, self.graph)
         if self.stages:
             tables.append(stage_table(self.stages))
+        if self.rods:
+            tables.append(rod_table(self.rods))
         return tables
 
     def to_arrow(self) -> Any:
@@ -138,6 +147,8 @@ class PileResult(Result):
             tables["bearing"] = bearing_table(self.pile, self.graph)
         if self.stages:
             tables["drivability"] = drivability_table(self.stages)
+        if self.rods:
+            tables["rods"] = rods_table(self.rods)
         return [
             *write_tables(tables, folder),
             *write_facts(self.pile, self.metric_list(), self.wall_time, folder),

@@ -13,6 +13,7 @@ from ..frame import StageProgress, counter, no_progress
 from .blows import bearing_graph, drive
 from .drivability import drivability
 from .result import PileResult
+from .rods import rod_blows
 
 
 def pile(
@@ -74,7 +75,9 @@ def pile(
         struck = drive(prepared, counter(show, "blows"))
         graph = bearing_graph(prepared, counter(show, "bearing graph, resistances"))
         stages = drivability(prepared, counter(show, "drivability, penetrations"))
-        result = PileResult(prepared, struck, graph, stages, time.perf_counter() - began)
+        rods = rod_blows(prepared, counter(show, "penetration test, rods"))
+        wall_time = time.perf_counter() - began
+        result = PileResult(prepared, struck, graph, stages, wall_time, rods)
         if place is not None:
             result.write(place, pictures, show)
     result.folder = Path(folder) if folder else None

@@ -10,6 +10,7 @@ from ...sites.pile.preparation import PreparedPile
 from .blows import Blow, Point
 from .drivability import Stage
 from .formulas import by_formulas
+from .rods import RodBlow
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,19 @@ def formula_values(pile: PreparedPile, blow: Blow) -> list[BlowValue]:
     return [BlowValue("hiley", found.hiley, "N"), BlowValue("gates", found.gates, "N")]
 
 
+def rod_values(rod: RodBlow) -> list[BlowValue]:
+    """Return the single values of a blow on a rod of one length, in SI units."""
+    return [
+        BlowValue("length", rod.length, "m"),
+        BlowValue("energy_ratio", rod.energy_ratio, "1"),
+        BlowValue("first_wave_ratio", rod.first_wave_ratio, "1"),
+        BlowValue("set", rod.blow.set, "m"),
+        BlowValue("count", rod.count, "1"),
+        BlowValue("count_60", rod.corrected, "1"),
+        BlowValue("customary_factor", rod.customary, "1"),
+    ]
+
+
 def stage_values(stage: Stage) -> list[BlowValue]:
     """Return the single values of a penetration.
 
@@ -97,7 +111,11 @@ _BLOW_UNITS = (
 
 
 def metrics_of(
-    pile: PreparedPile, blows: Sequence[Blow], graph: Sequence[Point], stages: Sequence[Stage]
+    pile: PreparedPile,
+    blows: Sequence[Blow],
+    graph: Sequence[Point],
+    stages: Sequence[Stage],
+    rods: Sequence[RodBlow] = (),
 ) -> Iterator[Metric]:
     """Yield the metrics of a pile.
 
@@ -111,6 +129,8 @@ def metrics_of(
         Of the bearing graph.
     stages : sequence of Stage
         Of the drivability analysis.
+    rods : sequence of RodBlow
+        Of a penetration test.
 
     Yields
     ------
@@ -136,6 +156,9 @@ def metrics_of(
     for stage in stages:
         for entry in stage_values(stage):
             yield from _metric(f"drivability.{stage.penetration:g}", entry)
+    for rod in rods:
+        for entry in rod_values(rod):
+            yield from _metric(f"rod.{rod.length:g}", entry)
 
 
 def _of_blow(prefix: str, pile: PreparedPile, blow: Blow) -> Iterator[Metric]:

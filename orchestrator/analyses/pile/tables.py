@@ -10,6 +10,7 @@ from ...tables import Table
 from .blows import FOOT, Blow, Point
 from .drivability import Stage
 from .formulas import stroke_of
+from .rods import CUSTOMARY_SOURCE, RodBlow, answer
 from .summary import BlowValue, blow_values, formula_values, stage_values
 
 MPa = 1e6
@@ -156,6 +157,35 @@ _STAGE_COLUMNS = tuple(
     for column in _COLUMNS
     if column[0] in ("set", "compression", "tension", "transferred_energy")
 )
+
+
+def rod_table(rods: Sequence[RodBlow]) -> Table:
+    """Return a row for each length of the rod of a penetration test.
+
+    Parameters
+    ----------
+    rods : sequence of RodBlow
+        One at least.
+
+    Returns
+    -------
+    Table
+        Energy ratio, that of the first wave alone, N, N for 60 %, and N with the customary factor.
+    """
+    titles = [
+        *("rod (m)", "energy (%)", "first wave (%)", "set (mm)", "N"),
+        *("N_60", "customary C_R", "energy / that of the longest"),
+    ]
+    table = Table(titles, right=titles, title="penetration test over the length of the rod")
+    longest = rods[-1].energy_ratio
+    for rod in rods:
+        counts = [f"{n:.1f}" for n in (rod.count, rod.corrected) if n is not None]
+        cells = [f"{100.0 * rod.energy_ratio:.1f}", f"{100.0 * rod.first_wave_ratio:.1f}"]
+        cells += [f"{rod.blow.set / mm:.2f}", *(counts or ["refusal", "refusal"])]
+        share = f"{rod.energy_ratio / longest:.2f}"
+        table.add(f"{rod.length:g}", *cells, f"{rod.customary:g}", share)
+    table.notes = [answer(rods), f"C_R: {CUSTOMARY_SOURCE}"]
+    return table
 
 
 def _stage_cells(stage: Stage, has_rate: bool) -> Iterator[str]:

@@ -40,6 +40,7 @@ def completed(site: PileSite, where: Places, problems: list[Problem]) -> PileDes
     rod = [if_formed(_section, section, i, where, found) for i, section in enumerate(given)]
     found += told_if_formed(_train_problems, site, where)
     known = [section for section in rod if section]
+    found += told_if_formed(_length_problems, site, where)
     toe, friction = if_formed(_soil, site, known, where, found) or (None, [])
     problems += found
     if problems or hammer is None or toe is None:
@@ -70,6 +71,18 @@ def _train_problems(site: PileSite, where: Places) -> Iterator[Problem]:
     if (site.hammer.kind == "diesel" or site.hammer.anvil) and site.cushion is None:
         text = "a diesel hammer has no cushion"
         yield Problem(where.of(("hammer",)), text, "give a cushion: its stiffness, or a material")
+
+
+def _length_problems(site: PileSite, where: Places) -> Iterator[Problem]:
+    """Yield rods and soils of which no blows on rods of several lengths can be made."""
+    if site.spt is None:
+        return
+    if len(site.rod) > 1:
+        text = f"the rod has {len(site.rod)} sections, and one is lengthened"
+        yield Problem(where.of(("spt",)), text, "give one [[rod]]")
+    if site.ground is not None or site.shaft:
+        text = "a rod of another length has other soil along its shaft"
+        yield Problem(where.of(("spt",)), text, "give the soil as [toe] alone")
 
 
 def _section(

@@ -281,6 +281,19 @@ class Drivability(Data):
     )
 
 
+class RodLengths(Data):
+    """Lengths (m) of the rod of a penetration test, for each of which a blow is computed."""
+
+    lengths: list[Length] = field(
+        "lengths of the rod of a penetration test",
+        ...,
+        usual=(0.5, 100.0),
+        likely=("cm", "mm"),
+        min_length=2,
+        max_length=100,
+    )
+
+
 class Limits(Data):
     """Stresses (Pa) that the pile may bear while it is driven."""
 
@@ -310,6 +323,7 @@ class PileParts(Data):
     bearing: BearingGraph | None = None
     drivability: Drivability | None = None
     limits: Limits = Field(default_factory=Limits)
+    spt: RodLengths | None = None
 
 
 class PileSite(PileParts):

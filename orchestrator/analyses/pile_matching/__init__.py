@@ -1,0 +1,1 @@
+"""Wave matching: soil resistance, quakes and damping from a measured blow."""

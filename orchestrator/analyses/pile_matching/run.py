@@ -1,0 +1,166 @@
+"""Match a measured blow."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...core.errors import InputRefused, Problem
+from ...sites.pile.preparation import PreparedPile, prepare
+from ...sites.source import SiteLike
+from ..frame import FloatArray, StageProgress, no_progress
+from .measured import MeasuredBlow, read_blow
+from .model import MOST_FACTOR, WaveModel
+from .result import Estimate, PileMatch
+
+STARTS = (1.0, 0.4, 2.5)
+"""Factors on all resistances of the file from which the search begins."""
+_TRAVELS = 3.0
+"""Travel times of a wave to the toe that a measurement has at least."""
+_DIFFERENCE = 1e-3
+"""Change of the logarithm of a parameter by which its influence is found."""
+
+
+def match_pile(
+    measured: str | Path,
+    site: SiteLike,
+    *,
+    folder: str | Path | None = None,
+    pictures: bool = False,
+    progress: StageProgress | None = None,
+) -> PileMatch:
+    """Find soil resistance, quakes and damping from force and velocity at the head of a pile.
+
+    Parameters
+    ----------
+    measured : path
+        CSV file with time, force and velocity of a blow.
+    site : path, mapping or PileSite
+        The pile below the gauge, with layers ``shaft`` and ``toe``: where the search begins.
+    folder : path, optional
+        Where the results are saved; it appears as a whole or not at all.
+    pictures : bool
+        Whether figures are drawn and saved too.
+    progress : callable, optional
+        Called with a stage, and the numbers of its pieces that are done and of all.
+
+    Returns
+    -------
+    PileMatch
+        Parameters with their uncertainty, curves, tables and figures.
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with measurement and site; nothing was computed.
+    """
+    show = progress or no_progress
+    blow, pile = _read(Path(measured), site)
+    model = WaveModel(pile, blow)
+    results = []
+    for number, start in enumerate(STARTS, 1):
+        results.append(_fit(model, start))
+        show("wave matching, starts", number, len(STARTS))
+    best = min(results, key=lambda fit: float(fit.cost))
+    match = PileMatch(model, blow, _estimates(model, best), model.wave(np.exp(best.x)))
+    if folder is not None:
+        match.save(folder, pictures=pictures, progress=progress)
+    return match
+
+
+def _read(measured: Path, site: SiteLike) -> tuple[MeasuredBlow, PreparedPile]:
+    """Return measurement and pile, or refuse both at once."""
+    problems: list[Problem] = []
+    blow, pile = None, None
+    try:
+        blow = read_blow(measured)
+    except InputRefused as refusal:
+        problems += refusal.problems
+    try:
+        pile = prepare(site)
+    except InputRefused as refusal:
+        problems += refusal.problems
+    if pile is not None and not pile.site.shaft:
+        text = "the soil along the shaft is not given in layers"
+        remedy = "give [[shaft]] with a start for the resistance of each layer, and [toe]"
+        problems.append(Problem(pile.source.places.of(("shaft",)), text, remedy))
+    if blow is not None and pile is not None:
+        lasts = blow.time[-1] - blow.time[0]
+        least = _TRAVELS * pile.travel_time
+        if lasts < least:
+            text = (
+                f"lasts {lasts:.3g} s, and a wave is back from the toe after {2 * least / 3:.3g} s"
+            )
+            problems.append(Problem(str(measured), text, f"give {least:.2g} s at least"))
+    if problems or blow is None or pile is None:
+        raise InputRefused(problems)
+    return blow, pile
+
+
+def _fit(model: WaveModel, start: float) -> Any:
+    """Return the fit of least squares from a factor on the resistances on."""
+    from scipy.optimize import least_squares
+
+    scale = float(np.abs(model.down).max())
+
+    def residuals(logarithms: FloatArray) -> FloatArray:
+        return (model.wave(np.exp(logarithms)) - model.up) / scale
+
+    begin = np.array([np.log(start) if "resistance" in one.name else 0.0 for one in model.sought])
+    bound = np.log(MOST_FACTOR)
+    return least_squares(
+        residuals,
+        begin,
+        bounds=(-bound, bound),
+        diff_step=_DIFFERENCE,
+        xtol=1e-6,
+        ftol=1e-9,
+        max_nfev=40,
+    )
+
+
+def _estimates(model: WaveModel, fit: Any) -> list[Estimate]:
+    """Return the parameters with the standard errors of their logarithms.
+
+    Covariance s^2 (J^T J)^-1, s^2 the variance of what is left, times the integrated
+    autocorrelation time of it: rows that follow one another are not independent.
+    """
+    left = fit.fun
+    freedom = max(1, left.size - fit.x.size)
+    spread = float(left @ left) / freedom * _correlation_time(left)
+    covariance = spread * np.linalg.pinv(fit.jac.T @ fit.jac)
+    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    bound = np.log(MOST_FACTOR)
+    made = [
+        Estimate(
+            one.name,
+            one.unit,
+            one.start * float(np.exp(value)),
+            float(error),
+            bool(abs(value) > 0.99 * bound),
+        )
+        for one, value, error in zip(model.sought, fit.x, errors, strict=True)
+    ]
+    return [*made, _total(made, covariance)]
+
+
+def _total(made: list[Estimate], covariance: FloatArray) -> Estimate:
+    """Return the resistance of shaft and toe together."""
+    shares = np.array([one.value if "resistance" in one.name else 0.0 for one in made])
+    total = float(shares.sum())
+    error = float(np.sqrt(max(0.0, shares @ covariance @ shares))) / total
+    return Estimate("resistance", "N", total, error, False)
+
+
+def _correlation_time(left: FloatArray) -> float:
+    """Return the integrated autocorrelation time of residuals in steps, 1 or more.
+
+    Summed until the first lag without correlation.
+    """
+    around = left - left.mean()
+    power = np.correlate(around, around, "full")[left.size - 1 :]
+    if power[0] == 0.0:
+        return 1.0
+    relative = power / power[0]
+    end = int(np.argmax(relative <= 0.0)) or relative.size
+    return float(max(1.0, 1.0 + 2.0 * relative[1:end].sum()))
