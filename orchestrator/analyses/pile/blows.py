@@ -104,14 +104,16 @@ def drive(pile: PreparedPile, count: Count = lambda done, total: None) -> list[B
 
 
 @dataclass(frozen=True)
-class Point:
+class BearingPoint:
     """First and last blow for one ultimate resistance of a bearing graph, without traces."""
 
     first: Blow
     last: Blow
 
 
-def bearing_graph(pile: PreparedPile, count: Count = lambda done, total: None) -> list[Point]:
+def bearing_graph(
+    pile: PreparedPile, count: Count = lambda done, total: None
+) -> list[BearingPoint]:
     """Compute blows for each ultimate resistance of the bearing graph.
 
     Parameters
@@ -123,7 +125,7 @@ def bearing_graph(pile: PreparedPile, count: Count = lambda done, total: None) -
 
     Returns
     -------
-    list of Point
+    list of BearingPoint
         By rising resistance; empty if the site has no bearing graph. Where it has one blow, or no
         last one is wanted, first and last blow are one.
     """
@@ -137,7 +139,7 @@ def bearing_graph(pile: PreparedPile, count: Count = lambda done, total: None) -
             replace(strike(pile, rod, blow * pile.steps, resistance), traces={})
             for blow in range(blows)
         ]
-        points.append(Point(struck[0], struck[-1]))
+        points.append(BearingPoint(struck[0], struck[-1]))
         count(number, len(resistances))
     return points
 

@@ -27,7 +27,7 @@ from ...core.results.run_folder import RUN, SUMMARY
 from ...files import write_json
 from ...sites.pile.preparation import PreparedPile
 from ...versions import versions
-from .blows import TRACES, Blow, Point
+from .blows import TRACES, BearingPoint, Blow
 from .drivability import Stage
 from .rods import RodBlow
 from .summary import BlowValue, blow_values, formula_values, rod_values, stage_values
@@ -170,14 +170,14 @@ def envelope_table(pile: PreparedPile, blows: Sequence[Blow]) -> Any:
     return result_table(columns)
 
 
-def bearing_table(pile: PreparedPile, graph: Sequence[Point]) -> Any:
+def bearing_table(pile: PreparedPile, graph: Sequence[BearingPoint]) -> Any:
     """Return a row for each ultimate resistance.
 
     Parameters
     ----------
     pile : PreparedPile
         That was struck.
-    graph : sequence of Point
+    graph : sequence of BearingPoint
         Of the bearing graph, one at least.
 
     Returns

@@ -26,7 +26,7 @@ from ...sites.pile.preparation import PreparedPile
 from ...tables import digits
 from ..drawing import drawn
 from ..frame import Drawing
-from .blows import Blow, Point
+from .blows import BearingPoint, Blow
 from .drivability import Stage
 from .formulas import by_formulas
 from .rods import RodBlow, customary
@@ -247,7 +247,7 @@ def blow_by_blow(pile: PreparedPile, blows: Sequence[Blow]) -> Figure:
     return figure
 
 
-def bearing(pile: PreparedPile, graph: Sequence[Point]) -> Figure:
+def bearing(pile: PreparedPile, graph: Sequence[BearingPoint]) -> Figure:
     """Draw the bearing graph of the first blow and, where there are several, of the last one.
 
     The axis ends at the blow count that is said to be refusal; what is beyond it stands at the
@@ -257,7 +257,7 @@ def bearing(pile: PreparedPile, graph: Sequence[Point]) -> Figure:
     ----------
     pile : PreparedPile
         That was struck.
-    graph : sequence of Point
+    graph : sequence of BearingPoint
         One for each ultimate resistance.
 
     Returns

@@ -10,7 +10,7 @@ from ...core.results.metric import Metric
 from ...sites.pile.preparation import PreparedPile
 from ...tables import Table
 from ..frame import Result
-from .blows import Blow, Point
+from .blows import BearingPoint, Blow
 from .drivability import Stage
 from .files import (
     bearing_table,
@@ -45,7 +45,7 @@ class PileResult(Result):
         Site, from which hammer and rod are made.
     blows : sequence of Blow
         One after the other.
-    graph : sequence of Point
+    graph : sequence of BearingPoint
         First and last blow for each resistance of the bearing graph.
     stages : sequence of Stage
         Penetrations of the drivability analysis.
@@ -61,7 +61,7 @@ class PileResult(Result):
         self,
         pile: PreparedPile,
         blows: Sequence[Blow],
-        graph: Sequence[Point],
+        graph: Sequence[BearingPoint],
         stages: Sequence[Stage],
         wall_time: float,
         rods: Sequence[RodBlow] = (),

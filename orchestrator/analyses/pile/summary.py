@@ -7,7 +7,7 @@ import numpy as np
 
 from ...core.results.metric import Metric
 from ...sites.pile.preparation import PreparedPile
-from .blows import Blow, Point
+from .blows import BearingPoint, Blow
 from .drivability import Stage
 from .formulas import by_formulas
 from .rods import RodBlow
@@ -113,7 +113,7 @@ _BLOW_UNITS = (
 def metrics_of(
     pile: PreparedPile,
     blows: Sequence[Blow],
-    graph: Sequence[Point],
+    graph: Sequence[BearingPoint],
     stages: Sequence[Stage],
     rods: Sequence[RodBlow] = (),
 ) -> Iterator[Metric]:
@@ -125,7 +125,7 @@ def metrics_of(
         That was struck.
     blows : sequence of Blow
         One after the other.
-    graph : sequence of Point
+    graph : sequence of BearingPoint
         Of the bearing graph.
     stages : sequence of Stage
         Of the drivability analysis.

@@ -7,7 +7,7 @@ from rockshed.components.common.units import kJ, kN, mm
 from ...formulas.pile_driving import GATES_SOURCE, HILEY_SOURCE
 from ...sites.pile.preparation import PreparedPile
 from ...tables import Table
-from .blows import FOOT, Blow, Point
+from .blows import FOOT, BearingPoint, Blow
 from .drivability import Stage
 from .formulas import stroke_of
 from .rods import CUSTOMARY_SOURCE, RodBlow, answer
@@ -55,14 +55,14 @@ def blow_table(pile: PreparedPile, blows: Sequence[Blow]) -> Table:
     return _table(pile, "blows", "blow", named)
 
 
-def graph_tables(pile: PreparedPile, graph: Sequence[Point]) -> list[Table]:
+def graph_tables(pile: PreparedPile, graph: Sequence[BearingPoint]) -> list[Table]:
     """Return a row for each ultimate resistance, with dynamic formulas beside it.
 
     Parameters
     ----------
     pile : PreparedPile
         That was struck.
-    graph : sequence of Point
+    graph : sequence of BearingPoint
         One for each resistance.
 
     Returns

@@ -31,7 +31,7 @@ _SHOWN = {"N": (kN, "kN"), "m": (mm, "mm"), "s/m": (1.0, "s/m")}
 
 
 @dataclass(frozen=True)
-class Estimate:
+class SoilEstimate:
     """A parameter as the measurement gives it.
 
     Attributes
@@ -54,7 +54,7 @@ class Estimate:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Interval of 95 %."""
+        """Ends of the interval of 95 %, in the unit of the value."""
         factor = math.exp(min(50.0, CONFIDENCE * self.error))
         return self.value / factor, self.value * factor
 
@@ -68,7 +68,7 @@ class PileMatch(Result):
         The pile under the measured wave.
     blow : MeasuredBlow
         Measurement.
-    estimates : list of Estimate
+    estimates : list of SoilEstimate
         Parameters, and at the end the whole resistance.
     up : array of float, shape (steps,)
         Force of the computed wave upwards (N).
@@ -80,7 +80,7 @@ class PileMatch(Result):
         self,
         model: WaveModel,
         blow: MeasuredBlow,
-        estimates: Sequence[Estimate],
+        estimates: Sequence[SoilEstimate],
         up: FloatArray,
     ) -> None:
         super().__init__()
@@ -91,7 +91,7 @@ class PileMatch(Result):
 
     @property
     def name(self) -> str:
-        """Name of the measurement."""
+        """Name of the file of the measurement."""
         return self.blow.name
 
     @property
@@ -121,7 +121,7 @@ class PileMatch(Result):
 
     @property
     def notes(self) -> list[str]:
-        """Meaning of the numbers."""
+        """Resistance, and what the intervals of the numbers mean."""
         return [
             self.summary,
             "intervals of 95 % from least squares, widened by the autocorrelation of what is left; "

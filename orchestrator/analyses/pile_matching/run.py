@@ -1,4 +1,4 @@
-"""Match a measured blow."""
+"""Carry out the matching of a measured blow."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from ...sites.source import SiteLike
 from ..frame import FloatArray, StageProgress, no_progress
 from .measured import MeasuredBlow, read_blow
 from .model import MOST_FACTOR, WaveModel
-from .result import Estimate, PileMatch
+from .result import PileMatch, SoilEstimate
 
 STARTS = (1.0, 0.4, 2.5)
 """Factors on all resistances of the file from which the search begins."""
@@ -119,7 +119,7 @@ def _fit(model: WaveModel, start: float) -> Any:
     )
 
 
-def _estimates(model: WaveModel, fit: Any) -> list[Estimate]:
+def _estimates(model: WaveModel, fit: Any) -> list[SoilEstimate]:
     """Return the parameters with the standard errors of their logarithms.
 
     Covariance s^2 (J^T J)^-1, s^2 the variance of what is left, times the integrated
@@ -132,7 +132,7 @@ def _estimates(model: WaveModel, fit: Any) -> list[Estimate]:
     errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     bound = np.log(MOST_FACTOR)
     made = [
-        Estimate(
+        SoilEstimate(
             one.name,
             one.unit,
             one.start * float(np.exp(value)),
@@ -144,12 +144,12 @@ def _estimates(model: WaveModel, fit: Any) -> list[Estimate]:
     return [*made, _total(made, covariance)]
 
 
-def _total(made: list[Estimate], covariance: FloatArray) -> Estimate:
+def _total(made: list[SoilEstimate], covariance: FloatArray) -> SoilEstimate:
     """Return the resistance of shaft and toe together."""
     shares = np.array([one.value if "resistance" in one.name else 0.0 for one in made])
     total = float(shares.sum())
     error = float(np.sqrt(max(0.0, shares @ covariance @ shares))) / total
-    return Estimate("resistance", "N", total, error, False)
+    return SoilEstimate("resistance", "N", total, error, False)
 
 
 def _correlation_time(left: FloatArray) -> float:
