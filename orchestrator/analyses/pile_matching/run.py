@@ -53,6 +53,29 @@ def match_pile(
     ------
     InputRefused
         Everything that is wrong with measurement and site; nothing was computed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rockshed
+    >>> site = {
+    ...     "segments": 12,
+    ...     "time": 0.04,
+    ...     "gravity": 0.0,
+    ...     "hammer": {"mass": 4000.0, "drop": 1.2},
+    ...     "cushion": {"stiffness": 8e8},
+    ...     "rod": [{"length": 18.0, "width": 0.4, "modulus": 3.6e10, "density": 2450.0}],
+    ...     "shaft": [{"from": 4.0, "to": 18.0, "resistance": 900e3}],
+    ...     "toe": {"resistance": 900e3},
+    ... }
+    >>> blow = rockshed.pile(site).blows[0].traces  # in the place of a measurement
+    >>> velocity = blow["head.zv"] / (0.16 * (3.6e10 * 2450.0) ** 0.5)
+    >>> rows = np.c_[blow["time"], blow["head.contact_force"], velocity]
+    >>> title = "time (s),force (N),velocity (m/s)"
+    >>> np.savetxt("blow.csv", rows, delimiter=",", header=title, comments="")
+    >>> match = rockshed.match_pile("blow.csv", {**site, "toe": {"resistance": 500e3}})
+    >>> print(f"{match.metrics['resistance'].value / 1e6:.1f} MN")
+    1.8 MN
     """
     show = progress or no_progress
     blow, pile = _read(Path(measured), site)
