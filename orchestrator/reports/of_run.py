@@ -56,12 +56,12 @@ def report_of_run(
     chapters = [
         *_warnings(run),
         *_results(run),
-        *_meanings(run),
         *_formulas(run),
         *_effective_width(run),
         *_illustrations(run),
         *_inputs(run),
         _assumptions(run),
+        *_meanings(run),
         _check(halving, without),
         _origin(run),
         *_repetition(run, repeat),
@@ -179,8 +179,8 @@ def _effective_width(run: StoredRun) -> Iterator[Chapter]:
 def _in_screen_unit(value: float, unit: str) -> tuple[str, str]:
     """Return a value in SI as a table shows it, and its unit."""
     if unit == "N":
-        return digits(value / 1e3, 4), "kN"
-    return digits(value, 4), "" if unit == "1" else unit.replace(".", " ")
+        return digits(value / 1e3, 3), "kN"
+    return digits(value, 3), "" if unit == "1" else unit.replace(".", " ")
 
 
 def _illustrations(run: StoredRun) -> Iterator[Chapter]:

@@ -62,6 +62,7 @@ def test_a_page_has_results_inputs_assumptions_origin_and_the_way_to_repeat_it(r
         "Inputs",
         "All parameters",
         "Assumptions",
+        "What the rows mean",
     ]
     assert [t for t in titles if t != "Warnings"] == [
         *expected,
@@ -179,7 +180,7 @@ def test_formulas_design_and_project_of_a_run_are_shown(copy):
     assert "source not verified" in shown
     assert 'mass = "2.5 t"' in shown
     assert "2.4 m, by the rule spread" in shown
-    assert ">n.m<" in shown
+    assert ">n: m<" in shown
 
 
 def test_a_report_is_a_file_of_the_run_and_spares_files_of_the_user(copy):
