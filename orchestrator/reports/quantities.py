@@ -38,7 +38,7 @@ class ShownQuantity:
         value : object
             Its value.
         """
-        return value not in (None, "") and not (self.left_out_at_zero and value == 0.0)
+        return value not in (None, "", [], ()) and not (self.left_out_at_zero and value == 0.0)
 
     def text(self, value: object) -> str:
         """Return a value in SI as it stands before its unit.
@@ -99,6 +99,11 @@ _GENERAL: Mapping[str, ShownQuantity] = {
     "moments": _Q("bending moments of a girder at yield and plastic moment", "kN m"),
     "curvatures": _Q("curvatures there", "1/m"),
     "hardening_ratio": _Q("slope past the last corner / elastic slope"),
+    "hogging_moments": _Q("the same with tension above", "kN m", True),
+    "hogging_curvature": _Q("curvature at the last of these, in hogging", "1/m", True),
+    "cracks": _Q("unloads towards the origin until the bars yield", "", True),
+    "hogging_capacity": _Q("bending moment that a strip of 1 m bears in hogging", "kN m", True),
+    "cracking_moment": _Q("bending moment that cracks a strip of 1 m", "kN m", True),
     "disc_radius": _Q("mean radius of the sand discs", "mm"),
     "discs": _Q("sand discs"),
     "elements": _Q("beam elements"),
@@ -152,7 +157,9 @@ _OF_SLABS: Mapping[str, ShownQuantity | None] = {
 _CRITERIA: Mapping[str, ShownQuantity] = {
     "stress": _Q("bending stress", "MPa"),
     "plastic moment": _Q("bending moment of all that takes part", "kN m"),
-    "curvature": _Q("curvature / that at which the concrete crushes"),
+    "sagging moment": _Q("sagging moment of the whole strip", "kN m"),
+    "hogging moment": _Q("hogging moment of the whole strip", "kN m"),
+    "curvature": _Q("curvature / that at which the concrete crushes, or breaks without bars"),
     "deflection": _Q("deflection at midspan", "mm"),
     "pile set": _Q("set of a pile", "mm"),
     "penetration": _Q("penetration", "m"),
