@@ -231,7 +231,8 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
-    read_toml(Path(request.target))  # of one that cannot be read nothing else is known
+    if Path(request.target).is_file():
+        read_toml(Path(request.target))  # what it is for is not known of one that is no TOML
     for argument, remedy, asked in (
         ("sizes", "build its FMUs in these sizes", request.sizes),
         ("model", "set the parameters of its sand", request.model),

@@ -463,7 +463,7 @@ REFUSED = [
     (
         ["lab-impact", "--stop-time", "1e6"],
         [
-            "output_interval: 10,000,000,001 rows of 368 columns are 3.7e+12 values",
+            "output_interval: 10,000,000,001 rows of 371 columns are 3.7e+12 values",
             "5 s or more will do",
             "state_interval: 2,000,000,001 states would be recorded",
             "100 s or more will do",
