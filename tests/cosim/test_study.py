@@ -81,11 +81,11 @@ def test_a_run_of_a_study_has_the_numbers_of_a_run_by_itself(alone):
 
 
 def test_a_study_whose_worker_is_killed_loses_nothing(tmp_path):
-    process = started(tmp_path, 0.02)
+    process = started(tmp_path, 0.008)
     assert after_a_run(process)
     os.kill(workers_of(process)[0].pid, signal.SIGKILL)
     assert process.wait(timeout=300) == 0
-    rockshed.study("lab-impact", VARY, options={"stop_time": 0.02}, folder=tmp_path / "whole")
+    rockshed.study("lab-impact", VARY, options={"stop_time": 0.008}, folder=tmp_path / "whole")
     assert table(tmp_path / "study") == table(tmp_path / "whole")
 
 

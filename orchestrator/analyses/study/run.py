@@ -3,7 +3,7 @@
 import os
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -248,11 +248,10 @@ def _plan(
     if problems:
         raise InputRefused(problems)
     found = points(chosen, factors, samples or 0, draw)
-    numbers = _packings(known, seeds, len(found), chosen)
     entries = [
-        (number, point, seed, _task(request, point, seed, known.seed, f"design {number}", factors))
-        for number, (point, listed) in enumerate(zip(found, numbers, strict=True), 1)
-        for seed in listed
+        (number, point, seed, _task(request, point, seeded, number, factors))
+        for number, point in enumerate(found, 1)
+        for seed, seeded in _packings(known, seeds, number - 1, point, chosen)
     ]
     kind = next(k for k in ("case", "project_file", "system_file", "request") if k in job.facts)
     origin = {kind: job.facts[kind], "draw": draw, "samples": samples, "seeds": seeds}
@@ -297,37 +296,38 @@ def _seed_problems(seeds: int, vary: Mapping[str, Any], known: SystemValues) -> 
     return []
 
 
-def _packings(known: SystemValues, seeds: int, count: int, design: str) -> list[list[int | None]]:
-    """Return the packings of each point: all of a grid and of a Sobol design, else one in turn."""
-    if known.seed is None or seeds == 1:
-        return [[known.first_seed if known.seed else None]] * count
-    every: list[int | None] = list(range(known.first_seed, known.first_seed + seeds))
-    if design in SAMPLED and design != SOBOL:
-        return [[every[i % seeds]] for i in range(count)]
-    return [every] * count
+def _packings(
+    known: SystemValues, seeds: int, place: int, point: Point, design: str
+) -> Iterator[tuple[int | None, dict[str, Value]]]:
+    """Yield the packings of a point, and the value that makes each.
+
+    A point of a grid or of a Sobol design has all of them; samples have one each, in turn.
+    """
+    if known.seed is None:
+        yield None, {}
+    elif known.seed in point.values:
+        yield int(point.values[known.seed]), {}
+    elif seeds == 1:
+        yield known.first_seed, {}
+    else:
+        in_turn = design in SAMPLED and design != SOBOL
+        for i in [place % seeds] if in_turn else range(seeds):
+            yield known.first_seed + i, {known.seed: known.first_seed + i}
 
 
 def _task(
     request: Request,
-    point: DesignPoint,
-    seed: int | None,
-    seed_name: str | None,
-    label: str,
+    point: Point,
+    seeded: Mapping[str, Value],
+    number: int,
     factors: Sequence[Factor],
 ) -> Task:
     units = {factor.name: factor.unit for factor in factors}
     told = ", ".join(f"{n} = {level_text(v, units[n])}" for n, v in point.values.items())
-    seeded: dict[str, Value] = {}
-    if seed_name is not None and seed is not None and seed_name not in point.values:
-        seeded[seed_name] = seed
-    merged = {**request.values, **seeded, **point.values}
-    if seed_name in request.values and seed_name not in point.values:
-        merged[str(seed_name)] = seed if seed is not None else request.values[str(seed_name)]
     return Task(
-        replace(request, values=merged),
-        seed=seed,
+        replace(request, values={**request.values, **seeded, **point.values}),
         columns=None,
-        label=f"{label} ({told})" if told else label,
+        label=f"design {number} ({told})" if told else f"design {number}",
     )
 
 
