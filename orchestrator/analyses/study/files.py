@@ -51,7 +51,7 @@ def run_table(records: StudyRecords) -> Any:
     Returns
     -------
     pyarrow.Table
-        Point, packing, inputs, status, and all metrics in SI; null where there is none.
+        DesignPoint, packing, inputs, status, and all metrics in SI; null where there is none.
     """
     return result_table(list(_columns(records)))
 

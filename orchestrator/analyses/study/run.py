@@ -297,7 +297,7 @@ def _seed_problems(seeds: int, vary: Mapping[str, Any], known: SystemValues) -> 
 
 
 def _packings(
-    known: SystemValues, seeds: int, place: int, point: Point, design: str
+    known: SystemValues, seeds: int, place: int, point: DesignPoint, design: str
 ) -> Iterator[tuple[int | None, dict[str, Value]]]:
     """Yield the packings of a point, and the value that makes each.
 
@@ -317,7 +317,7 @@ def _packings(
 
 def _task(
     request: Request,
-    point: Point,
+    point: DesignPoint,
     seeded: Mapping[str, Value],
     number: int,
     factors: Sequence[Factor],
