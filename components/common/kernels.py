@@ -21,6 +21,8 @@ from .kept import keep, kept
 
 _LOCATOR = f"{SourceLocator.__module__}.{SourceLocator.__qualname__}"
 _locating = RLock()
+_UNREADABLE = (ImportError, AttributeError)
+"""Errors of kept code that names a module of an FMU which has been unpacked elsewhere since."""
 
 
 def kernel(function: Callable[..., Any]) -> Any:
@@ -123,7 +125,10 @@ class _KeptFiles(IndexDataCacheFile):
         content = kept(Path(self._index_path))
         if content is None:
             return {}
-        version, stamp, overloads = pickle.loads(content)
+        try:
+            version, stamp, overloads = pickle.loads(content)
+        except _UNREADABLE:
+            return {}
         fits = (version, stamp) == (self._version, self._source_stamp)
         return overloads if fits else {}
 
@@ -134,7 +139,10 @@ class _KeptFiles(IndexDataCacheFile):
         content = kept(Path(self._data_path(name)))
         if content is None:
             raise FileNotFoundError(name)  # numba compiles anew then
-        return pickle.loads(content)
+        try:
+            return pickle.loads(content)
+        except _UNREADABLE as reason:
+            raise FileNotFoundError(name) from reason
 
     def _save_data(self, name: str, data: Any) -> None:
         keep(Path(self._data_path(name)), dumps(data))

@@ -124,6 +124,18 @@ def test_damaged_indices_and_codes_of_numba_are_compiled_anew(tmp_path):
             assert kept(file) is not None, "the damaged file was not replaced"
 
 
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_code_that_names_a_module_which_is_gone_is_compiled_anew(tmp_path, ending):
+    """As that of an FMU whose folder was unpacked once; the file is whole and of this user."""
+    (tmp_path / "mine.py").write_text(KERNEL.format(constant=1.0))
+    folder = tmp_path / "cache"
+    assert result(tmp_path, folder) == "9.0\n"
+    file = next(folder.rglob(f"*.{ending}"))
+    keep(file, b"crockshed_0123_lib.kernels\nmoved\n.")
+    assert result(tmp_path, folder) == "9.0\n"
+    assert kept(file) != b"crockshed_0123_lib.kernels\nmoved\n."
+
+
 @pytest.fixture
 def files(tmp_path):
     """Kept code of a function for two processors."""
