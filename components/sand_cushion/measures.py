@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from ..common.units import cm, kgf
+from ..common.units import MPa, cm, kgf
 from .models import MODELS, model_of
 
 Parameters = Mapping[str, float | str]
@@ -11,7 +11,7 @@ Parameters = Mapping[str, float | str]
 _OPTIONAL = (
     ("rolling_resistance", "rolling resistance", 0.0, 1.0, ""),
     ("unloading_ratio", "unloading ratio", 1.0, 1.0, ""),
-    ("cohesion", "cohesion", 0.0, kgf / cm**2, " kgf/cm²"),
+    ("cohesion", "cohesion", 0.0, 1e3, " kPa"),
 )
 """Parameters that are named where they are not idle: name, words, idle value, unit in SI, its
 name."""
@@ -77,10 +77,11 @@ def description(parameters: Parameters) -> str:
         Parameters of the cushion.
     """
     optional = [
-        f"{words} {float(parameters[key]) / size:g}{unit}"
+        f"{words} {float(parameters[key]) / size:.3g}{unit}"
         for key, words, idle, size, unit in _OPTIONAL
         if float(parameters[key]) != idle
     ]
+    modulus = float(parameters["modulus"])
     packing = f"{parameters['packing']} packing"
     if parameters["packing"] == "prepared":
         packing += f" of {parameters['solid_fraction']}"
@@ -89,7 +90,7 @@ def description(parameters: Parameters) -> str:
         f"stiffness factor {float(parameters['stiffness_factor']):g}",
         *optional,
         packing,
-        f"fictitious modulus E_bar {float(parameters['modulus']) / kgf * cm**2:.1f} kgf/cm²",
+        f"fictitious modulus E_bar {modulus / MPa:.3g} MPa ({modulus / kgf * cm**2:.1f} kgf/cm²)",
     ]
     return f"{model_of(parameters) or 'modified'} sand: {', '.join(parts)}"
 

@@ -301,7 +301,7 @@ def test_models_of_the_sand_have_their_names():
     sand = run.provenance["components"]["sand"]["parameters"]
     assert models(run)[0] == (
         "calibrated sand: rotation locked, stiffness factor 0.342, "
-        "square packing, fictitious modulus E_bar 30.0 kgf/cm²"
+        "square packing, fictitious modulus E_bar 2.94 MPa (30.0 kgf/cm²)"
     )
     literal = {"rotation": "free", "stiffness_factor": 1.0, "base.shape": "round"}
     for name, value in literal.items():
