@@ -126,10 +126,10 @@ def impact_energy(run: StoredRun) -> float | None:
     Returns
     -------
     float or None
-        In J; None where nothing strikes or a machine drives it.
+        In J; None where nothing strikes, a machine drives it, or there is no row.
     """
     striking = recorded(run, Role.STRIKING)
-    if not striking or driven(run):
+    if not striking or driven(run) or not run.time.size:
         return None
     return sum(float(run.series[m.column][_handed_over(run, m.component)]) for m in striking)
 

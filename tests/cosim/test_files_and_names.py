@@ -4,7 +4,6 @@ import json
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ from typer.testing import CliRunner
 
 import rockshed as package
 from rockshed.analyses.calibration.curve_file import read_curve
-from rockshed.analyses.pile.pictures import bearing
 from rockshed.commands.app import app
 from rockshed.commands.screen import Screen
 from rockshed.core.errors import InputRefused
@@ -381,21 +379,6 @@ def test_plot_of_a_damaged_campaign_says_what_is_damaged(rockshed):
         assert result.exit_code == 2
         assert name in result.stderr
         Path("o", name).write_bytes(content)
-
-
-def test_a_bearing_graph_near_refusal_can_be_read(rockshed):
-    from rockshed.analyses.pile.blows import bearing_graph
-    from rockshed.sites.pile.preparation import prepare as prepare_pile
-
-    spt = prepare_pile(EXAMPLES / "spt.toml")
-    graph = bearing_graph(spt)
-    assert bearing(spt, graph).axes[1].get_xscale() == "linear"
-    near = [*graph, replace(graph[-1], set=0.3 / 6579)]
-    axes = bearing(spt, near).axes[1]
-    places = axes.transAxes.inverted().transform(
-        [axes.transData.transform((blow.count, 0.0)) for blow in near]
-    )[:, 0]
-    assert max(places[:-1]) - min(places) > 0.4  # of the width, for those that are not near it
 
 
 def test_help_of_reproduce_names_every_paper(rockshed):

@@ -69,7 +69,7 @@ def test_its_energies_close_the_balance_of_the_system(run):
     impact = run.metrics["impact_energy"].value
     residual = abs(system_residual(run)).max()
     assert residual < abs(system_residual(alone)).max() + 1e-3 * impact
-    assert run.warnings == []
+    assert [text for text in run.warnings if not text.startswith("the run ends at 10 ms")] == []
 
 
 def test_its_energies_are_layers_under_their_label(run):

@@ -19,6 +19,7 @@ import rockshed
 from rockshed.analyses.rockfall import campaign, cluster
 from rockshed.analyses.rockfall.campaign import campaign_of
 from rockshed.commands.app import app
+from rockshed.runs import cluster as connection
 from rockshed.runs.cluster import connected
 from rockshed.sites.rockfall.preparation import prepare
 
@@ -193,7 +194,7 @@ def test_addresses_that_are_none_are_refused(rockshed, options, words):
 
 
 def test_an_unreachable_scheduler_is_refused_within_seconds(rockshed, monkeypatch):
-    monkeypatch.setattr(cluster, "CONNECT_TIMEOUT", 0.5)
+    monkeypatch.setattr(connection, "CONNECT_TIMEOUT", 0.5)
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{unused.getsockname()[1]}"
@@ -206,7 +207,7 @@ def test_an_unreachable_scheduler_is_refused_within_seconds(rockshed, monkeypatc
 
 
 def test_a_scheduler_without_workers_is_refused(client, rockshed, certificates, monkeypatch):
-    monkeypatch.setattr(cluster, "CONNECT_TIMEOUT", 0.5)
+    monkeypatch.setattr(connection, "CONNECT_TIMEOUT", 0.5)
     client.cluster.scale(0)
     while client.nthreads():
         time.sleep(0.05)
@@ -264,7 +265,7 @@ def test_workers_end_with_a_campaign_that_is_killed(tmp_path):
 
 
 def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):
-    monkeypatch.setattr(cluster, "find_spec", lambda name: None)
+    monkeypatch.setattr(connection, "find_spec", lambda name: None)
     assert (
         'pip install "rockshed[cluster]"'
         in rockshed("rockfall", EXAMPLE, "--scheduler", "local").stderr

@@ -80,8 +80,9 @@ def test_the_books_of_energy_close(run):
 
 
 def test_it_has_its_table_and_pictures(run, tmp_path):
-    rows = {row["quantity"]: row["computed"] for row in table(run, {})}
-    assert float(rows["impact energy E0"]) == pytest.approx(1.29e5, rel=0.02)
+    rows = {row["quantity"]: (row["computed"], row["unit"]) for row in table(run, {})}
+    value, unit = rows["impact energy E0"]
+    assert (float(value), unit) == (pytest.approx(129.0, rel=0.02), "kJ")
     told = []
     drawn = draw_all(run, tmp_path, told.append, told.append)
     assert {file.stem for file in drawn} == {

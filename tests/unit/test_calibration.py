@@ -331,7 +331,7 @@ def test_a_calibration_that_was_interrupted_goes_on_where_it_was(monkeypatch, tm
         return Outcome(order.key, COMPLETE, series=series, options={"packing": "square"})
 
     monkeypatch.setattr(batch, "run_one", run_one)
-    monkeypatch.setattr(batch, "_carry_out", lambda orders, _workers: map(run_one, orders))
+    monkeypatch.setattr(batch, "_carry_out", lambda orders, *_: map(run_one, orders))
     with pytest.raises(KeyboardInterrupt):
         calibrate(38e3, seeds=2, folder=tmp_path / "out")
     first = carried_out.copy()

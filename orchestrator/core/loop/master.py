@@ -3,7 +3,7 @@
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from types import FrameType, TracebackType
 
 from ..ending import asked_to_end
@@ -137,9 +137,15 @@ class Master:
         """
         began = time.perf_counter()
         try:
-            return self._run(interruption, progress)
-        finally:
+            is_complete = self._run(interruption, progress)
+        except BaseException:
+            with suppress(RunFailed):  # what has failed first is told
+                self._recorder.flush()
+            raise
+        else:
             self._recorder.flush()
+            return is_complete
+        finally:
             self.recording_time = time.perf_counter() - began - self.wall_time
 
     def _run(self, interruption: Interruption, progress: Progress | None) -> bool:
