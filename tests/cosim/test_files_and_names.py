@@ -353,6 +353,7 @@ def test_no_warning_of_a_library_is_on_the_screen(rockshed, site, tmp_path):
     assert (tmp_path / "results/平/figures/ends.png").is_file()
 
 
+@pytest.mark.slow
 def test_plot_draws_a_campaign_and_a_pile_as_they_were_drawn(rockshed, tmp_path):
     arguments = ("--trials", 300, "--output-dir", "o")
     assert rockshed("rockfall", EXAMPLES / "slope.toml", *arguments).exit_code == 0
