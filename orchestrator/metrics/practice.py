@@ -1,6 +1,6 @@
 """Formulas of practice for the impact of a run, computed from what its results tell."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -38,8 +38,8 @@ def impact_of(run: StoredRun) -> RockImpact | None:
     -------
     RockImpact or None
         None where not one body strikes one cushion, or it has not touched it. The speed is that of
-        the kinetic energy at the last row before contact; a modulus and an angle of friction are
-        those of the design, where the run has one.
+        the kinetic energy at the last row before contact. Modulus and angle of friction are the
+        usual ones of the formulas: the sand's E_bar and the friction of its discs are neither.
     """
     bodies, struck = owners(run, Role.STRIKING), cushions(run)
     if driven(run) or len(bodies) != 1 or len(struck) != 1 or not run.time.size:
@@ -54,7 +54,6 @@ def impact_of(run: StoredRun) -> RockImpact | None:
         radius,
         float(np.sqrt(2.0 * energy / mass)),
         thickness if thickness and thickness > 0.0 else None,
-        **_soil(run),
     )
 
 
@@ -66,16 +65,6 @@ def _energy_at_contact(run: StoredRun, body: str, cushion: str) -> float | None:
         return None
     touching = np.flatnonzero(run.series[force] > 0.0)
     return float(run.series[energy][max(touching[0] - 1, 0)]) if touching.size else None
-
-
-def _soil(run: StoredRun) -> dict[str, float]:
-    """Return what the design of a run knows of its cushion as formulas of practice see it."""
-    design = run.provenance.get("design")
-    known = design.get("cushion") if isinstance(design, Mapping) else None
-    if not isinstance(known, Mapping):
-        return {}
-    told = {name: known.get(name) for name in ("lame", "modulus", "friction_angle")}
-    return {name: float(value) for name, value in told.items() if isinstance(value, int | float)}
 
 
 def formula_values(run: StoredRun) -> list[FormulaValue]:

@@ -5,8 +5,8 @@ import os
 import numpy as np
 import pytest
 
+from rockshed.analyses.percentiles import percentile
 from rockshed.analyses.rockfall import campaign
-from rockshed.analyses.rockfall.statistics import percentile
 from rockshed.cases import slope_to_cushion as case
 from rockshed.components.slope_rockfall.records import PASSAGE
 from rockshed.core.run import simulate

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rockshed.analyses.rockfall.statistics import envelope, percentile, proportion
+from rockshed.analyses.percentiles import percentile, proportion
+from rockshed.analyses.rockfall.statistics import envelope
 
 
 @pytest.mark.parametrize(

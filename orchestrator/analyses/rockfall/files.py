@@ -29,9 +29,10 @@ from ...sites.rockfall.materials import described
 from ...sites.rockfall.preparation import PreparedSlope
 from ...sites.rockfall.profile import surface
 from ...versions import versions
+from ..percentiles import CONFIDENCE
 from .campaign import Campaign, TrialRecords
 from .passages import ENDS
-from .statistics import CONFIDENCE, envelope
+from .statistics import envelope
 
 TRIALS, ENVELOPES, ENVELOPES_CSV = "trials.parquet", "envelopes.parquet", "envelopes.csv"
 ALONG = (("height", PEAK.height, "m"), ("speed", PEAK.speed, "m/s"), ("energy", PEAK.kinetic, "J"))

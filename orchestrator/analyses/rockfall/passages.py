@@ -17,8 +17,8 @@ from rockshed.components.slope_rockfall.records import (
     UNFINISHED,
 )
 
+from ..percentiles import SHARES, Percentile, percentile, proportion, rank
 from .campaign import Campaign, TrialRecords
-from .statistics import SHARES, Percentile, percentile, proportion, rank
 
 ENDS = {
     RESTED: "at rest",

@@ -12,11 +12,11 @@ from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK
 from ...core.results.reading import undamaged
 from ...sites.rockfall.preparation import prepare
 from ..frame import FloatArray
+from ..percentiles import SHARES
 from .campaign import Campaign, TrialRecords, campaign_of
 from .files import ALONG, AT_END, AT_PASSAGE, ENVELOPES, NUMBERS, TRIALS, Envelopes
 from .passages import ENDS
 from .result import RockfallResult
-from .statistics import SHARES
 
 _LATER = ("velocity.x", "velocity.y")
 """Values at a line that older results do not have; they are not known then."""

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from ...tables import Table, digits
+from ..percentiles import CONFIDENCE, SHARES, Percentile, rank
 from .passages import QUANTITIES, LinePassages, PassageQuantity
-from .statistics import CONFIDENCE, SHARES, Percentile, rank
 
 _TITLES = [f"{100 * share:.0f} %" for share in SHARES]
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from ...core.system.system import Value
 from ...tables import Table, digits
-from ..rockfall.statistics import Percentile
+from ..percentiles import Percentile
 from .designs import HYPERCUBE, RANDOM, SAMPLED, SOBOL
 from .headline import on_screen, titled
 from .records import StudyRecords, StudyRun, values_of
