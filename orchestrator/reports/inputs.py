@@ -9,6 +9,7 @@ from rockshed.components.catalogue import NAMES, component
 
 from ..core.results.facts import table_of, tables_of
 from ..core.results.reading import StoredRun
+from ..core.system.names import split_name
 from ..tables import Table, digits
 from .quantities import criterion, quantity
 
@@ -63,7 +64,8 @@ def differences(run: StoredRun) -> Table | None:
 def _unit_of(run: StoredRun, name: str) -> str:
     """Return the unit of a parameter, or of a shared value by one of its targets."""
     targets = table_of(run.provenance, "system", "shared", name).get("targets", (name,))
-    component, _, parameter = str(next(iter(targets), "")).partition(".")
+    components = table_of(run.provenance, "components")
+    component, parameter = split_name(str(next(iter(targets), "")), components)
     known = table_of(run.provenance, "components", component, "parameters", parameter)
     return _unit(known.get("unit"))
 

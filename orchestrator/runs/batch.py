@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import InputRefused, Problem
+from ..core.system.names import split_name
 from ..core.system.system import SystemSpec
 from .building import FmusOf, Note, case_fmus, each_once, silent
 from .executors import Crew, Lost, at_end, processes, running
@@ -384,7 +385,7 @@ def slim(system: SystemSpec, recorded: tuple[str, ...] | None = COLUMNS) -> Syst
     }
     changes: dict[str, Any] = {"components": components, "state_interval": None}
     if recorded is not None:
-        known = [column for column in recorded if column.partition(".")[0] in components]
+        known = [column for column in recorded if split_name(column, components)[0] in components]
         changes["record"] = known
     return system.model_copy(update=changes)
 

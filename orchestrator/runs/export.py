@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import tomli_w
 
@@ -35,7 +36,9 @@ def system_text(system: SystemSpec) -> str:
     )
 
 
-def _connection(connection: Connection) -> str:
+def _connection(connection: Connection) -> str | dict[str, Any]:
+    if connection.is_linear:
+        return connection.model_dump(exclude_defaults=True)
     return f"{connection.source} -> {connection.target}"
 
 

@@ -9,6 +9,7 @@ from rockshed.components.common.units import UNITS
 from ..core.errors import InputRefused
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
+from ..core.system.names import split_name
 from ..core.system.system import Value
 from ..core.system.values import finite_number
 from ..input_files.fields import ANY, fields, unit_of
@@ -79,7 +80,8 @@ class SystemValues:
 
     def _port(self, name: str) -> Port | None:
         shared = self.job.system.shared.get(name)
-        owner, _, parameter = (shared.targets[0] if shared else name).partition(".")
+        target = shared.targets[0] if shared else name
+        owner, parameter = split_name(target, self._descriptions)
         description = self._descriptions.get(owner)
         if description is None:
             return None
@@ -133,5 +135,6 @@ class SystemValues:
         port = self._port(name) if name else None
         if name is None or port is None:
             return 0
-        given = self.job.system.components[name.partition(".")[0]].parameters.get(_SEED)
+        owner, _ = split_name(name, self._descriptions)
+        given = self.job.system.components[owner].parameters.get(_SEED)
         return int(float(port.start or 0) if given is None else float(given))

@@ -1,6 +1,6 @@
 """A co-simulation made in steps: from a case, a file or nothing, then changed, shown and run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
@@ -12,6 +12,7 @@ from ..cases.registry import case as case_of
 from ..cases.registry import is_case
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
+from ..core.system.names import split_name
 from ..core.system.system import (
     ComponentSpec,
     PowerBond,
@@ -339,8 +340,8 @@ class System:
         InputRefused
             Names that are not ``component.output`` of one component.
         """
-        giver, forces = _ends(name, force)
-        taker, positions = _ends(name, position)
+        giver, forces = _ends(name, force, self.spec.components)
+        taker, positions = _ends(name, position, self.spec.components)
         bond = PowerBond(
             giver=giver,
             force=forces,
@@ -508,7 +509,9 @@ def _with_model(request: Request) -> Request:
     return replace(request, model=case_of(request.target).model)
 
 
-def _ends(bond: str, names: str | Sequence[str]) -> tuple[str, list[str]]:
+def _ends(
+    bond: str, names: str | Sequence[str], components: Container[str]
+) -> tuple[str, list[str]]:
     """Return the component that outputs belong to, and their names without it.
 
     Raises
@@ -517,7 +520,7 @@ def _ends(bond: str, names: str | Sequence[str]) -> tuple[str, list[str]]:
         They are not of one component.
     """
     listed = [names] if isinstance(names, str) else list(names)
-    owners = {name.partition(".")[0] for name in listed}
+    owners = {split_name(name, components)[0] for name in listed}
     if len(owners) != 1 or not all("." in name for name in listed):
         reason = f"{', '.join(listed)} are not outputs of one component"
         raise InputRefused([Problem(f"bond {bond}", reason, "write component.output")])

@@ -184,3 +184,29 @@ def test_native_fmus_give_the_same_bits(tmp_path):
     found = assert_the_same(system, lambda: sources_of(system))
     levels = found["rows"][:, 0]
     assert levels[0] < levels[12] < levels[-1] == 2.0  # each is half of the other one and one
+
+
+def test_a_linear_connection_gives_an_input_factor_times_the_output_plus_offset():
+    """The only inputs that change on their way; b is pushed by half the force on a, and 3 N."""
+
+    def sources():
+        return {"spring": spring(30.0), "a": mass(1.0, position=1.0), "b": mass(3.0)}
+
+    system, _ = wired(
+        sources(),
+        [
+            "spring.end1.force -> a.force",
+            {"source": "spring.end1.force", "target": "b.force", "factor": 0.5, "offset": 3.0},
+            "a.position -> spring.end1.position",
+        ],
+        exchange_step=0.01,
+        stop_time=0.5,
+        components={"b": {"step": 0.02}},
+    )
+    assert_the_same(system, sources, (1, 10, 39))
+    plan = make_plan(system, sources())
+    slaves = instantiate(plan, sources())
+    buses = Buses(plan)
+    initialise(slaves, buses)
+    on_a, on_b = ([end.name for end in plan.inputs].index(name) for name in ("a.force", "b.force"))
+    assert buses.inputs[on_b] == 0.5 * buses.inputs[on_a] + 3.0 == -12.0

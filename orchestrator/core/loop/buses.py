@@ -7,9 +7,9 @@ import numpy as np
 from ..fmu.slave import OK, Slave, worst
 from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
-from .blocks import make_blocks
+from .blocks import Block, make_blocks
 from .snapshots import Snapshots
-from .tables import CHANNEL, WATCHED, IntegerTable, Records
+from .tables import CHANNEL, LINEAR, WATCHED, IntegerTable, Records
 
 
 class Buses:
@@ -32,6 +32,8 @@ class Buses:
         Work of each force of a bond.
     watched : array of WATCHED
         Extremes and integral of each watched output.
+    linear : array of LINEAR
+        Inputs that get other values than their sources have, by rising place.
     """
 
     def __init__(self, plan: Plan, journal: IntegerTable | None = None) -> None:
@@ -42,6 +44,7 @@ class Buses:
         self.getters = make_blocks(plan.outputs)
         self.channels = _channels(plan)
         self.watched = _watched(plan)
+        self.linear = _linear(plan)
         self.snapshots = Snapshots(plan)
         self.journal = np.full(2, -1, np.int64) if journal is None else journal
 
@@ -83,8 +86,17 @@ class Buses:
         for block in self.setters.get(slave.name, []):
             self.inputs[block.places] = self.outputs[self.plan.source[block.places]]
             values = self.inputs[block.places]
+            ways = self.linear[self.linear_of(block)]
+            at = ways["place"] - block.begin
+            values[at] = ways["factor"] * values[at] + ways["offset"]
             status = worst(status, slave.set(block.references, values, block.kind))
         return status
+
+    def linear_of(self, block: Block) -> slice:
+        """Return which rows of the table of linear inputs belong to a block of inputs."""
+        places = self.linear["place"]
+        first, end = np.searchsorted(places, [block.places.start, block.places.stop])
+        return slice(int(first), int(end))
 
     def take(self, slave: Slave) -> int:
         """Get all exchanged outputs of a slave; return the worst status."""
@@ -121,6 +133,11 @@ def _channels(plan: Plan) -> Records:
         for name in ("given", "seen", "force", "position"):
             channels[name] = np.concatenate([getattr(bond, name) for bond in plan.bonds])
     return channels
+
+
+def _linear(plan: Plan) -> Records:
+    rows = [(place, *plan.linear[place]) for place in sorted(plan.linear)]
+    return np.array(rows, LINEAR)
 
 
 def _watched(plan: Plan) -> Records:

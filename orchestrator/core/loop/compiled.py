@@ -147,6 +147,10 @@ def _give(tables, move):  # type: ignore[no-untyped-def]
     source = tables.source[begin : begin + number]
     for i in range(number):
         inputs[i] = tables.outputs[source[i]]
+    for i in range(move["first_linear"], move["end_linear"]):
+        way = tables.linear[i]
+        value = tables.inputs[way["place"]]
+        tables.inputs[way["place"]] = way["factor"] * value + way["offset"]
     address = tables.inputs.ctypes.data + 8 * begin
     if move["whole"]:
         for i in range(number):

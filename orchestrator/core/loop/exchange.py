@@ -122,6 +122,7 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
         inputs=buses.inputs,
         outputs=buses.outputs,
         source=plan.source.astype(np.uint64),
+        linear=buses.linear,
         integers=np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32),
         channels=buses.channels,
         watched=buses.watched,
@@ -151,7 +152,9 @@ def _calls(buses: Buses, addresses: Mapping[str, Addresses]) -> tuple[Records, R
 def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[int, ...]]:
     if operation.action is Action.STEP:
         return []
-    functions = called.set if operation.action is Action.SET else called.get
+    is_set = operation.action is Action.SET
+    functions = called.set if is_set else called.get
+    nothing = slice(0, 0)
     blocks = {
         Action.SET: buses.setters,
         Action.GET: buses.getters,
@@ -165,6 +168,8 @@ def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[
             block.references.size,
             block.begin,
             block.kind != REAL,
+            (buses.linear_of(block) if is_set else nothing).start,
+            (buses.linear_of(block) if is_set else nothing).stop,
         )
         for block in blocks.get(operation.component, [])
     ]

@@ -29,9 +29,13 @@ OPERATION = _record("action instance do_step begin length first_move end_move")
 from the beginning of the period. first_move, end_move: rows in the table of moves, for other
 actions."""
 
-MOVE = _record("function instance references number begin whole")
+MOVE = _record("function instance references number begin whole first_linear end_linear")
 """A call that moves ``number`` values from place ``begin`` of a bus on. function, instance,
-references: addresses. whole: the values travel as 32-bit integers."""
+references: addresses. whole: the values travel as 32-bit integers. first_linear, end_linear: rows
+in the table of linear inputs."""
+
+LINEAR = _record("place", "factor offset")
+"""An input that gets factor times the value of its source plus offset."""
 
 CHANNEL = _record(
     "given seen force position", "last_seen last_force last_position taken given_back"
@@ -71,6 +75,8 @@ class Tables(NamedTuple):
     source : array of uint64
         For each input, the place of the output that feeds it; unsigned, so that numba does not
         look whether it counts from the end.
+    linear : array of LINEAR
+        Inputs that get other values than their sources have, by rising place.
     integers : array of int32
         Buffer for values on their way as integers, as long as any row of them.
     channels : array of CHANNEL
@@ -97,6 +103,7 @@ class Tables(NamedTuple):
     inputs: FloatTable
     outputs: FloatTable
     source: NDArray[np.uint64]
+    linear: Records
     integers: NDArray[np.int32]
     channels: Records
     watched: Records
@@ -115,6 +122,7 @@ KINDS = {
     "inputs": np.dtype(np.float64),
     "outputs": np.dtype(np.float64),
     "source": np.dtype(np.uint64),
+    "linear": LINEAR,
     "integers": np.dtype(np.int32),
     "channels": CHANNEL,
     "watched": WATCHED,

@@ -1,7 +1,7 @@
 """Names of ports: array shorthand, patterns, and the nearest name to one that does not exist."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from difflib import get_close_matches
 
 _RANGE = re.compile(r"\[(?:\*|(\d+)\.\.(\d+))\]")
@@ -12,6 +12,32 @@ _MOST_LISTED = 12
 """Names that are all listed where none comes near."""
 MOST_ELEMENTS = 1_000_000
 """Elements of an array that a shorthand stands for, at most."""
+
+
+def split_name(text: str, components: Container[str]) -> tuple[str, str]:
+    """Split ``component.port`` into component and port.
+
+    Parameters
+    ----------
+    text : str
+        A name; components inside systems have dots in their names, and so have ports.
+    components : container of str
+        Names of components. The longest one that the text begins with is taken.
+
+    Returns
+    -------
+    (str, str)
+        Where the text begins with no component, what stands before and behind its first dot.
+    """
+    at = text.find(".")
+    first = at
+    found = -1
+    while at >= 0:
+        if text[:at] in components:
+            found = at
+        at = text.find(".", at + 1)
+    at = found if found >= 0 else first
+    return (text[:at], text[at + 1 :]) if at >= 0 else (text, "")
 
 
 def is_shorthand(name: str) -> bool:

@@ -1,7 +1,7 @@
 """A system ready to run: names replaced by places, times by ticks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -93,6 +93,8 @@ class Plan:
         Outputs that give a kinetic energy.
     warnings : tuple of str
         For the user.
+    linear : mapping of int to (float, float)
+        Factor and offset of the inputs, by place, that get other values than their sources have.
     """
 
     system: SystemSpec
@@ -111,6 +113,7 @@ class Plan:
     balances: tuple[End, ...]
     kinetic: tuple[End, ...]
     warnings: tuple[str, ...] = ()
+    linear: Mapping[int, tuple[float, float]] = field(default_factory=dict)
 
     def tolerance(self, component: str) -> float | None:
         """Return the relative tolerance that the solver of a component is told.

@@ -17,7 +17,7 @@ from ..fmu.description import Description, Port, UnitDefinition
 from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import REAL, Source
 from .limits import amount_problems, internal_step_problems
-from .names import expand, nearest, select
+from .names import expand, nearest, select, split_name
 from .plan import BondPlaces, End, Plan
 from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
@@ -88,6 +88,7 @@ class _Planner:
     problems: list[Problem] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     descriptions: dict[str, Description] = field(default_factory=dict)
+    linear: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def plan(self) -> Plan:
         """Go through the system part by part, then refuse it or return the plan."""
@@ -136,6 +137,11 @@ class _Planner:
             inputs=inputs,
             outputs=outputs,
             source=np.array([feeds[end.name] for end in inputs], np.int64),
+            linear={
+                place_of_input[name]: way
+                for name, way in self.linear.items()
+                if name in place_of_input
+            },
             bonds=tuple(_bond_places(bond, place, place_of_input) for bond in parts.bonds),
             recorded=tuple(parts.recorded),
             watched=np.array([place[end.name] for end in parts.watched], np.int64),
@@ -144,6 +150,9 @@ class _Planner:
             kinetic=tuple(self._of_role(order, Role.KINETIC)),
             warnings=tuple(self.warnings),
         )
+
+    def _split(self, name: str) -> tuple[str, str]:
+        return split_name(name, self.system.components)
 
     def _refuse(self, where: str, what: str, remedy: str = "") -> None:
         self.problems.append(Problem(where, what, remedy))
@@ -291,12 +300,12 @@ class _Planner:
         return list(chosen.values())
 
     def _is_text(self, name: str) -> bool:
-        component, variable = _split(name)
+        component, variable = self._split(name)
         known = self.descriptions.get(component)
         return known is not None and variable in known.ports and not known.ports[variable].is_number
 
     def _present_pattern(self, pattern: str) -> str:
-        component, name = _split(pattern)
+        component, name = self._split(pattern)
         if component not in self.descriptions:
             return pattern
         return f"{component}.{self._present(component, name)}"
@@ -321,8 +330,12 @@ class _Planner:
 
     def _expanded(self, connection: Connection) -> _Links:
         where = f"{connection.source} -> {connection.target}"
-        sources = self._of_causality(where, self._ends(where, *_split(connection.source)), "output")
-        targets = self._of_causality(where, self._ends(where, *_split(connection.target)), "input")
+        sources = self._of_causality(
+            where, self._ends(where, *self._split(connection.source)), "output"
+        )
+        targets = self._of_causality(
+            where, self._ends(where, *self._split(connection.target)), "input"
+        )
         if not sources or not targets:
             return []
         if len(sources) != len(targets):
@@ -333,13 +346,17 @@ class _Planner:
             )
             return []
         pairs = list(zip(sources, targets, strict=True))
-        self._check_pairs(where, pairs)
+        self._check_pairs(where, pairs, connection.is_linear)
+        if connection.is_linear:
+            way = (connection.factor, connection.offset)
+            self.linear |= {target.name: way for target in targets}
         return pairs
 
-    def _check_pairs(self, where: str, pairs: _Links) -> None:
+    def _check_pairs(self, where: str, pairs: _Links, is_linear: bool) -> None:
         """Refuse the first pair whose kinds or units do not fit.
 
-        The elements of an array have them in common.
+        The elements of an array have them in common. Of a linear connection, units are not looked
+        at.
         """
         for source, target in pairs:
             if source.port.kind != target.port.kind or not source.port.is_number:
@@ -349,6 +366,12 @@ class _Planner:
                     "connect ports of one type, Real, Integer or Boolean",
                 )
                 return
+            if is_linear and source.port.kind != REAL:
+                what = f"has a factor or an offset, and {source.name} is {source.port.kind}"
+                self._refuse(where, what, "leave them out: they are for Real")
+                return
+            if is_linear:
+                continue
             agree = units_agree(source.port.unit, target.port.unit)
             if agree is False:
                 self._refuse(
@@ -414,7 +437,7 @@ class _Planner:
         value: Value,
         connected: set[str],
     ) -> None:
-        for end in self._ends(target, *_split(target)):
+        for end in self._ends(target, *self._split(target)):
             if end.port.is_constant:
                 what = "is a constant, fixed when the FMU was built, and cannot be set"
                 remedy = "build the FMU anew with another one (`rockshed build`, sizes=...)"
@@ -505,7 +528,7 @@ class _Planner:
         if alarm.reference is None or isinstance(alarm.reference, float):
             return alarm.reference
         where = "energy_alarm.reference"
-        ends = self._of_causality(where, self._ends(where, *_split(alarm.reference)), "output")
+        ends = self._of_causality(where, self._ends(where, *self._split(alarm.reference)), "output")
         return ends[0] if ends else None
 
     def _of_role(self, order: Iterable[str], role: Role) -> Iterator[End]:
@@ -570,11 +593,6 @@ def _bond_places(
         work=bond.work,
         sign=bond.sign,
     )
-
-
-def _split(text: str) -> tuple[str, str]:
-    component, _, name = text.partition(".")
-    return component, name
 
 
 def _few(names: Iterable[str]) -> str:

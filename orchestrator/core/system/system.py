@@ -24,7 +24,7 @@ from ..errors import InputRefused, Problem
 from ..form_faults import UNKNOWN_KEY, sentences
 from ..input_text import read_text, toml_content
 from .clock import seconds_in
-from .names import matches, nearest
+from .names import matches, nearest, split_name
 
 Value = bool | int | float | str
 """Value of a parameter or input; of an enumeration, the name or the number of an item."""
@@ -73,22 +73,25 @@ def _from_fraction(value: Any) -> Any:
 
 Time = Annotated[float, BeforeValidator(_from_fraction), Field(allow_inf_nan=False)]
 Seconds = Annotated[float, BeforeValidator(_from_fraction), Field(gt=0.0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
 Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+_DottedName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$")]
+"""Name of a component, ``rock``, also of one inside a system of an SSP, ``shed.rock``."""
 
 RESERVED = ("time", "coupling")
 """Names that a component cannot have: columns of the results begin with them."""
 
 
 def _not_reserved(name: str) -> str:
-    if name in RESERVED:
+    if name.partition(".")[0] in RESERVED:
         raise ValueError(
             f"a component cannot be called {name}: columns of the results are; choose another name"
         )
     return name
 
 
-ComponentName = Annotated[Name, AfterValidator(_not_reserved)]
+ComponentName = Annotated[_DottedName, AfterValidator(_not_reserved)]
 
 
 class _Data(BaseModel):
@@ -124,12 +127,28 @@ class ComponentSpec(_Data):
 class Connection(_Data):
     """An output that feeds an input, both written ``component.port``.
 
-    In TOML: ``"sand.rock.force.x -> rock.force.x"``. ``[*]`` stands for all elements of an array,
-    ``[1..24]`` for some; source and target then need the same number of them.
+    In TOML: ``"sand.rock.force.x -> rock.force.x"``, or a table with ``source``, ``target`` and
+    what is else. ``[*]`` stands for all elements of an array, ``[1..24]`` for some; source and
+    target then need the same number of them.
+
+    Attributes
+    ----------
+    source, target : str
+        Output and input.
+    factor, offset : float
+        The input gets ``factor`` times the output plus ``offset``. Where they are not 1 and 0,
+        both are real, and their units are not compared: the numbers stand for what is between them.
     """
 
     source: str
     target: str
+    factor: Finite = 1.0
+    offset: Finite = 0.0
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the value changes on its way."""
+        return (self.factor, self.offset) != (1.0, 0.0)
 
     @model_validator(mode="before")
     @classmethod
@@ -378,7 +397,7 @@ def with_values(system: SystemSpec, values: Mapping[str, Value]) -> SystemSpec:
         except ValueError as error:
             problems.append(Problem(name, str(error)))
             continue
-        component, _, parameter = name.partition(".")
+        component, parameter = split_name(name, parameters)
         owner = _owner(system, name)
         if owner is not None:
             shared.setdefault(owner, {})[name] = value
