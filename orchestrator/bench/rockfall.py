@@ -11,7 +11,7 @@ from pathlib import Path
 from time import perf_counter, thread_time
 
 from ..analyses.frame import Count
-from ..analyses.rockfall.campaign import Campaign, TrialRecords, campaign_of, compute
+from ..campaigns.campaign import Campaign, TrialRecords, campaign_of, compute
 from ..sites.rockfall.preparation import prepare
 from .interleave import Contestant
 

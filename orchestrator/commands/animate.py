@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
-from ..analyses.rockfall.replay import check
 from ..analyses.rockfall.result import RockfallResult
 from ..analyses.saved import saved_result
 from ..animations.formats import animation_format
+from ..campaigns.replay import check
 from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..runs.run import read_run
 from .analysis import in_options, options_named

@@ -5,9 +5,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..analyses.rockfall.campaign import CampaignFailed
 from ..analyses.rockfall.run import rockfall
 from ..animations.formats import can_write_mp4
+from ..campaigns.campaign import CampaignFailed
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold

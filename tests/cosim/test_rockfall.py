@@ -15,11 +15,11 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import rockshed
-from rockshed.analyses.rockfall import campaign
-from rockshed.analyses.rockfall.campaign import campaign_of
-from rockshed.analyses.rockfall.passages import line_passages
-from rockshed.analyses.rockfall.replay import replay
 from rockshed.animations.formats import animation_format
+from rockshed.campaigns import campaign
+from rockshed.campaigns.campaign import campaign_of
+from rockshed.campaigns.passages import line_passages
+from rockshed.campaigns.replay import replay
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE
 from rockshed.core.errors import InputRefused

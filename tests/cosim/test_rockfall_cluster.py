@@ -16,8 +16,9 @@ import pytest
 from typer.testing import CliRunner
 
 import rockshed
-from rockshed.analyses.rockfall import campaign, cluster
-from rockshed.analyses.rockfall.campaign import campaign_of
+from rockshed.analyses.rockfall import cluster
+from rockshed.campaigns import campaign
+from rockshed.campaigns.campaign import campaign_of
 from rockshed.commands.app import app
 from rockshed.runs import cluster as connection
 from rockshed.runs.cluster import connected

@@ -5,13 +5,13 @@ import os
 import numpy as np
 import pytest
 
-from rockshed.analyses.percentiles import percentile
-from rockshed.analyses.rockfall import campaign
+from rockshed.campaigns import campaign
 from rockshed.cases import slope_to_cushion as case
 from rockshed.components.slope_rockfall.records import PASSAGE
 from rockshed.core.run import simulate
 from rockshed.metrics.comparison import table, warnings
 from rockshed.metrics.energy import impact_energy, system_residual
+from rockshed.metrics.percentiles import percentile
 from rockshed.pictures import draw_all
 from rockshed.runs.job import Request, prepare
 from rockshed.sites.rockfall.preparation import prepare as prepare_site

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from rockshed.analyses.rockfall import campaign
+from rockshed.campaigns import campaign
 from rockshed.components.catalogue import component
 from rockshed.components.common import stepping
 from rockshed.core import input_text

@@ -10,8 +10,8 @@ import pytest
 import rockshed
 from rockshed.analyses.rockfall import pictures
 from rockshed.analyses.rockfall.result import RockfallResult
-from rockshed.analyses.rockfall.statistics import fitting
 from rockshed.analyses.saved import saved_result
+from rockshed.campaigns.statistics import fitting
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, UNFINISHED
 from rockshed.core.errors import InputRefused
 

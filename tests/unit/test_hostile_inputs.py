@@ -10,7 +10,7 @@ import pytest
 
 import rockshed
 from rockshed.analyses.calibration.curve_file import read_curve
-from rockshed.analyses.rockfall.campaign import campaign_of
+from rockshed.campaigns.campaign import campaign_of
 from rockshed.core.errors import InputRefused
 from rockshed.core.system.system import load_system
 from rockshed.sites.pile.preparation import prepare as prepare_pile

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 import rockshed
-from rockshed.analyses.rockfall.campaign import campaign_of
+from rockshed.campaigns.campaign import campaign_of
 from rockshed.core.errors import InputRefused
 from rockshed.input_files.places import places
 from rockshed.sites.rockfall import profile

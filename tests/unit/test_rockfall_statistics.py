@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rockshed.analyses.percentiles import percentile, proportion
-from rockshed.analyses.rockfall.statistics import envelope
+from rockshed.campaigns.statistics import envelope
+from rockshed.metrics.percentiles import percentile, proportion
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,11 @@ import numpy as np
 
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, RESTED
 
+from ...campaigns.campaign import Campaign, TrialRecords
 from ...core.errors import InputRefused, Problem
 from ...input_files.form import first
 from ...input_files.titled_table import needed, titled_columns
 from ..frame import FloatArray
-from ..rockfall.campaign import Campaign, TrialRecords
 
 FEWEST = 5
 """Least number of measured end points."""

@@ -8,9 +8,9 @@ import numpy as np
 
 from rockshed.components.slope_rockfall.records import OUTCOME, RESTED
 
+from ...campaigns.campaign import Campaign, compute
 from ...sites.rockfall.preparation import PreparedSlope
 from ..frame import FloatArray
-from ..rockfall.campaign import Campaign, compute
 from .inferred import Inferred
 from .parameters import GroundOfValues
 

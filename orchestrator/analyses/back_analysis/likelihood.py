@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...campaigns.campaign import Campaign, TrialRecords, compute
 from ..frame import FloatArray
-from ..rockfall.campaign import Campaign, TrialRecords, compute
 from .endpoints import Observed
 
 ANYTHING = 0.01

@@ -8,13 +8,13 @@ import numpy as np
 
 from rockshed.components.common.component import OK, value_problems
 
+from ...campaigns.campaign import Campaign
 from ...core.errors import InputRefused, Problem
 from ...core.system.names import nearest
 from ...input_files.form import first
 from ...sites.rockfall.materials import COEFFICIENTS, COMMON, DRSP, by_coefficients
 from ...sites.rockfall.preparation import PreparedSlope
 from ..frame import FloatArray
-from ..rockfall.campaign import Campaign
 
 LOGARITHMIC = 5.0
 """Largest ratio of a range whose prior is uniform in the value; beyond it, in its logarithm."""

@@ -11,13 +11,13 @@ import numpy as np
 
 from rockshed.components.catalogue import component
 
+from ...campaigns.campaign import Campaign, campaign_of
 from ...core.errors import InputRefused, Problem
 from ...input_files.form import first
 from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import PreparedSlope, prepare
 from ...sites.source import SiteLike
 from ..frame import FloatArray, StageProgress, counter, no_progress
-from ..rockfall.campaign import Campaign, campaign_of
 from .endpoints import Observed, read_endpoints
 from .forecast import forecast_of
 from .inferred import Inferred

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rockshed.components.catalogue import component
 from rockshed.components.common.cache import source_stamp
 
-from ...runs.cluster import Certificates, ClusterFailed, connected
-from ..frame import Count
-from .campaign import (
+from ...campaigns.campaign import (
     Campaign,
     CampaignFailed,
     Executor,
@@ -23,6 +21,8 @@ from .campaign import (
     empty_records,
     fill,
 )
+from ...runs.cluster import Certificates, ClusterFailed, connected
+from ..frame import Count
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -24,6 +24,9 @@ from rockshed.components.slope_rockfall.records import (
 from rockshed.components.slope_rockfall.records import ROCK as COLUMNS
 
 from ...animations.writing import FRAMES_PER_SECOND, write_animation
+from ...campaigns.passages import QUANTITIES, LinePassages, PassageQuantity
+from ...campaigns.replay import MODES, Replay, replay
+from ...campaigns.statistics import fitting
 from ...pictures.marks import Mark, name_marks
 from ...pictures.style import (
     BEAM,
@@ -42,9 +45,6 @@ from ...sites.rockfall.site import Barrier
 from ...tables import digits
 from ..drawing import drawn
 from ..frame import Count, Drawing, StageProgress, counter
-from .passages import QUANTITIES, LinePassages, PassageQuantity
-from .replay import MODES, Replay, replay
-from .statistics import fitting
 
 if TYPE_CHECKING:
     from .result import RockfallResult

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from rockshed.components.slope_rockfall.trajectory import OUTCOME, PASSAGE, PEAK
 
+from ...campaigns.campaign import Campaign, TrialRecords, campaign_of
+from ...campaigns.files import ALONG, AT_END, AT_PASSAGE, ENVELOPES, NUMBERS, TRIALS, Envelopes
+from ...campaigns.passages import ENDS
 from ...core.results.reading import undamaged
+from ...metrics.percentiles import SHARES
 from ...sites.rockfall.preparation import prepare
 from ..frame import FloatArray
-from ..percentiles import SHARES
-from .campaign import Campaign, TrialRecords, campaign_of
-from .files import ALONG, AT_END, AT_PASSAGE, ENVELOPES, NUMBERS, TRIALS, Envelopes
-from .passages import ENDS
 from .result import RockfallResult
 
 _LATER = ("velocity.x", "velocity.y")

@@ -10,12 +10,8 @@ import numpy as np
 from rockshed.components.slope_rockfall.records import BELOW, OUTCOME, UNFINISHED
 from rockshed.components.slope_rockfall.trajectory import MOST_EVENTS
 
-from ...core.results.metric import Metric
-from ...sites.rockfall.preparation import PreparedSlope
-from ...tables import Table
-from ..frame import FloatArray, Result
-from .campaign import Campaign, TrialRecords
-from .files import (
+from ...campaigns.campaign import Campaign, TrialRecords
+from ...campaigns.files import (
     Envelopes,
     envelope_table,
     envelopes,
@@ -25,9 +21,13 @@ from .files import (
     write_tables,
     write_trajectories,
 )
-from .passages import ENDS, LinePassages, line_passages
-from .replay import MODES, Replay, check, events_of, replay
-from .summary import metrics_of
+from ...campaigns.passages import ENDS, LinePassages, line_passages
+from ...campaigns.replay import MODES, Replay, check, events_of, replay
+from ...campaigns.summary import metrics_of
+from ...core.results.metric import Metric
+from ...sites.rockfall.preparation import PreparedSlope
+from ...tables import Table
+from ..frame import FloatArray, Result
 from .tables import line_tables, notes, thin_lines
 
 

@@ -10,14 +10,14 @@ from typing import Literal
 from rockshed.components.catalogue import component
 
 from ...animations.formats import animation_format
+from ...campaigns.campaign import Campaign, Executor, campaign_of, threads
+from ...campaigns.replay import check
 from ...core.errors import InputRefused, Problem
 from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
 from ..frame import StageProgress, counter, no_progress
-from .campaign import Campaign, Executor, campaign_of, threads
 from .cluster import Certificates, dask_workers
-from .replay import check
 from .result import RockfallResult
 
 

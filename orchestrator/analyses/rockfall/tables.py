@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
+from ...campaigns.passages import QUANTITIES, LinePassages, PassageQuantity
+from ...metrics.percentiles import CONFIDENCE, SHARES, Percentile, rank
 from ...tables import Table, digits
-from ..percentiles import CONFIDENCE, SHARES, Percentile, rank
-from .passages import QUANTITIES, LinePassages, PassageQuantity
 
 _TITLES = [f"{100 * share:.0f} %" for share in SHARES]
 

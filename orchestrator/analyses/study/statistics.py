@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...metrics.percentiles import CONFIDENCE, Percentile, percentile
 from ..frame import FloatArray
-from ..percentiles import CONFIDENCE, Percentile, percentile
 from .designs import FIRST, MIXED, SECOND
 from .factors import Factor
 from .records import StudyRecords, StudyRun, values_of

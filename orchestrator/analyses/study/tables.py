@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from ...core.system.system import Value
+from ...metrics.percentiles import Percentile
 from ...tables import Table, digits
-from ..percentiles import Percentile
 from .designs import HYPERCUBE, RANDOM, SAMPLED, SOBOL
 from .headline import on_screen, titled
 from .records import StudyRecords, StudyRun, values_of

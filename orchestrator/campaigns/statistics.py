@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..percentiles import SHARES, not_exceeded
+from ..metrics.percentiles import SHARES, not_exceeded
 
 
 def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from rockshed.components.slope_rockfall.records import OUTCOME
 
-from ...core.results.metric import Metric
+from ..core.results.metric import Metric
 from .campaign import Campaign, TrialRecords
 from .passages import ENDS, QUANTITIES, LinePassages, PassageQuantity
 

@@ -21,15 +21,15 @@ from numpy.typing import NDArray
 
 from rockshed.components.slope_rockfall.records import KNOT, OUTCOME, PASSAGE, PEAK, ROCK
 
-from ...core.results.columns import ArrowColumn, result_column, result_table
-from ...core.results.metric import Metric
-from ...core.results.run_folder import RUN, SUMMARY
-from ...files import write_json
-from ...sites.rockfall.materials import described
-from ...sites.rockfall.preparation import PreparedSlope
-from ...sites.rockfall.profile import surface
-from ...versions import versions
-from ..percentiles import CONFIDENCE
+from ..core.results.columns import ArrowColumn, result_column, result_table
+from ..core.results.metric import Metric
+from ..core.results.run_folder import RUN, SUMMARY
+from ..files import write_json
+from ..metrics.percentiles import CONFIDENCE
+from ..sites.rockfall.materials import described
+from ..sites.rockfall.preparation import PreparedSlope
+from ..sites.rockfall.profile import surface
+from ..versions import versions
 from .campaign import Campaign, TrialRecords
 from .passages import ENDS
 from .statistics import envelope

@@ -11,8 +11,8 @@ from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.records import KNOT, OUTCOME, ROCK
 from rockshed.components.slope_rockfall.trajectory import MOST_EVENTS, set_rock, trace
 
-from ...core.errors import InputRefused, Problem
-from ...sites.rockfall.preparation import PreparedSlope
+from ..core.errors import InputRefused, Problem
+from ..sites.rockfall.preparation import PreparedSlope
 from .campaign import Campaign, compute, own_buffers
 from .passages import ENDS
 

@@ -17,7 +17,7 @@ from rockshed.components.slope_rockfall.records import (
     UNFINISHED,
 )
 
-from ..percentiles import SHARES, Percentile, percentile, proportion, rank
+from ..metrics.percentiles import SHARES, Percentile, percentile, proportion, rank
 from .campaign import Campaign, TrialRecords
 
 ENDS = {

@@ -17,13 +17,13 @@ from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK, ROCK
 from rockshed.components.slope_rockfall.trajectory import trials
 
-from ...core.errors import InputRefused, Problem
-from ...sites.rockfall.checks import reach
-from ...sites.rockfall.preparation import PreparedSlope
-from ...sites.rockfall.profile import Node, surface
-from ...sites.rockfall.rocks import RockSampler
-from ...sites.rockfall.site import Barrier, Line
-from ..frame import Count, FloatArray
+from ..animations.formats import Count
+from ..core.errors import InputRefused, Problem
+from ..sites.rockfall.checks import reach
+from ..sites.rockfall.preparation import PreparedSlope
+from ..sites.rockfall.profile import Node, surface
+from ..sites.rockfall.rocks import RockSampler
+from ..sites.rockfall.site import Barrier, Line
 
 BLOCK = 500
 """Trials in a block: some milliseconds, after which Ctrl-C is heard."""
@@ -63,14 +63,14 @@ class Campaign:
 
     seed: int
     trials: int
-    w: FloatArray
-    x: FloatArray
+    w: NDArray[np.float64]
+    x: NDArray[np.float64]
     k: NDArray[np.int64]
     left: float
     right: float
-    lines: FloatArray
-    barriers: FloatArray
-    stations: FloatArray
+    lines: NDArray[np.float64]
+    barriers: NDArray[np.float64]
+    stations: NDArray[np.float64]
     names: Sequence[str]
     rocks: RockSampler | None = None
 
@@ -168,9 +168,9 @@ class TrialRecords:
         End of each trial.
     """
 
-    passages: FloatArray
+    passages: NDArray[np.float64]
     peaks: NDArray[np.float32]
-    outcomes: FloatArray
+    outcomes: NDArray[np.float64]
 
 
 def empty_records(campaign: Campaign, count: int) -> TrialRecords:
@@ -250,7 +250,7 @@ def compute(campaign: Campaign, first: int, count: int) -> TrialRecords:
 
 def own_buffers(
     campaign: Campaign, first: int, count: int
-) -> tuple[FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Return buffers for consecutive trials, and their rocks.
 
     Parameters

@@ -1,0 +1,1 @@
+"""Campaigns of rocks on a slope: trials, their records, statistics and files; no FMI."""
