@@ -41,6 +41,7 @@ CONTENTS = {
         "command-line",
         "systems",
         "results",
+        "checkpoints",
         "studies",
         "report",
         "fmus",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockshed.components.common.cache import source_stamp
 from rockshed.components.common.component import Component
 
 from .build import fmu_files
@@ -40,6 +41,7 @@ class InProcess:
         self.sizes = component.with_sizes(sizes)
         self.origin = {
             "component": component.name,
+            "sources": source_stamp(component.folder),
             **{name: str(value) for name, value in self.sizes.items()},
         }
 

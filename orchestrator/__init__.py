@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .reports.writing import report
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
+    from .runs.continuing import resume
     from .runs.projects import shed
     from .runs.run import Run, read_run
     from .runs.simulation import simulate
@@ -62,6 +63,7 @@ _HOMES = {
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
     "report": "reports.writing",
+    "resume": "runs.continuing",
     "rockfall": "analyses.rockfall.run",
     "shed": "runs.projects",
     "simulate": "runs.simulation",
@@ -99,6 +101,7 @@ __all__ = [
     "pile",
     "read_run",
     "report",
+    "resume",
     "rockfall",
     "shed",
     "simulate",

@@ -2,7 +2,9 @@
 
 import platform
 from functools import cache
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
 
 @cache
@@ -30,3 +32,24 @@ def versions(*packages: str) -> dict[str, str | None]:
     """
     names = ("rockshed", *packages)
     return {"python": platform.python_version(), **{name: version_of(name) for name in names}}
+
+
+@cache
+def sources_digest(*rooms: str) -> str:
+    """Return a digest of the Python sources in some rooms of this package.
+
+    Parameters
+    ----------
+    *rooms : str
+        Names of folders beside this module.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits.
+    """
+    digest = sha256()
+    for room in rooms:
+        for file in sorted((Path(__file__).parent / room).rglob("*.py")):
+            digest.update(file.read_bytes())
+    return digest.hexdigest()

@@ -24,6 +24,7 @@ COMMANDS = {
     "info": "Show an FMU, a component or a system: ports, values, connections.",
     "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
+    "resume": "Let a run that was ended go on from its last checkpoints.",
     "plot": "Draw a run again, also one that failed; or variables of several.",
     "animate": "Animate rock, sand with its force chains, and beam of a run; trials of a campaign.",
     "report": "Write a report that a reviewer can check: HTML page and PDF.",
@@ -38,6 +39,10 @@ COMMANDS = {
     "doctor": "Look at kept code, compilers, leftovers of killed runs, and what is slow.",
 }
 """Commands by name, each a module of this package, with the first line of its help."""
+
+
+_DRIVING = ("run", "resume")
+"""Commands in whose process the code of FMUs runs."""
 
 
 class Rockshed(LazyCommands):
@@ -86,7 +91,7 @@ def main() -> None:
         if isinstance(stream, TextIOWrapper):  # a terminal that knows no Greek shows ? in its place
             stream.reconfigure(errors="replace")
     work = partial(app, prog_name="rockshed")
-    if sys.argv[1:2] == ["run"]:  # the code of FMUs may crash
+    if sys.argv[1:2] and sys.argv[1] in _DRIVING:  # the code of FMUs may crash
         command = [sys.executable, "-P", "-m", "rockshed", *sys.argv[1:]]
         supervised(work, command, _report_crash)
     else:

@@ -1,9 +1,12 @@
 """Options that several commands have."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+
+from ..core.system.clock import seconds_in
+from ..input_files.quantities import in_si
 
 RESULTS = Path("results")
 """Folder of the results that name no other."""
@@ -56,7 +59,23 @@ Target = Annotated[
     ),
 ]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")]
+Strict = Annotated[
+    bool, typer.Option("--strict", help="End with exit code 3 if the run has any warning.")
+]
 Workers = Annotated[
     int | None,
     typer.Option(min=1, help="Processes at a time; default: one for each core."),
 ]
+
+
+def _duration(text: str) -> float:
+    """Read a simulated time (s), ``2ms``, ``2e-3`` or ``1/60``."""
+    try:
+        return seconds_in(text) if "/" in text else in_si(text, "s")
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
+
+
+def simulated_time(help_: str) -> Any:
+    """Return an option that takes a time with a unit, or in s."""
+    return typer.Option(metavar="TIME", parser=_duration, help=help_)

@@ -1,5 +1,6 @@
 """The command ``rockshed run``: a case, a project or a system, from its values to its pictures."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from shlex import quote
 from typing import Annotated, Any
@@ -12,6 +13,7 @@ from ..core.system.clock import seconds_in
 from ..metrics.width_band import width_band_table
 from ..runs.building import is_cold
 from ..runs.chosen import is_project_file
+from ..runs.continuing import stopped_at
 from ..runs.request import AUTO, Request
 from ..runs.run import Run
 from ..runs.simulation import simulate, with_facts
@@ -27,7 +29,9 @@ from .options import (
     ModelName,
     NoFigures,
     Quiet,
+    Strict,
     Target,
+    simulated_time,
 )
 from .results_place import results_folder
 from .screen import CHECK_FAILED, COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
@@ -46,6 +50,7 @@ OPTIONS = (
     "master",
     "tolerance",
     "allow_unstable",
+    "checkpoint_every",
 )
 """Arguments of the library that are options of the command."""
 
@@ -86,9 +91,6 @@ _Tolerance = Annotated[
 _AllowUnstable = Annotated[
     bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")
 ]
-_Strict = Annotated[
-    bool, typer.Option("--strict", help="End with exit code 3 if the run has any warning.")
-]
 _LoadCell = Annotated[
     float | None,
     typer.Option(
@@ -113,6 +115,12 @@ _Band = Annotated[
         "in two more processes.",
     ),
 ]
+_Checkpoints = Annotated[
+    float | None,
+    simulated_time(
+        "Simulated time between two checkpoints, 2ms, from which `rockshed resume` goes on."
+    ),
+]
 _InProcess = Annotated[
     bool, typer.Option("--in-process", help="Components without FMUs, in this process.")
 ]
@@ -135,8 +143,9 @@ def command(
     load_cell: _LoadCell = None,
     runtime: _Runtime = AUTO,
     in_process: _InProcess = False,
+    checkpoint_every: _Checkpoints = None,
     band: _Band = False,
-    strict: _Strict = False,
+    strict: Strict = False,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -158,10 +167,9 @@ def command(
     asked = Request(target, values, sizes, coupling, options, in_process, load_cell, model, runtime)
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
-        with stdout_for_results():
-            done = _simulate(asked, problems, output_dir, allow_unstable, screen)
-        done = _with_band(done, asked, screen) if band else done
-        show_run(done, screen, not no_figures, strict)
+        conduct = {"allow_unstable": allow_unstable, "checkpoint_every": checkpoint_every}
+        done = _simulate(asked, problems, output_dir, conduct, screen)
+        show_run(_with_band(band, done, asked, screen), screen, not no_figures, strict)
 
 
 def _without_band(band: bool, target: str) -> list[Problem]:
@@ -171,9 +179,9 @@ def _without_band(band: bool, target: str) -> list[Problem]:
     return [Problem("--band", "is for projects: other systems have no width to choose")]
 
 
-def _with_band(done: Run, request: Request, screen: Screen) -> Run:
-    """Return a complete run of a project with the band of the effective width."""
-    if done.status != "complete":
+def _with_band(band: bool, done: Run, request: Request, screen: Screen) -> Run:
+    """Return a complete run of a project with the band of the effective width, if it is wanted."""
+    if not band or done.status != "complete":
         return done
     from ..analyses.shed.band import width_band  # processes are started for it alone
 
@@ -198,11 +206,11 @@ def _simulate(
     request: Request,
     problems: list[Problem],
     output_dir: Path | None,
-    allow_unstable: bool,
+    conduct: Mapping[str, Any],
     screen: Screen,
 ) -> Run:
     """Carry out a run; one that fails or is interrupted gives what was computed until then."""
-    with screen.progress("preparing") as progress:
+    with stdout_for_results(), screen.progress("preparing") as progress:
         with options_named(OPTIONS, request.target, _given(request)):
             system = System.prepared(request, screen.note, problems)
         facts = system.job.facts
@@ -216,14 +224,8 @@ def _simulate(
             progress.describe(COLD_START)
         tell_leftovers(folder, screen)
         try:
-            with options_named(OPTIONS, given=request.options):
-                return simulate(
-                    system,
-                    folder,
-                    progress=progress,
-                    allow_unstable=allow_unstable,
-                    note=screen.warn,
-                )
+            with options_named(OPTIONS, given={*request.options, "checkpoint_every"}):
+                return simulate(system, folder, progress=progress, note=screen.warn, **conduct)
         except RunFailed as failure:
             done: Run = failure.run
             return done
@@ -313,6 +315,8 @@ def _show_results(done: Run, pictures: list[Path], screen: Screen) -> None:
                 screen.show(table, "")
     drawn = f", {len(pictures)} pictures in {pictures[0].parent}" if pictures else ""
     screen.say(f"results in {done.folder}{drawn}")
+    if done.status != "complete" and stopped_at(done.folder) is not None:
+        screen.say(f"`rockshed resume {quote(str(done.folder))}` goes on from its last checkpoints")
 
 
 def _as_data(done: Run, pictures: list[Path]) -> dict[str, Any]:

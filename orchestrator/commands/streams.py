@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from pathlib import Path
 
+from ..core.results.checkpoints import known_checkpoints
 from ..core.results.run_folder import leftovers
 from .screen import Screen
 
@@ -44,5 +45,12 @@ def tell_leftovers(folder: Path, screen: Screen) -> None:
     for left in leftovers(Path(os.path.realpath(folder))):
         screen.warn(
             f"a run that did not end has left {left}; it is kept until this one is complete, and "
-            f"`rockshed plot {folder}` draws what it has"
+            f"`rockshed plot {folder}` draws what it has{_or_resumed(left, folder)}"
         )
+
+
+def _or_resumed(left: Path, folder: Path) -> str:
+    """Say how a run goes on that has left checkpoints; nothing of one without."""
+    if not known_checkpoints(left):
+        return ""
+    return f"; `rockshed resume {folder}` would go on with it"

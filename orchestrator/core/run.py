@@ -13,12 +13,14 @@ from .errors import InputRefused, Problem, RunFailed
 from .fmu.fmu_slave import FmuFile
 from .fmu.slave import FATAL, OK, WARNING, Slave, Source, counts_of, status_name
 from .loop.buses import Buses
+from .loop.checkpointing import Checkpointing, Parts, checkpoint_exchanges
 from .loop.initialisation import free, initialise, instantiate
-from .loop.instances import FreshInstances, KeptInstances
+from .loop.instances import FreshInstances, KeptInstances, SettledInstances
 from .loop.journal import Journal
 from .loop.ledger import Accounts
-from .loop.master import Interruption, Master, Progress
+from .loop.master import Interruption, Keeper, Master, Progress
 from .loop.recording import Hearing, Recorder
+from .results.checkpoints import new_record, write_checkpoint
 from .results.memory import MemoryResults
 from .results.metric import Metric
 from .results.provenance import describe_run
@@ -45,6 +47,7 @@ def simulate(
     *,
     sources: Mapping[str, Source] | None = None,
     allow_unstable: bool = False,
+    checkpoint_every: float | None = None,
     progress: Progress | None = None,
     facts: Facts | Callable[[Plan], Facts] | None = None,
     note: Callable[[str], None] = lambda text: None,
@@ -65,6 +68,9 @@ def simulate(
         Makers of components in the place of their FMU files.
     allow_unstable : bool
         Warn of steps that are too long, and do not refuse them.
+    checkpoint_every : float, optional
+        Simulated time (s) between two checkpoints, from which a run that was killed goes on; by
+        default there are none.
     progress : callable, optional
         Called now and then with the time reached and the stop time (s).
     facts : mapping or callable, optional
@@ -89,11 +95,16 @@ def simulate(
     plan = _plan(system, made_from, allow_unstable)
     known = dict(facts(plan) if callable(facts) else facts or {})
     plan = replace(plan, warnings=(*plan.warnings, *known.pop("warnings", ())))
+    every = checkpoint_exchanges(plan, checkpoint_every)
     with Interruption() as interruption, RunFolder(folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
-        session = _Session(plan, made_from, results, interruption)
+        session = Session(plan, made_from, results, interruption)
+        if checkpoint_every is not None:
+            session.take_checkpoints(Checkpointing(every, results.running))
+            known["checkpoints"] = new_record(checkpoint_every, plan.warnings)
         try:
             session.prepare(allow_unstable, known)
+            session.keep_start(results.running)
             if large := session.large_results():
                 note(large)
             session.run(progress)
@@ -157,7 +168,7 @@ def simulate_in_memory(
     plan = replace(plan, warnings=(*plan.warnings, *known.pop("warnings", ())))
     results = MemoryResults()
     with Interruption() as interruption:
-        session = _Session(plan, made_from, results, interruption, instances)
+        session = Session(plan, made_from, results, interruption, instances)
         try:
             session.prepare(allow_unstable, known)
             session.run(None)
@@ -208,18 +219,36 @@ def _against_steps(
 
 
 @dataclass
-class _Session:
-    """The slaves of one run and everything around them."""
+class Session:
+    """The slaves of one run and everything around them.
+
+    Attributes
+    ----------
+    plan, sources, results, interruption, instances
+        Of the run.
+    keepers : list of Keeper
+        Called between exchanges.
+    parts : Parts
+        From which the state of the run is taken, once it is prepared.
+    """
 
     plan: Plan
     sources: Mapping[str, Source]
     results: RunFolder | MemoryResults
     interruption: Interruption
     instances: FreshInstances | KeptInstances = field(default_factory=FreshInstances)
+    keepers: list[Keeper] = field(default_factory=list)
+    checkpointing: Checkpointing | None = None
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
     finished: bool = False
     warnings: list[str] = field(default_factory=list)
+
+    def take_checkpoints(self, checkpointing: Checkpointing) -> None:
+        """Take checkpoints during the run, whose instances then are made for that."""
+        self.checkpointing = checkpointing
+        self.keepers.append(checkpointing)
+        self.instances = SettledInstances()
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         """Make and initialise the slaves, then open the results."""
@@ -234,14 +263,23 @@ class _Session:
         self.accounts = Accounts(self.slaves, buses)
         recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results)
         self.watched = buses.watched
-        self.master = Master(self.slaves, buses, recorder)
+        self.master = Master(self.slaves, buses, recorder, self.keepers)
         self.hearing = Hearing(self.slaves)
+        self.parts = Parts(self.slaves, buses, self.accounts, recorder, self.master, self.hearing)
+        if self.checkpointing is not None:
+            self.checkpointing.parts = self.parts
         self.journal.legend(buses.operations, plan)
         self.journal.rests()
         self.preparation = time.perf_counter() - began
         known = describe_run(plan, self.sources, self.slaves)
         self.columns = recorder.columns
         self.results.begin(self.columns, {**known, **facts})
+
+    def keep_start(self, folder: Path) -> None:
+        """Write the settled states into the folder of a run that takes checkpoints."""
+        start = self.instances.start() if isinstance(self.instances, SettledInstances) else None
+        if start is not None:
+            write_checkpoint(folder, start)
 
     def large_results(self) -> str:
         """Say what the results will take, if that is much; else nothing."""
@@ -299,13 +337,20 @@ class _Session:
         return {
             "ended": datetime.now(UTC).isoformat(),
             "warnings": self._all_warnings(),
-            "wall_time": {
-                "preparation": self.preparation,
-                "exchanges": self.master.wall_time,
-                "recording": self.master.recording_time,
-            },
+            "wall_time": self._wall_time(),
             "cpu_time": {"exchanges": self.master.cpu_time},
         }
+
+    def _wall_time(self) -> dict[str, float]:
+        """Return the times (s) that the stages of the run took."""
+        taken = {
+            "preparation": self.preparation,
+            "exchanges": self.master.wall_time,
+            "recording": self.master.recording_time,
+        }
+        if self.checkpointing is not None:
+            taken["checkpoints"] = self.checkpointing.wall_time
+        return taken
 
     def _all_warnings(self) -> list[str]:
         ended = []

@@ -14,13 +14,13 @@ import zlib
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from ..core.system.system import SystemSpec
 from ..files import whole_file
-from ..versions import versions
+from ..versions import sources_digest, versions
 from .outcome import Outcome
 
 FINISHED = ".finished-runs"
@@ -130,14 +130,9 @@ def _sha256_of(file: Path, _changed: int, _size: int) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-@cache
 def program_stamp() -> str:
     """Return a digest of the sources that carry out a run."""
-    digest = hashlib.sha256()
-    for room in _PROGRAM:
-        for file in sorted((Path(__file__).parents[1] / room).rglob("*.py")):
-            digest.update(file.read_bytes())
-    return digest.hexdigest()
+    return sources_digest(*_PROGRAM)
 
 
 def _write(file: Path, outcome: Outcome) -> None:

@@ -34,6 +34,7 @@ def simulate(
     allow_unstable: bool = False,
     note: Note = silent,
     strict: bool = False,
+    checkpoint_every: float | None = None,
 ) -> Run:
     """Run a system. Ctrl-C ends the run and keeps what was computed.
 
@@ -55,6 +56,9 @@ def simulate(
         Called with a line before the run if its results will be large.
     strict : bool
         Take a complete run with any warning for an error.
+    checkpoint_every : float, optional
+        Simulated time (s) between two checkpoints in the folder of the results, from which
+        :func:`rockshed.resume` goes on whatever has ended the run; by default there are none.
 
     Returns
     -------
@@ -88,7 +92,7 @@ def simulate(
     temporary = TemporaryFolder("rockshed-") if folder is None else None
     place = Path(temporary.name) / system.name if temporary else Path(str(folder))
     try:
-        _carry_out(system, place, progress, allow_unstable, note)
+        _carry_out(system, place, progress, allow_unstable, note, checkpoint_every)
     except RunFailed as failure:
         failure.run = _kept(measured(place), temporary)
         raise
@@ -96,7 +100,24 @@ def simulate(
         if temporary:
             temporary.cleanup()
         raise
-    done = _kept(measured(place), temporary)
+    return checked(_kept(measured(place), temporary), strict)
+
+
+def checked(done: Run, strict: bool) -> Run:
+    """Return a run; a complete one with warnings is an error where none is allowed.
+
+    Parameters
+    ----------
+    done : Run
+        That has ended.
+    strict : bool
+        Whether a complete run may have no warning.
+
+    Raises
+    ------
+    RunDoubted
+        It has some; its attribute ``run`` has the results.
+    """
     if strict and done.status == "complete" and done.warnings:
         raise RunDoubted(done)
     return done
@@ -119,7 +140,12 @@ def _warnings(job: Job, plan: Plan) -> list[str]:
 
 
 def _carry_out(
-    system: System, folder: Path, progress: Progress | None, allow_unstable: bool, note: Note
+    system: System,
+    folder: Path,
+    progress: Progress | None,
+    allow_unstable: bool,
+    note: Note,
+    checkpoint_every: float | None,
 ) -> None:
     job = system.job
     sources = [getattr(source, "component", None) for source in job.sources.values()]
@@ -130,6 +156,7 @@ def _carry_out(
         folder,
         sources=job.sources,
         allow_unstable=allow_unstable,
+        checkpoint_every=checkpoint_every,
         progress=progress,
         facts=lambda plan: {**job.facts, "warnings": _warnings(job, plan)},
         note=note,

@@ -11,7 +11,7 @@ from ..system.schedule import Action, Operation
 from .buses import Buses
 from .callbacks import Callbacks
 from .machine_code import advance
-from .tables import MOVE, NUMBERS, OPERATION, Records, Tables, head
+from .tables import MOVE, NUMBERS, OPERATION, IntegerTable, Records, Tables, head
 
 
 class Fault(NamedTuple):
@@ -55,6 +55,11 @@ class ExchangeLoop:
         for operation, count in zip(self._operations, self._tables.warned):
             counts[operation.component] += int(count)
         return counts
+
+    @property
+    def warned_table(self) -> IntegerTable:
+        """Return how often each operation had the status Warning, to be changed in its place."""
+        return self._tables.warned
 
     def advance(self, first: int, count: int) -> Fault | None:
         """Carry out exchanges until the first operation that fails.

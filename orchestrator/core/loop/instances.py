@@ -6,15 +6,18 @@ result: a reset has to lead to the state after the instantiation, and outputs at
 be those that were kept, or else instances are made anew.
 """
 
+import hashlib
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..fmu.slave import ERROR, OK, Slave, Source
+from ..results.checkpoints import START, Checkpoint
 from ..system.plan import Plan
 from .buses import Buses
 from .initialisation import Entering, Stages, free, initialise, instantiate
@@ -83,15 +86,15 @@ class _Settled:
 
     Attributes
     ----------
-    keys : mapping of str to object
-        Everything that was set before, by component.
+    keys : mapping of str to str
+        Digest of everything that was set before, by component.
     states : mapping of str to bytes
         Serialized, by component.
     outputs : array of float, shape (outputs,)
         All exchanged outputs.
     """
 
-    keys: Mapping[str, object]
+    keys: Mapping[str, str]
     states: Mapping[str, bytes]
     outputs: NDArray[np.float64]
 
@@ -100,11 +103,11 @@ class _Settled:
         """Number of bytes of all states."""
         return sum(map(len, self.states.values()))
 
-    def same(self, keys: Mapping[str, object]) -> list[str]:
+    def same(self, keys: Mapping[str, str]) -> list[str]:
         """Return the components for which everything that was set is the same."""
-        return [name for name, key in keys.items() if self.keys[name] == key]
+        return [name for name, key in keys.items() if self.keys.get(name) == key]
 
-    def is_of_use(self, keys: Mapping[str, object]) -> bool:
+    def is_of_use(self, keys: Mapping[str, str]) -> bool:
         """Tell whether most of the state can be restored for a run with these keys."""
         held = sum(len(self.states[name]) for name in self.same(keys))
         return held > _SHARE * self.size
@@ -117,7 +120,7 @@ class KeptInstances:
         self._sources: dict[str, tuple[object, _DescribedOnce]] = {}
         self._waiting: OrderedDict[object, _Kept] = OrderedDict()
         self._in_use: dict[int, tuple[object, _Kept]] = {}
-        self._settled: OrderedDict[object, list[_Settled]] = OrderedDict()
+        self._settled: OrderedDict[str, list[_Settled]] = OrderedDict()
 
     def sources(self, made_from: Mapping[str, Source]) -> Mapping[str, Source]:
         """Return the makers of a run's instances, by component; files are read once."""
@@ -200,6 +203,21 @@ class KeptInstances:
 
     # ------------------------------------------------------------------ settled states
 
+    def start(self) -> Checkpoint | None:
+        """Return the newest settled states, for another process; None where there are none."""
+        if not self._settled:
+            return None
+        system = next(reversed(self._settled))
+        settled = self._settled[system][0]
+        facts = {"system": system, "keys": dict(settled.keys)}
+        return Checkpoint(START, facts, {"outputs": settled.outputs}, settled.states)
+
+    def know(self, start: Checkpoint) -> None:
+        """Take settled states that :meth:`start` gave; those of another system are of no use."""
+        keys = {str(name): str(key) for name, key in start.facts["keys"].items()}
+        settled = _Settled(keys, start.states, start.tables["outputs"])
+        self._keep(str(start.facts["system"]), settled)
+
     def initialise(
         self, slaves: Mapping[str, Slave], buses: Buses, allow_unstable: bool, entering: Entering
     ) -> list[str]:
@@ -232,12 +250,12 @@ class KeptInstances:
             self._keep(system, _Settled(keys, seen.states, seen.outputs))
         return warnings
 
-    def _key(self, plan: Plan, slave: Slave) -> object:
-        """Return everything that an instance is told before its initialisation."""
+    def _key(self, plan: Plan, slave: Slave) -> str:
+        """Return a digest of everything that an instance is told before its initialisation."""
         place, _ = self._in_use[id(slave)]
         starts = tuple((p.kind, p.reference, value) for p, value in plan.starts[slave.name])
         span = (plan.timing.seconds(0), plan.timing.seconds(plan.timing.exchanges))
-        return (place, starts, span, plan.tolerance(slave.name))
+        return _digest(place, starts, span, plan.tolerance(slave.name))
 
     def _start_anew(self, slaves: Mapping[str, Slave], buses: Buses) -> None:
         """Reset instances that were brought to a state which is of no use."""
@@ -247,7 +265,7 @@ class KeptInstances:
         buses.inputs[:] = 0.0
         buses.outputs[:] = 0.0
 
-    def _keep(self, system: object, settled: _Settled) -> None:
+    def _keep(self, system: str, settled: _Settled) -> None:
         self._settled.setdefault(system, []).insert(0, settled)
         self._settled.move_to_end(system)
         while self._settled and self._bytes() > _MOST_BYTES:
@@ -260,15 +278,29 @@ class KeptInstances:
         return sum(kept.size for listed in self._settled.values() for kept in listed)
 
 
+class SettledInstances(KeptInstances):
+    """Instances that serve one run; settled states come from, or go to, another process."""
+
+    def give_back(self, slave: Slave) -> None:
+        """Free an instance whose run has ended."""
+        self._in_use.pop(id(slave), None)
+        slave.free()
+
+
 def _origin(name: str, source: Source) -> object:
     """Return the name of a component with everything that tells one maker from another."""
     return (name, *sorted(source.origin.items()))
 
 
-def _system_key(plan: Plan) -> object:
-    """Return what is connected with what."""
+def _system_key(plan: Plan) -> str:
+    """Return a digest of what is connected with what."""
     ends = (tuple(end.name for end in listed) for listed in (plan.inputs, plan.outputs))
-    return (plan.order, *ends, plan.source.tobytes())
+    return _digest(plan.order, *ends, plan.source.tobytes())
+
+
+def _digest(*content: Any) -> str:
+    """Return a digest of numbers and texts, the same in every process."""
+    return hashlib.sha256(repr(content).encode()).hexdigest()
 
 
 class _Seen(Stages):

@@ -164,6 +164,28 @@ class Accounts:
         self._newest = found[-1]
         return found
 
+    def memory(self) -> dict[str, NDArray[np.float64]]:
+        """Return what has been found since the start, by name."""
+        watched = self._bonds + self._balances
+        never = np.nan
+        found = [
+            (w.largest, w.at, never if w.ran_away_at is None else w.ran_away_at) for w in watched
+        ]
+        return {
+            "energies": np.array(found, np.float64).reshape(-1, 3),
+            "largest_work": np.array([self._largest_work]),
+            "works": self._newest.copy(),
+        }
+
+    def recall(self, memory: Mapping[str, NDArray[np.float64]]) -> None:
+        """Go on from what an earlier process has found, as :meth:`memory` gives it."""
+        for watched, found in zip(self._bonds + self._balances, memory["energies"], strict=True):
+            watched.largest = float(found[0])
+            watched.at = float(found[1])
+            watched.ran_away_at = None if np.isnan(found[2]) else float(found[2])
+        self._largest_work = float(memory["largest_work"][0])
+        self._newest = memory["works"].copy()
+
     @property
     def reference(self) -> float:
         """Energy E0 (J) that errors are compared with; see EnergyAlarm."""

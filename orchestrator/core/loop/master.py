@@ -2,9 +2,10 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from types import FrameType, TracebackType
+from typing import Protocol
 
 from ..ending import asked_to_end
 from ..errors import RunFailed
@@ -13,7 +14,7 @@ from ..system.schedule import Action
 from .buses import Buses
 from .exchange import ExchangeLoop, Fault
 from .recording import Recorder, last_words
-from .tables import NOT_FINITE
+from .tables import NOT_FINITE, IntegerTable
 
 _MOST_AT_ONCE = 1000
 """Exchanges between two looks at Ctrl-C."""
@@ -65,6 +66,16 @@ class Interruption:
             raise KeyboardInterrupt
 
 
+class Keeper(Protocol):
+    """Interface of what is done between two exchanges, at some numbers of them."""
+
+    def next(self, exchange: int) -> int:
+        """Return the number of exchanges, more than these, after which something is due."""
+
+    def look(self, exchange: int) -> None:
+        """Do what is due after this number of exchanges."""
+
+
 class Master:
     """Drives initialised slaves through a run.
 
@@ -76,6 +87,8 @@ class Master:
         With the values after the initialisation.
     recorder : Recorder
         Takes what is to be kept.
+    keepers : sequence of Keeper
+        Called between exchanges in this order, when rows and states have been recorded.
 
     Attributes
     ----------
@@ -84,24 +97,34 @@ class Master:
     wall_time, cpu_time : float
         Time (s) that they took, snapshots included; that of the processor.
     recording_time : float
-        Time (s) from snapshots to files, and for states.
+        Time (s) from snapshots to files, and for states and checkpoints.
     reached : float
         Simulated time reached (s).
     ended_by : str
         Component that has ended the run before its stop time; empty if none has.
     """
 
-    def __init__(self, slaves: Mapping[str, Slave], buses: Buses, recorder: Recorder) -> None:
+    def __init__(
+        self,
+        slaves: Mapping[str, Slave],
+        buses: Buses,
+        recorder: Recorder,
+        keepers: Sequence[Keeper] = (),
+    ) -> None:
         self._plan = buses.plan
         self._slaves = slaves
         self._buses = buses
         self._recorder = recorder
+        self._keepers = keepers
         self._loop = ExchangeLoop(buses, slaves)
+        self._has_begun = False
+        self._began: float | None = None
+        self._ended: float | None = None
+        self._recorded_before = 0.0
         self._at_once = 1
         self.exchanges = 0
         self.wall_time = 0.0
         self.cpu_time = 0.0
-        self.recording_time = 0.0
         self.ended_by = ""
         self._ended_at = 0.0
 
@@ -114,6 +137,44 @@ class Master:
     def warned(self) -> Counter[str]:
         """Return how often calls of each component had the status Warning."""
         return self._loop.warned
+
+    @property
+    def warned_table(self) -> IntegerTable:
+        """Return the counts of the loop, one for each operation."""
+        return self._loop.warned_table
+
+    @property
+    def recording_time(self) -> float:
+        """Return the time (s) from snapshots to files, and for states and checkpoints."""
+        if self._began is None:
+            return self._recorded_before
+        until = time.perf_counter() if self._ended is None else self._ended
+        return until - self._began - self.wall_time
+
+    @property
+    def times(self) -> dict[str, float]:
+        """Return the times (s) that exchanges and records have taken."""
+        return {
+            "exchanges": self.wall_time,
+            "cpu": self.cpu_time,
+            "recording": self.recording_time,
+        }
+
+    def go_to(self, exchange: int, times: Mapping[str, float]) -> None:
+        """Begin after exchanges that an earlier process has carried out.
+
+        Parameters
+        ----------
+        exchange : int
+            Number of exchanges, whose rows have been recorded.
+        times : mapping of str to float
+            :attr:`times` of that process (s).
+        """
+        self.exchanges = exchange
+        self._has_begun = True
+        self.wall_time = float(times["exchanges"])
+        self.cpu_time = float(times["cpu"])
+        self._recorded_before = float(times["recording"])
 
     def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
         """Carry out all exchanges. Rows up to the end are recorded in any case.
@@ -135,7 +196,7 @@ class Master:
         RunFailed
             A slave failed, or gave a value that is no finite number.
         """
-        began = time.perf_counter()
+        self._began = time.perf_counter() - self.wall_time - self._recorded_before
         try:
             is_complete = self._run(interruption, progress)
         except BaseException:
@@ -146,23 +207,27 @@ class Master:
             self._recorder.flush()
             return is_complete
         finally:
-            self.recording_time = time.perf_counter() - began - self.wall_time
+            self._ended = time.perf_counter()
 
     def _run(self, interruption: Interruption, progress: Progress | None) -> bool:
         timing = self._plan.timing
         stop = timing.seconds(timing.exchanges)
         snapshots = self._buses.snapshots
-        self._buses.open_accounts()
-        self._record()
-        self._recorder.frames(0)
+        if not self._has_begun:
+            self._buses.open_accounts()
+            self._record()
+            self._recorder.frames(0)
         while self.exchanges < timing.exchanges and not interruption.requested:
-            due = min(self._recorder.next_frames(self.exchanges), timing.exchanges)
+            nexts = (keeper.next(self.exchanges) for keeper in self._keepers)
+            due = min(self._recorder.next_frames(self.exchanges), timing.exchanges, *nexts)
             self._advance(min(due - self.exchanges, self._at_once, snapshots.room))
             if self.ended_by:
                 self._record_end()
                 return True
             if self.exchanges == due:
                 self._recorder.frames(due)
+                for keeper in self._keepers:
+                    keeper.look(due)
             if progress is not None:
                 progress(timing.seconds(self.exchanges), stop)
         if self.exchanges % snapshots.every:

@@ -48,6 +48,8 @@ class Recorder:
     ----------
     ended_at : float or None
         Time (s) of the last row that waits, where a slave has ended the run within an exchange.
+    rows_passed, frames_passed : int
+        Number of rows, and of states of each component, that have been passed on.
     """
 
     def __init__(
@@ -64,6 +66,8 @@ class Recorder:
         self._framed = [name for name in self._plan.order if components[name].record_states]
         self._flushed_at = time.monotonic()
         self.ended_at: float | None = None
+        self.rows_passed = 0
+        self.frames_passed = 0
 
     @property
     def columns(self) -> list[Column]:
@@ -95,6 +99,7 @@ class Recorder:
                 times[-1] = self.ended_at
             energies = self._accounts.values(rows, times)
             self._sink.rows(times, np.concatenate((rows[:, self._places], energies), axis=1))
+            self.rows_passed += len(waiting)
             waiting.clear()
         self._flushed_at = time.monotonic()
         self._accounts.refuse_runaway()
@@ -122,6 +127,7 @@ class Recorder:
             self.flush()  # rows come before states, which may fill the disk
             for name in self._framed:
                 self._sink.frame(name, at, self._serialized(name, at))
+            self.frames_passed += bool(self._framed)
 
     def _serialized(self, name: str, at: float) -> bytes:
         try:
@@ -144,11 +150,26 @@ class Hearing:
     ----------
     slaves : mapping of str to Slave
         By component.
+
+    Attributes
+    ----------
+    earlier : mapping of str to Counter
+        Messages that an earlier process has heard, by component.
     """
 
     def __init__(self, slaves: Mapping[str, Slave]) -> None:
         self._slaves = slaves
         self._before = {name: counts_of(slave.messages) for name, slave in slaves.items()}
+        self.earlier: Mapping[str, Counter[tuple[int, str]]] = {}
+
+    @property
+    def said(self) -> dict[str, Counter[tuple[int, str]]]:
+        """Return how often each message has come, by component."""
+        nothing: Counter[tuple[int, str]] = Counter()
+        return {
+            name: self.earlier.get(name, nothing) + counts_of(slave.messages) - self._before[name]
+            for name, slave in self._slaves.items()
+        }
 
     def warnings(self, warned: Mapping[str, int]) -> list[str]:
         """Return the first texts of each slave with the number of times that they came.
@@ -165,20 +186,21 @@ class Hearing:
         """
         return [
             text
-            for name, slave in self._slaves.items()
-            for text in self._of(slave, warned.get(name, 0))
+            for name, new in self.said.items()
+            for text in _told(name, new, warned.get(name, 0))
         ]
 
-    def _of(self, slave: Slave, warned: int) -> list[str]:
-        new = counts_of(slave.messages) - self._before[slave.name]
-        said: Counter[str] = Counter()
-        for (status, text), count in new.items():
-            if status >= WARNING:
-                said[without_name(slave.name, text)] += count
-        texts = [f"{slave.name}: {text}{times(count)}" for text, count in said.items()]
-        if len(texts) > MOST_TEXTS:
-            rest = sum(list(said.values())[MOST_TEXTS:])
-            texts[MOST_TEXTS:] = [f"{slave.name}: and {rest} other messages"]
-        if warned and not texts:
-            texts = [f"{slave.name}: returned Warning without a message{times(warned)}"]
-        return texts
+
+def _told(name: str, new: Counter[tuple[int, str]], warned: int) -> list[str]:
+    """Return the first texts of a component with the number of times that they came."""
+    said: Counter[str] = Counter()
+    for (status, text), count in new.items():
+        if status >= WARNING:
+            said[without_name(name, text)] += count
+    texts = [f"{name}: {text}{times(count)}" for text, count in said.items()]
+    if len(texts) > MOST_TEXTS:
+        rest = sum(list(said.values())[MOST_TEXTS:])
+        texts[MOST_TEXTS:] = [f"{name}: and {rest} other messages"]
+    if warned and not texts:
+        texts = [f"{name}: returned Warning without a message{times(warned)}"]
+    return texts

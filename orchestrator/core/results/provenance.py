@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...versions import versions
+from ..errors import Problem
 from ..fmu.description import Description
 from ..fmu.slave import Slave, Source
 from ..system.plan import Plan
@@ -55,6 +56,68 @@ def _component(plan: Plan, source: Source, slave: Slave) -> dict[str, Any]:
         **declarations(description),
         "parameters": _parameters(plan, slave),
     }
+
+
+_COMPUTING = ("python", "rockshed", "numpy", "numba", "llvmlite", "fmpy", "pythonfmu")
+"""Programs and packages from which the bits of a run may follow, besides the FMUs."""
+
+
+def program_problems(provenance: Mapping[str, Any], remedy: str) -> list[Problem]:
+    """Return the programs of a run that are others here.
+
+    Parameters
+    ----------
+    provenance : mapping
+        Content of its ``run.json``.
+    remedy : str
+        Something to do about it, besides having the same versions.
+
+    Returns
+    -------
+    list of Problem
+    """
+    then = provenance.get("versions") or {}
+    now = versions(*_PACKAGES)
+    return [
+        Problem(
+            name,
+            f"the run was computed with {then.get(name)}, and this is {now.get(name)}",
+            f"install that version, or {remedy}",
+        )
+        for name in _COMPUTING
+        if then.get(name) != now.get(name)
+    ]
+
+
+def source_problems(
+    name: str, provenance: Mapping[str, Any], source: Source, remedy: str
+) -> list[Problem]:
+    """Return what is other about the FMU of a component than in a run.
+
+    Parameters
+    ----------
+    name : str
+        Of the component.
+    provenance : mapping
+        Content of the ``run.json`` of the run.
+    source : Source
+        Whose description has been read.
+    remedy : str
+        Something to do about it, besides having the same FMU.
+
+    Returns
+    -------
+    list of Problem
+        Empty where its content is the same, wherever the file lies.
+    """
+    known = (provenance.get("components") or {}).get(name) or {}
+    for key, value in source.origin.items():
+        if key == "fmu" or known.get(key) == value:
+            continue
+        what = f"its {key} is {value[:16]}, and was {str(known.get(key))[:16]} in the run"
+        place = source.origin.get("fmu", source.origin.get("component", ""))
+        return [Problem(f"{name}: {place}", what, f"put the same one there, or {remedy}")]
+    return []
 
 
 def declarations(description: Description) -> dict[str, Any]:

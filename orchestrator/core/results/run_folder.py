@@ -17,6 +17,7 @@ timeseries.csv      the same, ``time`` first, one line of names
 columns.csv         name, unit and description of each column
 states.h5           per component: ``time`` (n,), and serialized states ``state/0`` to
                     ``state/n-1`` (bytes as uint8)
+checkpoints         of a run that takes some: see :mod:`rockshed.core.results.checkpoints`
 ==================  ================================================================================
 """
 
@@ -40,6 +41,8 @@ from numpy.typing import NDArray
 from ...files import naming, write_file, write_json
 from ...temporary import sweep_once
 from ..errors import InputRefused, Problem, refusing_unwritable
+from .checkpoints import FOLDER as CHECKPOINTS
+from .checkpoints import remove_checkpoints
 from .metric import Metric
 from .own_files import FILES, MARK, content_of, foreign, is_marked, mark, read_data
 
@@ -302,6 +305,12 @@ class RunFolder:
         self.provenance = {**read_data(self.folder / RUN), **facts}
         write_json(self.folder / RUN, self.provenance)
 
+    def discard(self) -> None:
+        """Give up everything that this process has written, which then is removed."""
+        for stream in filter(None, (self._rows, self._states)):
+            stream.abandon()
+        self._rows = None
+
     def swap(self, is_complete: bool = True) -> None:
         """Put the new folder in the place of the old one. What is the user's there stays.
 
@@ -380,6 +389,8 @@ def _remove_leftover(folder: Path) -> None:
     for entry in list(folder.iterdir()):
         if entry.name == "figures" and not entry.is_symlink():
             shutil.rmtree(entry, ignore_errors=True)
+        elif entry.name == CHECKPOINTS and not entry.is_symlink():
+            remove_checkpoints(folder)
         elif entry.name in _WORKING or _UNFINISHED.fullmatch(entry.name):
             entry.unlink(missing_ok=True)
     with suppress(OSError):
@@ -614,6 +625,7 @@ def _convert_rows(folder: Path, columns: Sequence[Column]) -> None:
     import pyarrow.parquet
 
     table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
+    table = table.combine_chunks()  # the file does not tell when rows were passed on
     with naming(folder / PARQUET):
         pyarrow.parquet.write_table(table, folder / PARQUET, compression="zstd")
     with naming(folder / CSV):

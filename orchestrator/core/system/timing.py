@@ -45,6 +45,28 @@ class Timing:
         return to_seconds(ticks, self.rate)
 
 
+def exchanges_in(timing: Timing, seconds: float) -> int | None:
+    """Return the number of exchanges that a length of time has.
+
+    Parameters
+    ----------
+    timing : Timing
+        Of the run.
+    seconds : float
+        Length of time (s).
+
+    Returns
+    -------
+    int or None
+        None where it is no whole number, or no time at all.
+    """
+    try:
+        number = exact(seconds) * timing.rate / timing.exchange
+    except (ValueError, ArithmeticError):
+        return None
+    return int(number) if number.denominator == 1 else None
+
+
 def make_timing(system: SystemSpec, problems: list[Problem]) -> Timing | None:
     """Turn every time of a system into whole ticks.
 
