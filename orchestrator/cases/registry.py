@@ -285,7 +285,7 @@ def _same(one: Value, other: Value | None) -> bool:
     """Tell whether two values are equal as numbers, or else as texts."""
     try:
         return other is not None and math.isclose(float(one), float(other), rel_tol=1e-9)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # an integer of hundreds of digits
         return str(one) == str(other)
 
 

@@ -1,5 +1,6 @@
 """The command ``rockshed calibrate rockfall``: the ground from where rocks came to rest."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,8 @@ import typer
 
 from ..analyses.back_analysis.run import calibrate_rockfall
 from ..core.errors import InputRefused, Problem
+from ..core.input_text import shown
+from ..core.system.values import finite_number
 from ..runs.building import is_cold
 from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
@@ -68,7 +71,7 @@ def command(
     Parameters have intervals, from samples of their posterior.
     """
     with opened(quiet, as_json) as screen:
-        ranges = dict(_range(text) for text in fit or [])
+        ranges = _ranges(fit or [])
         folder = output_dir or folder_of_site(site, "rockfall-calibration", screen)
         if is_cold(["SlopeRockfall"]):
             screen.note(COLD_START)
@@ -90,13 +93,27 @@ def command(
         show(screen, result)
 
 
-def _range(text: str) -> tuple[str, tuple[float, float]]:
-    """Return name and range of ``NAME=LOW..HIGH``."""
-    name, _, values = text.partition("=")
-    low, dots, high = values.partition("..")
-    try:
-        return name.strip(), (float(low), float(high) if dots else float("nan"))
-    except ValueError:
-        what = f"{text!r} is no range of a quantity"
-        remedy = "write NAME=LOW..HIGH, as soil.strength=1e5..1e7"
-        raise InputRefused([Problem("--fit", what, remedy)]) from None
+def _ranges(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Return the range by name of texts ``NAME=LOW..HIGH``.
+
+    Raises
+    ------
+    InputRefused
+        With all texts that are none, and names that are given twice.
+    """
+    found: dict[str, tuple[float, float]] = {}
+    problems = []
+    for text in texts:
+        name, _, ends = (part.strip() for part in text.partition("="))
+        low, high = map(finite_number, ends.partition("..")[::2])
+        if not name or low is None or high is None:
+            what = f"{shown(text)} is no range of a quantity"
+            remedy = "write NAME=LOW..HIGH, as soil.strength=1e5..1e7"
+            problems.append(Problem("--fit", what, remedy))
+        elif name in found:
+            problems.append(Problem(f"--fit {name}", "is given twice", "keep one of them"))
+        else:
+            found[name] = (low, high)
+    if problems:
+        raise InputRefused(problems)
+    return found

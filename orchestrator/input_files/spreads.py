@@ -57,6 +57,11 @@ def spread_problems(spread: RandomQuantity[Any], key: Key, where: Places) -> Ite
         yield Problem(where.of(key), text, "correct its values")
 
 
+def spread_faults(spread: RandomQuantity[Any]) -> list[Problem]:
+    """Return what is wrong with a distribution, wherever it stands."""
+    return list(spread_problems(spread, (), Places("distribution")))
+
+
 def _fault(spread: Any) -> str:
     """Return why no distribution has these values; empty if one has."""
     if spread.deviation is not None and spread.deviation <= 0.0:

@@ -218,6 +218,8 @@ def _why_no_number(value: object, variable: Variable | None) -> str:
             float(value)  # type: ignore[arg-type]
     except ValueError as error:
         return "must be a number" if variable is None else str(error)
+    except OverflowError:  # an integer of hundreds of digits
+        return "must be a finite number"
     except TypeError:
         return ONE_VALUE
     return ""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rockshed.components.catalogue import component
 from rockshed.components.common.component import OK, value_problems
 
 from ...campaigns.campaign import Campaign
@@ -19,7 +20,7 @@ from ..frame import FloatArray
 LOGARITHMIC = 5.0
 """Largest ratio of a range whose prior is uniform in the value; beyond it, in its logarithm."""
 _SCATTERING = ("tilt", "roughness")
-_COMPONENT = {"mean": "", "deviation": "_deviation"}
+_COMPONENT = {"": "", "mean": "", "deviation": "_deviation"}
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,8 @@ def given_parameters(
 
 def _range_fault(name: str, low: float, high: float, slope: PreparedSlope) -> str:
     """Return what is wrong with a range; empty if nothing is."""
+    if not (np.isfinite(low) and np.isfinite(high)):
+        return f"{low:g} to {high:g} are no two finite numbers"
     if not low < high:
         return f"{low:g} is not below {high:g}"
     variables = {entry.name: entry for entry in slope.instance.component.layout.variables}
@@ -117,8 +120,26 @@ def component_name(name: str) -> str:
     """Return the name of the component's parameter that a quantity is: ``roughness_deviation``."""
     if name.startswith("limit_speed."):
         return name
-    _, quantity, *part = name.split(".")
-    return quantity + (_COMPONENT[part[0]] if part else "")
+    _, quantity, part = parts_of(name)
+    return quantity + _COMPONENT[part]
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of a quantity, ``1`` where it has none."""
+    variables = component("SlopeRockfall").layout.variables
+    return next(entry.unit for entry in variables if entry.name == component_name(name))
+
+
+def parts_of(name: str) -> tuple[str, str, str]:
+    """Return material, quantity, and ``mean`` or ``deviation`` or nothing, of a name.
+
+    The material's own name may have dots.
+    """
+    before, _, last = name.rpartition(".")
+    if last not in _COMPONENT:
+        return before, last, ""
+    material, _, quantity = before.rpartition(".")
+    return material, quantity, last
 
 
 def known_names(slope: PreparedSlope) -> list[str]:
@@ -155,7 +176,7 @@ class GroundOfValues:
         instance = slope.instance
         if name.startswith("limit_speed."):
             return [instance.references[name]]
-        material = name.partition(".")[0]
+        material = parts_of(name)[0]
         variable = component_name(name)
         cells = [i for i, node in enumerate(slope.nodes[:-1]) if node.material == material]
         return [instance.references[f"{variable}[{cell + 1}]"] for cell in cells]

@@ -20,6 +20,7 @@ from ..frame import FloatArray, Result
 from .forecast import CONFIDENCE, SHARES, Forecast
 from .inferred import Inferred
 from .likelihood import ANYTHING, held_out
+from .parameters import parts_of, unit_of
 
 SAMPLES, MATERIALS = "posterior.parquet", "calibrated.toml"
 FOLDS = 5
@@ -28,13 +29,6 @@ _FEWEST_EFFECTIVE = 100
 """Independent samples below which the intervals are rough."""
 _INNER = 0.8
 """Part of the rocks that the interval of the cross-validation holds."""
-_UNITS = {
-    "strength": "Pa",
-    "stiffness": "N/m3",
-    "resistance": "Pa",
-    "undulation": "m",
-    "scaling_speed": "m/s",
-}
 
 
 class BackAnalysisResult(Result):
@@ -109,7 +103,7 @@ class BackAnalysisResult(Result):
 
     def _metrics(self) -> Iterator[Metric]:
         for name, (middle, low, high) in self.parameters.items():
-            unit = _UNITS.get(name.rpartition(".")[2], "1")
+            unit = unit_of(name)
             yield Metric(f"{name}", middle, unit)
             yield Metric(f"{name}.low", low, unit)
             yield Metric(f"{name}.high", high, unit)
@@ -183,7 +177,7 @@ class BackAnalysisResult(Result):
         for entry, (name, found) in zip(
             self.inferred.parameters, self.parameters.items(), strict=True
         ):
-            unit = _UNITS.get(name.rpartition(".")[2], "1")
+            unit = unit_of(name)
             numbers = (*found, entry.low, entry.high)
             table.add(name, unit, *(digits(number) for number in numbers))
         return table
@@ -209,9 +203,7 @@ class BackAnalysisResult(Result):
             A column for each parameter, and the logarithm of the likelihood.
         """
         columns = [
-            result_column(
-                entry.name, values, _UNITS.get(entry.name.rpartition(".")[2], "1"), "sample"
-            )
+            result_column(entry.name, values, unit_of(entry.name), "sample")
             for entry, values in zip(self.inferred.parameters, self.inferred.values.T, strict=True)
         ]
         heights = self.inferred.posterior.pointwise.sum(axis=1)
@@ -251,10 +243,11 @@ class BackAnalysisResult(Result):
             values = material.model_dump(exclude_none=True, exclude={"like", "source"})
             made[name] = {**values, "description": "back-analysis: likeliest sample"}
         for entry, value in zip(self.inferred.parameters, self.inferred.best, strict=True):
-            name, *keys = entry.name.split(".")
-            if name in made:
-                table = made[name] if len(keys) == 1 else made[name][keys[0]]
-                table[keys[-1]] = float(value)
+            name, quantity, part = parts_of(entry.name)
+            if name in made and part:
+                made[name][quantity][part] = float(value)
+            elif name in made:
+                made[name][quantity] = float(value)
         return made
 
 

@@ -1,6 +1,5 @@
 """Factors of a study: a name, and the values that it takes."""
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -8,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import Problem
+from ...core.input_text import shown
 from ...core.system.system import Value
+from ...core.system.values import finite_number
 from ..frame import FloatArray
 
 _NEVER = 1e-12
@@ -284,9 +285,9 @@ def _with_units(varied: Varied) -> list[tuple[Value, bool]]:
 
 
 def _number(value: Value) -> float:
-    number = float(value)
-    if not math.isfinite(number):
-        raise ValueError("must be a finite number")
+    number = finite_number(str(value))
+    if number is None:
+        raise ValueError(f"must be a finite number (given: {shown(value)})")
     return number
 
 

@@ -32,6 +32,8 @@ from .result import StudyResult
 from .statistics import SHARES, needed
 from .tables import level_text
 
+EXTREME = 1e-3
+"""Percentile nearest to 0 and to 100 (in percent); no study has enough samples for it."""
 StudyTarget = str | Path | Mapping[str, Any] | System
 """A case, a project or system file, the content of a project, or a system of one of them."""
 
@@ -348,8 +350,11 @@ def _shares(percentiles: Sequence[float] | None, plan: _Plan) -> list[float]:
     problems = []
     for percent in percentiles:
         where = f"percentiles {percent:g}"
-        if not 0.0 < percent < 100.0:
-            problems.append(Problem(where, "lies not between 0 and 100", "give 95 for 95 %"))
+        if not EXTREME <= percent <= 100.0 - EXTREME:
+            text = f"lies not between {EXTREME:g} and {100.0 - EXTREME:g}"
+            problems.append(Problem(where, text, "give 95 for 95 %"))
+        elif list(percentiles).count(percent) > 1:
+            problems.append(Problem(where, "is given twice", "give it once"))
         elif plan.design not in SAMPLED:
             text = f"a design {plan.design} is no sample, and has no percentiles"
             problems.append(Problem(where, text, "choose design=random, lhs or sobol"))

@@ -153,7 +153,7 @@ def _soil(
     if not found and len(rod) == len(site.rod):
         found += told_if_formed(_pile_problems, site, site.ground, rod, where)
     problems += found
-    if problems:
+    if problems or len(rod) < len(site.rod):  # what is refused of a section is told already
         return None, []
     profile = GroundProfile(site.ground, site.soil)
     penetration = site.ground.penetration

@@ -11,7 +11,7 @@ from ...core.system.names import nearest
 from ...input_files.form import if_formed, told_if_formed
 from ...input_files.places import Key, Places
 from .profile import Node
-from .rocks import rock_problems, rock_sampler, start_range
+from .rocks import middle_rock, rock_problems, start_range
 from .site import Barrier, Line, SlopeSite
 
 MODEL = {
@@ -158,11 +158,8 @@ def radius_of(site: SlopeSite) -> float:
     float
         Radius (m).
     """
-    boulders = site.rock.boulders or []
-    try:
-        return float(rock_sampler(site, [], boulders).middle()[ROCK.radius])
-    except (KeyError, TypeError, ValueError):  # told as a fault of the rock
-        return 0.0
+    middle = middle_rock(site)
+    return 0.0 if middle is None else float(middle[ROCK.radius])
 
 
 def reach(barrier: Barrier, site: SlopeSite) -> float:

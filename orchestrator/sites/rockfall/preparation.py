@@ -25,7 +25,7 @@ from .boulders import read_boulders
 from .checks import MODEL, site_problems
 from .profile import Node, unfolded, with_ground
 from .reading import read_nodes
-from .rocks import RockSampler, rock_sampler
+from .rocks import RockSampler, middle_rock, rock_sampler
 from .site import Material, SlopeSite
 from .start_check import start_faults
 
@@ -209,10 +209,8 @@ def _rock_settings(site: SlopeSite, nodes: Sequence[Node]) -> Iterator[tuple[str
     """Yield name, value and place of the parameters of rock and start; the middle ones if drawn."""
     rock = site.rock
     start = site.start
-    sampler = rock_sampler(site, nodes, rock.boulders or [])
-    try:
-        middle = sampler.middle()
-    except (KeyError, TypeError, ValueError):  # told as a fault of the rock
+    middle = middle_rock(site, nodes)
+    if middle is None:
         return
     yield "radius", middle[ROCK.radius], ("rock", "radius")
     yield "shape", rock.shape, ("rock", "shape")

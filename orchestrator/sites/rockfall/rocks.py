@@ -12,7 +12,7 @@ from rockshed.components.slope_rockfall.records import ROCK
 from ...core.errors import Problem
 from ...input_files.chance import RandomQuantity
 from ...input_files.places import Key, Places
-from ...input_files.spreads import bounds, spread_problems, values_of
+from ...input_files.spreads import bounds, spread_faults, spread_problems, values_of
 from .boulders import Boulder
 from .profile import Node, surface
 from .site import SlopeSite
@@ -165,6 +165,30 @@ def rock_sampler(
     )
 
 
+def middle_rock(site: SlopeSite, nodes: Sequence[Node] = ()) -> _Floats | None:
+    """Return the rock in the middle of all distributions of a site.
+
+    Parameters
+    ----------
+    site : SlopeSite
+        With rock and start, which may have faults.
+    nodes : sequence of Node, optional
+        Of its profile; without them the place of a start along the slope is not known.
+
+    Returns
+    -------
+    array of float, shape (len(ROCK),), or None
+        None where no rock has these values, which is told as their fault.
+    """
+    spreads = (value for _, value, _ in given(site) if isinstance(value, RandomQuantity))
+    if any(spread_faults(spread) for spread in spreads):
+        return None
+    try:
+        return rock_sampler(site, nodes, site.rock.boulders or []).middle()
+    except (KeyError, TypeError, ValueError):  # of two of radius, mass and density one is missing
+        return None
+
+
 def given(site: SlopeSite) -> Iterator[tuple[str, float | RandomQuantity[Any] | None, Key]]:
     """Yield name, value and place of every quantity of rock and start that may be drawn."""
     rock = site.rock
@@ -187,7 +211,7 @@ def _zone(site: SlopeSite, nodes: Sequence[Node]) -> _Floats:
     start = site.start
     if start.line is not None:
         return np.array(start.line, float)
-    if start.along is None:
+    if start.along is None or len(nodes) < 2:
         return np.empty((0, 2))
     left, right = start.along
     inner = [(node.x, node.y) for node in nodes if left < node.x < right]
@@ -303,7 +327,7 @@ def start_range(site: SlopeSite) -> list[tuple[Key, float]]:
     if start.along is not None:
         return [(("start", "along", i), x) for i, x in enumerate(start.along)]
     if isinstance(start.x, RandomQuantity):
-        if list(spread_problems(start.x, (), Places("start"))):
+        if spread_faults(start.x):
             return []  # told with its distribution
         return [(("start", "x"), x) for x in bounds(start.x)]
     return [] if start.x is None else [(("start", "x"), start.x)]

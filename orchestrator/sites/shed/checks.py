@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 
 from rockshed.components.common.units import kN, mm, standard_gravity
-from rockshed.components.pile_rod.declarations import SIZES as RODS
 from rockshed.components.sand_cushion.declarations import SIZES
 from rockshed.components.sand_cushion.models import SPREAD
 
 from ...core.errors import Problem
 from ...input_files.form import told_if_formed
 from ...input_files.places import Key, Places
+from .foundation import MOST_SEGMENTS
 from .geometry import DISCS_IN_RADIUS, DISCS_IN_THICKNESS, ShedLayout, line_mass
 from .site import ShedProject
 
@@ -157,9 +157,11 @@ def _rod_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
     rod = found.rod
     if rod is None:
         return
-    most = RODS["segments"].maximum
-    if rod.segments > most:
-        text = f"the pile has {rod.segments:,} segments of an exchange step, and {most:,} are most"
+    if rod.segments > MOST_SEGMENTS:
+        text = (
+            f"the pile has {rod.segments:.6g} segments of an exchange step, and {MOST_SEGMENTS:,} "
+            "are most"
+        )
         yield _at(where, ("numerics", "elements"), text, "reduce them: the exchange step rises")
     mass = found.roof.span * line_mass(found.cushion, found.roof, found.girders)
     load = rod.weight + 0.5 * standard_gravity * mass

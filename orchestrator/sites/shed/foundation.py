@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.common.units import standard_gravity
+from rockshed.components.pile_rod.declarations import SIZES
 
 from ...input_files.places import Places
 from ..pile.design import PileDesign
@@ -21,6 +22,8 @@ STIFF_END = 5.0
 
 The limit of the rod is 1, and near it an exchange makes energy.
 """
+MOST_SEGMENTS = SIZES["segments"].maximum
+"""Largest number of segments of a rod."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,8 @@ def pile_rod(pile: PileDesign, piles: float, exchange: float) -> SupportRod:
     segments = max(2, round(travel / exchange))
     scale = (travel / (segments * exchange)) ** 2
     source = SiteSource({}, Places("pile"))
-    soil = PreparedPile(source, pile.model_copy(update={"segments": segments})).soil()
+    laid = pile.model_copy(update={"segments": min(segments, MOST_SEGMENTS)})  # more are refused
+    soil = PreparedPile(source, laid).soil()
     resistance = piles * soil["shaft.resistance"]
     resistance[-2] += resistance[-1]  # the toe's port of waves needs a last segment without
     resistance[-1] = 0.0

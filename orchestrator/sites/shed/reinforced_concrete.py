@@ -24,6 +24,7 @@ BLOCK_FACTOR = 0.85
 
 
 _OVER_REINFORCED = "the concrete crushes before the steel yields: give less steel or more height"
+_TOO_WEAK = "the bars bear next to nothing beside the concrete: it breaks when it cracks"
 
 
 class StripError(ValueError):
@@ -194,8 +195,6 @@ class _Section:
         """Return moment (N m) and curvature (1/m) when the lower bars begin to yield."""
         strip, strain = self.strip, self.bars.yield_strain
         deepest = (1.0 - 1e-9) * strip.depth
-        if self._balance(deepest, strain * deepest / (strip.depth - deepest)) <= 0.0:
-            raise StripError(_OVER_REINFORCED)  # all of the concrete cannot make them yield
         axis = _root(
             lambda x: self._balance(x, strain * x / (strip.depth - x)),
             1e-9 * strip.depth,
@@ -246,7 +245,17 @@ class _Section:
 
 
 def _root(balance: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a balance is zero between two depths (m)."""
+    """Return where a balance is zero between two depths (m).
+
+    Raises
+    ------
+    StripError
+        All of the concrete cannot make the bars yield, or next to none of it would.
+    """
     from scipy.optimize import brentq  # takes 0.2 s to import
 
+    if not balance(high) > 0.0:
+        raise StripError(_OVER_REINFORCED)
+    if not balance(low) < 0.0:
+        raise BrittleError(_TOO_WEAK)
     return float(brentq(balance, low, high, xtol=1e-12))

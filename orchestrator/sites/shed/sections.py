@@ -136,7 +136,7 @@ def section(name: str, where: str, problems: list[Problem]) -> RolledSection | N
     return found
 
 
-_NUMBER = re.compile(r"\d+")
+_NUMBER = re.compile(r"\d{1,6}")
 
 
 def _nearest_size(name: str) -> str:

@@ -51,15 +51,15 @@ def _deflection_limit(value: Any) -> str | float:
     """
     given = f"(given: {shown(value)})"
     if isinstance(value, str) and (part := _PART_OF_SPAN.fullmatch(value.strip())):
-        if float(part.group(1)) < 1.0:
+        if not 1.0 <= float(part.group(1)) <= LARGEST:
             raise ValueError(f"must be a part of the span, span/300 for instance {given}")
         return f"span/{part.group(1)}"
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise ValueError(f"must be a length or a part of the span, span/300 for instance {given}")
-    length = in_si(value, "m") if isinstance(value, str) else float(value)
+    length = in_si(value, "m") if isinstance(value, str) else value
     if not SMALLEST <= length <= LARGEST:
-        raise ValueError(f"must be greater than 0 {given}")
-    return length
+        raise ValueError(f"must be {SMALLEST:g} to {LARGEST:g} m {given}")
+    return float(length)
 
 
 DeflectionLimit = Annotated[str | float, BeforeValidator(_deflection_limit)]
