@@ -1,5 +1,6 @@
 """The command ``rockshed rockfall``: a campaign of trials on a slope."""
 
+import re
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -125,7 +126,7 @@ def _number_or_word(text: str | None) -> Any:
     """Return a number where a text is one; the analysis refuses other words than ``all``."""
     if text is None:
         return 0
-    return int(text) if text.isdecimal() else text
+    return int(text) if re.fullmatch("[0-9]{1,12}", text) else text
 
 
 def _count(trials: int | None, preset: str | None) -> int | None:

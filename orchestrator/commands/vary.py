@@ -5,8 +5,10 @@ from collections.abc import Sequence
 
 from ..analyses.study.factors import KINDS, Interval, Levels, RandomValue, Varied
 from ..core.errors import Problem
+from ..core.input_text import shown
 
 _CALL = re.compile(r"(\w+)\s*\((.*)\)")
+_COUNT = re.compile(r"[0-9]{1,15}")
 _FORMS = "write NAME=A,B,C, NAME=LOW..HIGH:LEVELS or NAME=normal(MEAN, DEVIATION)"
 
 
@@ -31,7 +33,7 @@ def varied_of(texts: Sequence[str], problems: list[Problem]) -> dict[str, Varied
         name, equals, content = (part.strip() for part in text.partition("="))
         where = f"--vary {name}" if name else "--vary"
         if not (name and equals and content):
-            problems.append(Problem("--vary", f"{text!r} varies nothing", _FORMS))
+            problems.append(Problem("--vary", f"{shown(text)} varies nothing", _FORMS))
         elif name in found:
             problems.append(Problem(where, "is given twice", "keep one of them"))
         else:
@@ -50,14 +52,15 @@ def _varied(text: str) -> Varied:
         return _interval(text)
     values = [part.strip() for part in text.split(",")]
     if not all(values):
-        raise ValueError(f"{text!r} has an empty value")
+        raise ValueError(f"{shown(text)} has an empty value")
     return Levels(tuple(values))
 
 
 def _distribution(kind: str, content: str) -> RandomValue:
     parameters = tuple(part.strip() for part in content.split(","))
     if kind not in KINDS:
-        raise ValueError(f"there is no distribution {kind!r}: choose one of {', '.join(KINDS)}")
+        known = ", ".join(KINDS)
+        raise ValueError(f"there is no distribution {shown(kind)}: choose one of {known}")
     if not all(parameters):
         raise ValueError(f"{kind} takes {', '.join(KINDS[kind])}")
     return RandomValue(kind, parameters)
@@ -67,9 +70,9 @@ def _interval(text: str) -> Interval:
     low, _, rest = text.partition("..")
     high, colon, number = rest.partition(":")
     if not low.strip() or not high.strip():
-        raise ValueError(f"{text!r} is no range")
-    if colon and not number.strip().isdigit():
-        raise ValueError(f"{number.strip()!r} is no number of levels")
+        raise ValueError(f"{shown(text)} is no range")
+    if colon and not _COUNT.fullmatch(number.strip()):
+        raise ValueError(f"{shown(number.strip())} is no number of levels")
     levels = int(number) if colon else None
     low, high = low.strip(), high.strip()
     return Interval(_with_unit_of(low, high), high, levels)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,29 @@ from .csv_table import CsvTable, read_csv
 from .form import LARGEST
 from .quantities import in_si
 
-_TITLE = re.compile(r"\s*([\w. ]+?)\s*[\[(_ ]\s*([A-Za-z0-9/]+)\s*[\])]?\s*")
+_TITLE = re.compile(r"\s*(.+?)\s*[\[(_ ]\s*([A-Za-z0-9/]+)\s*[\])]?\s*")
 
 
-def titled_columns(
-    path: Path, units: Mapping[str, str], problems: list[Problem]
-) -> dict[str, NDArray[np.float64]]:
+@dataclass(frozen=True)
+class TitledColumns:
+    """Columns of known titles.
+
+    Attributes
+    ----------
+    values : mapping of str to array of float, shape (rows,)
+        By title, in SI; NaN where a field is empty or not a number.
+    places : sequence of str
+        File and line of each row.
+    others : mapping of str to str
+        File, line and column of each other title.
+    """
+
+    values: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    places: Sequence[str] = ()
+    others: Mapping[str, str] = field(default_factory=dict)
+
+
+def titled_columns(path: Path, units: Mapping[str, str], problems: list[Problem]) -> TitledColumns:
     """Read the columns of known titles; others are passed over.
 
     Parameters
@@ -33,25 +51,26 @@ def titled_columns(
 
     Returns
     -------
-    dict of str to array of float, shape (rows,)
-        Those columns that the file has, in SI; NaN where a field is empty or not a number.
+    TitledColumns
+        Those columns that the file has.
     """
     try:
         table = read_csv(path)
     except InputRefused as refusal:
         problems += refusal.problems
-        return {}
+        return TitledColumns()
     if not table.rows:
         remedy = f"write a line of titles, as {_example(units)}"
         problems.append(Problem(str(path), "is empty", remedy))
-        return {}
-    found = _titles(table, units, problems)
-    return {
+        return TitledColumns()
+    found, others = _titles(table, units, problems)
+    values = {
         name: np.array(
             [_value(table, i, column, scale, problems) for i in range(1, len(table.rows))]
         )
         for name, (column, scale) in found.items()
     }
+    return TitledColumns(values, [table.place(row) for row in table.rows[1:]], others)
 
 
 def needed(
@@ -71,15 +90,17 @@ def _example(units: Mapping[str, str]) -> str:
 
 def _titles(
     table: CsvTable, units: Mapping[str, str], problems: list[Problem]
-) -> dict[str, tuple[int, float]]:
-    """Return place and size of the unit of each known column."""
+) -> tuple[dict[str, tuple[int, float]], dict[str, str]]:
+    """Return number and size of the unit of each known column, and the places of other titles."""
     found: dict[str, tuple[int, float]] = {}
+    others: dict[str, str] = {}
     titles = table.rows[0]
-    for column, field in enumerate(titles.fields):
-        parts = _TITLE.fullmatch(field.text)
-        plain = field.text.strip().lower()
+    for column, entry in enumerate(titles.fields):
+        parts = _TITLE.fullmatch(entry.text)
+        plain = entry.text.strip().lower()
         name = plain if plain in units or parts is None else parts.group(1).lower()
         if name not in units:
+            others[entry.text] = table.place(titles, column)
             continue
         if name in found:
             problems.append(Problem(table.place(titles, column), f"{name} is there twice", ""))
@@ -87,8 +108,9 @@ def _titles(
         try:
             found[name] = (column, in_si(f"1 {written}".strip(), units[name]))
         except ValueError as error:
-            problems.append(Problem(table.place(titles, column), f"{field.text}: {error}", ""))
-    return found
+            text = f"{shown(entry.text)}: {error}"
+            problems.append(Problem(table.place(titles, column), text, ""))
+    return found, others
 
 
 def _value(table: CsvTable, i: int, column: int, scale: float, problems: list[Problem]) -> float:

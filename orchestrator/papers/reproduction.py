@@ -1,6 +1,5 @@
 """A reproduction: the studies of a paper, their runs, and the files that tell of them."""
 
-import os
 import shutil
 import time
 from collections.abc import Mapping, Sequence
@@ -18,6 +17,7 @@ from ..core.system.names import nearest
 from ..files import whole_file, write_file, write_json
 from ..runs.batch import INTERRUPTED, Counted, run_all, uncounted
 from ..runs.building import Note, silent
+from ..runs.executors import number_of_workers
 from ..runs.kept import FINISHED, KeptRuns
 from ..tables import Table
 from ..temporary import TemporaryFolder
@@ -186,7 +186,7 @@ def reproduce(
         "paper": PAPERS[paper],
         "started": started,
         "quick": quick,
-        "workers": workers or os.cpu_count() or 1,
+        "workers": number_of_workers(workers),
         "wall_time": time.perf_counter() - began,
         "versions": versions(*_PACKAGES),
     }

@@ -3,7 +3,6 @@
 Each process keeps its FMUs' code compiled from run to run.
 """
 
-import os
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,7 +14,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.system.names import split_name
 from ..core.system.system import SystemSpec
 from .building import FmusOf, Note, case_fmus, each_once, silent
-from .executors import Crew, Lost, at_end, processes, running
+from .executors import Crew, Lost, at_end, number_of_workers, processes, running
 from .job import prepare
 from .kept import KeptRuns
 from .outcome import Outcome
@@ -200,7 +199,7 @@ def run_all(
     orders = orders_of(tasks, note)
 
     def opening(most: int) -> AbstractContextManager[Crew]:
-        return processes(min(workers or os.cpu_count() or 1, most))
+        return processes(min(number_of_workers(workers), most))
 
     return carry_out(orders, opening, note, counted, kept)
 

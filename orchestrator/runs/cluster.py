@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..core.ending import put_off
 from ..core.errors import InputRefused, Problem
 from ..temporary import TemporaryFolder
+from .executors import number_of_workers
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster, Security
@@ -85,6 +86,7 @@ def connected(
 
 
 def _check(scheduler: str, workers: int | None, certificates: Certificates | None) -> None:
+    number_of_workers(workers)
     where = f"scheduler {scheduler}"
     problems = list(_certificate_problems(scheduler, certificates))
     if find_spec("distributed") is None:

@@ -15,6 +15,8 @@ from multiprocessing.process import BaseProcess
 from threading import Event, Thread
 from typing import Any, Protocol
 
+from ..core.errors import InputRefused, Problem
+
 Work = Callable[[Any], Any]
 """A function of a module, which other processes find by its name."""
 
@@ -26,6 +28,24 @@ _DEAF = 5.0
 """Time (s) after which a process that was interrupted and goes on is killed."""
 _LONGEST_END = 20.0
 """Time (s) after which a run that has been interrupted is no longer waited for."""
+
+
+def number_of_workers(asked: int | None) -> int:
+    """Return the number of processes or threads that are asked for; by default one for each core.
+
+    Parameters
+    ----------
+    asked : int or None
+        As a user gives it.
+
+    Raises
+    ------
+    InputRefused
+        Nobody would do the work.
+    """
+    if asked is not None and asked < 1:
+        raise InputRefused([Problem("workers", f"{asked} do no work", "give one at least")])
+    return asked or os.cpu_count() or 1
 
 
 class Lost:

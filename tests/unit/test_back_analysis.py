@@ -121,10 +121,23 @@ def test_a_wide_range_is_uniform_in_the_logarithm():
         (
             "x (m)\n40\n41\n42\n43\n500\n",
             [],
-            "end point 5: x = 500 m is off the profile, which has 0 to 120 m",
+            "ends.csv, line 6: x = 500 m is off the profile, which has 0 to 120 m",
         ),
         ("x (m)\n40\n41\n", [], "has 2 end points, from which nothing can be inferred"),
         ("y (m)\n40\n41\n", [], "has no column x"),
+        (
+            "x (m),gate.speed (m/s)\n40,3\n41,4\n42,\n43,\n44,\n",
+            [],
+            "column 7: 'gate.speed (m/s)': the site has no line 'gate'",
+        ),
+        ("x (m),fence.speed\n40,3\n41,\n42,\n43,\n44,\n", [], "has one value of fence.speed"),
+        ("x,fence.height\n40,0\n41,0\n42,\n43,\n44,\n", [], "has no fence.height above 0"),
+        ("x,fence.energy\n40,9\n41,-2\n42,\n43,\n44,\n", [], "line 3: fence.energy = -2 is neg"),
+        (
+            "x\n40\n41\n42\n43\n44\n",
+            ["--fit", "soil.friction=0.2..inf", "--fit", "a"],
+            "--fit: 'a' is no range",
+        ),
         (
             "x (m)\n40\n41\n42\n43\n44\n",
             ["--fit", "soil.strenth=1..2"],
@@ -149,6 +162,7 @@ def test_bad_input_is_refused_before_anything_is_computed(
     (tmp_path / "slope.toml").write_text(
         "[rock]\nradius = 0.4\ndensity = 2600\n[start]\nx = 1.0\n[limit_speed]\nmean = 12\ndeviation = 2\n"
         '[profile]\npoints = [[0, 40, "soil"], [30, 12, "soil"], [120, 3]]\n'
+        '[[line]]\nname = "fence"\nx = 30.0\n'
     )
     done = CliRunner().invoke(app, ["calibrate", "rockfall", "slope.toml", "ends.csv", *options])
     assert done.exit_code == 2

@@ -256,7 +256,8 @@ def test_what_no_rock_or_start_can_be_is_refused(parts, words):
     ("text", "words"),
     [
         ("mass,length1\n1,1\n", "has no column length2, length3"),
-        ("mass (kg),radius (m)\n-3,0.4\n", "boulder 1 has no mass above 0"),
+        ("mass (kg),radius (m)\n-3,0.4\n", "boulders.csv, line 2: boulder 1 has no mass above 0"),
+        ("mass,radius,elongation\n3,1,2\n3,1,11\n", "line 3: boulder 2 has the elongation 11; 1"),
         ("mass (kg),radius (m)\n3,\n", "boulder 1 has no radius above 0"),
         ("mass (kg),radius (m)\n3,big\n", "line 2, column 3: 'big' is no finite number"),
         ("mass (m),radius (m)\n3,1\n", "mass (m): must be a mass"),

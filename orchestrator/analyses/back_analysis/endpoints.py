@@ -1,6 +1,7 @@
 """Measured end points of rocks, and what was measured at search lines, from a CSV file."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,8 +11,10 @@ from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, RESTED
 
 from ...campaigns.campaign import Campaign, TrialRecords
 from ...core.errors import InputRefused, Problem
+from ...core.input_text import shown
+from ...core.system.names import nearest
 from ...input_files.form import first
-from ...input_files.titled_table import needed, titled_columns
+from ...input_files.titled_table import TitledColumns, needed, titled_columns
 from ..frame import FloatArray
 
 FEWEST = 5
@@ -24,6 +27,8 @@ _AT_LINE = {
     "energy": (PASSAGE.kinetic, "J"),
 }
 """Column of the passages, and unit, of what may be measured at a line."""
+_OF_LINE = re.compile(r"\s*(.+)\.(height|speed|energy)\b", re.IGNORECASE)
+"""Title of a column of a search line, with or without a unit."""
 
 
 @dataclass(frozen=True)
@@ -90,35 +95,66 @@ def read_endpoints(path: Path, campaign: Campaign, scatter: float) -> list[Obser
     }
     units = {X: "m", **{title: entry[3] for title, entry in known.items()}}
     problems: list[Problem] = []
-    columns = titled_columns(path, units, problems)
-    problems += needed(path, columns, [X], {X: "m"}) if not problems else []
-    if X in columns:
-        problems += _off_profile(path, columns, campaign)
+    table = titled_columns(path, units, problems)
+    problems += needed(path, table.values, [X], {X: "m"}) if not problems else []
+    problems += _unknown_lines(table, campaign)
+    if X in table.values:
+        problems += _end_problems(path, table, campaign)
+    for title, (name, *_) in known.items():
+        problems += _line_problems(path, table, title, name)
     if problems:
         raise InputRefused(first(problems))
-    ends = columns.pop(X)
-    observed = [Observed(X, "m", ends[np.isfinite(ends)], scatter)]
+    observed = [Observed(X, "m", _there(table, X), scatter)]
     for title, (name, line, column, unit) in known.items():
-        values = columns.get(title, np.empty(0))
-        values = values[np.isfinite(values)]
-        if len(values) > 1:
-            wide = max(0.1 * float(values.std(ddof=1)), 1e-3 * float(np.abs(values).max()))
+        values = _there(table, title)
+        if len(values):
+            wide = max(0.1 * float(values.std(ddof=1)), 1e-3 * float(values.max()))
             observed.append(Observed(name, unit, values, wide, line, column))
     return observed
 
 
-def _off_profile(
-    path: Path, columns: Mapping[str, FloatArray], campaign: Campaign
-) -> Sequence[Problem]:
-    ends = columns[X]
+def _there(table: TitledColumns, title: str) -> FloatArray:
+    """Return the measured values of a column, none of one that is not there."""
+    values = table.values.get(title, np.empty(0))
+    return values[np.isfinite(values)]
+
+
+def _unknown_lines(table: TitledColumns, campaign: Campaign) -> Iterator[Problem]:
+    """Yield the columns of lines that the site does not have."""
+    for title, place in table.others.items():
+        found = _OF_LINE.match(title)
+        if found and found[1].strip().lower() not in map(str.lower, campaign.names):
+            text = f"{shown(title)}: the site has no line {shown(found[1].strip())}"
+            yield Problem(place, text, nearest(found[1].strip(), campaign.names))
+        elif found:
+            text = f"{shown(title)} is no column with a unit"
+            _, unit = _AT_LINE[found[2].lower()]
+            yield Problem(place, text, f"write {found[1]}.{found[2]} ({unit})")
+
+
+def _line_problems(path: Path, table: TitledColumns, title: str, name: str) -> Iterator[Problem]:
+    """Yield values at a line that no rock has, and such of which nothing can be inferred."""
+    column = table.values.get(title, np.empty(0))
+    for row in np.flatnonzero(column < 0.0).tolist():
+        text = f"{name} = {column[row]:g} is negative"
+        yield Problem(table.places[row], text, "correct it, or leave the field empty")
+    values = _there(table, title)
+    if len(values) == 1 or (len(values) and not values.any()):
+        text = f"has one value of {name}" if len(values) == 1 else f"has no {name} above 0"
+        yield Problem(str(path), text, "give two or more, or leave the column out")
+
+
+def _end_problems(path: Path, table: TitledColumns, campaign: Campaign) -> list[Problem]:
+    """Return end points that are off the profile, or too few."""
+    ends = table.values[X]
     problems = [
         Problem(
-            f"{path}, end point {row + 1}",
+            table.places[row],
             f"x = {ends[row]:g} m is off the profile, which has {campaign.left:g} to "
             f"{campaign.right:g} m",
             "give x in the frame of the profile, or a longer profile",
         )
-        for row in np.flatnonzero((ends < campaign.left) | (ends > campaign.right))
+        for row in np.flatnonzero((ends < campaign.left) | (ends > campaign.right)).tolist()
     ]
     count = int(np.isfinite(ends).sum())
     if count < FEWEST:

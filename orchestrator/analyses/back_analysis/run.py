@@ -1,6 +1,5 @@
 """Infer the parameters of a slope from measured end points, and forecast another one."""
 
-import os
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
@@ -14,6 +13,7 @@ from rockshed.components.catalogue import component
 from ...campaigns.campaign import Campaign, campaign_of
 from ...core.errors import InputRefused, Problem
 from ...input_files.form import first
+from ...runs.executors import number_of_workers
 from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import PreparedSlope, prepare
 from ...sites.source import SiteLike
@@ -121,7 +121,7 @@ def calibrate_rockfall(
         place = opened.enter_context(BackAnalysisResult.opened(folder)) if folder else None
         tell_first_compilation([component("SlopeRockfall")])
         began = time.perf_counter()
-        threads = workers or os.cpu_count() or 1
+        threads = number_of_workers(workers)
         inferred = _inferred(
             slope, campaign, observed, parameters, (trials, steps, seed, threads), show
         )

@@ -33,7 +33,8 @@ class Posterior:
     accepted : float
         Part of the steps that were accepted.
     correlation : float
-        Largest integrated autocorrelation time (steps) of a parameter.
+        Largest integrated autocorrelation time (steps) of a parameter; infinite if a walker has
+        not moved.
     steps : int
         Steps of each walker that are kept.
     """
@@ -106,13 +107,15 @@ def sample(
 
 def _collected(sampler: Any, steps: int) -> Posterior:
     burnt = round(BURNT * steps)
-    times = sampler.get_autocorr_time(discard=burnt, quiet=True, has_walkers=True, tol=0)
+    with np.errstate(invalid="ignore"):  # a walker that has not moved has no such time
+        times = sampler.get_autocorr_time(discard=burnt, quiet=True, has_walkers=True, tol=0)
+    longest = float(np.max(times))
     blobs = sampler.get_blobs(discard=burnt, flat=True)
     return Posterior(
         sampler.get_chain(discard=burnt, flat=True),
         np.asarray(blobs, float),
         float(np.mean(sampler.acceptance_fraction)),
-        float(np.nanmax(times)),
+        longest if np.isfinite(longest) else np.inf,
         steps - burnt,
     )
 

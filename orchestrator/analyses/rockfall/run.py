@@ -1,6 +1,5 @@
 """Carry out a rockfall campaign."""
 
-import os
 import time
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, ExitStack
@@ -13,6 +12,7 @@ from ...animations.formats import animation_format
 from ...campaigns.campaign import Campaign, Executor, campaign_of, threads
 from ...campaigns.replay import check
 from ...core.errors import InputRefused, Problem
+from ...runs.executors import number_of_workers
 from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import prepare
 from ...sites.source import SiteLike
@@ -136,5 +136,5 @@ def _executor(
         if certificates is not None:
             text = "are for a running scheduler"
             raise InputRefused([Problem("certificates", text, "name it with scheduler=...")])
-        return threads(workers or os.cpu_count() or 1)
+        return threads(number_of_workers(workers))
     return dask_workers(scheduler, workers, certificates)

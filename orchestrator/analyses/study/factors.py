@@ -14,6 +14,8 @@ from ..frame import FloatArray
 
 _NEVER = 1e-12
 """Probability beyond which a distribution is cut off: its tails may be endless."""
+MOST_LEVELS = 100_000
+"""Levels of a range, at most."""
 
 
 @dataclass(frozen=True)
@@ -265,6 +267,8 @@ def _form_faults(varied: Varied) -> Iterator[str]:
         yield "has no value"
     if isinstance(varied, Interval) and varied.levels is not None and varied.levels < 2:
         yield f"{varied.levels} levels are no range: give two at least"
+    if isinstance(varied, Interval) and varied.levels is not None and varied.levels > MOST_LEVELS:
+        yield f"{shown(varied.levels)} levels, and {MOST_LEVELS:,} are the most"
     if not isinstance(varied, RandomValue):
         return
     if varied.kind not in _KINDS:

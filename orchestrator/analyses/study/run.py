@@ -1,6 +1,5 @@
 """Carry out a study: prepare all of its runs, then run them, then tell."""
 
-import os
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.errors import InputRefused, Problem
+from ...core.input_text import shown
 from ...core.results.metric import identifier
 from ...core.system.names import nearest
 from ...core.system.system import Value
@@ -17,14 +17,14 @@ from ...runs.batch import INTERRUPTED, Outcome, Task, carry_out, orders_of
 from ...runs.building import Note, silent
 from ...runs.cluster import Certificates
 from ...runs.dask_executor import dask
-from ...runs.executors import Crew, processes
+from ...runs.executors import Crew, number_of_workers, processes
 from ...runs.job import prepare
 from ...runs.kept import FINISHED, KeptRuns
 from ...runs.parameters import SystemValues
 from ...runs.request import Request, plain
 from ...runs.system import System
 from ..frame import StageProgress, counter, no_progress
-from .designs import GRID, RANDOM, SAMPLED, SOBOL, DesignPoint, design_problems, points
+from .designs import GRID, MOST_POINTS, RANDOM, SAMPLED, SOBOL, DesignPoint, design_problems, points
 from .factors import Factor, Interval, Levels, RandomValue, Varied, in_si
 from .headline import headline_metrics
 from .records import MetricName, StudyRecords, StudyRun, metrics_by_identifier
@@ -246,10 +246,15 @@ def _plan(
         if name in request.values
     ]
     problems += _seed_problems(seeds, vary, known)
+    if draw < 0:
+        problems.append(Problem("draw", f"{draw} is below 0", "give a whole number from 0 on"))
     problems += [] if problems else design_problems(chosen, factors, samples)
     if problems:
         raise InputRefused(problems)
     found = points(chosen, factors, samples or 0, draw)
+    if not _in_turn(chosen) and len(found) * seeds > MOST_POINTS:
+        text = f"{len(found)} points of {shown(seeds)} packings; {MOST_POINTS:,} runs are most"
+        raise InputRefused([Problem("seeds", text, "give fewer")])
     entries = [
         (number, point, seed, _task(request, point, seeded, number, factors))
         for number, point in enumerate(found, 1)
@@ -312,9 +317,13 @@ def _packings(
     elif seeds == 1:
         yield known.first_seed, {}
     else:
-        in_turn = design in SAMPLED and design != SOBOL
-        for i in [place % seeds] if in_turn else range(seeds):
+        for i in [place % seeds] if _in_turn(design) else range(seeds):
             yield known.first_seed + i, {known.seed: known.first_seed + i}
+
+
+def _in_turn(design: str) -> bool:
+    """Tell whether each point of a design has one packing, and the next point the next one."""
+    return design in SAMPLED and design != SOBOL
 
 
 def _task(
@@ -454,6 +463,7 @@ class _Opening:
         if scheduler is None and certificates is not None:
             text = "are for a running scheduler"
             raise InputRefused([Problem("certificates", text, "name it with scheduler=...")])
+        number_of_workers(workers)
         self._workers = workers
         self._scheduler = scheduler
         self._certificates = certificates
@@ -464,6 +474,6 @@ class _Opening:
         if self._scheduler is not None:
             self.facts = {"scheduler": self._scheduler, "workers": self._workers}
             return dask(self._scheduler, self._workers, self._certificates)
-        workers = min(self._workers or os.cpu_count() or 1, most)
+        workers = min(number_of_workers(self._workers), most)
         self.facts = {"workers": workers}
         return processes(workers)

@@ -13,7 +13,7 @@ from ...core.errors import Problem
 from ...input_files.chance import RandomQuantity
 from ...input_files.places import Key, Places
 from ...input_files.spreads import bounds, spread_faults, spread_problems, values_of
-from .boulders import Boulder
+from .boulders import LONGEST, Boulder
 from .profile import Node, surface
 from .site import SlopeSite
 
@@ -28,8 +28,6 @@ ANY_ANGLE = RandomQuantity[float](distribution="uniform", **{"from": 0.0, "to": 
 _VOLUME = 4.0 / 3.0 * np.pi
 """Volume of a sphere / r3."""
 _POSITIVE = ("radius", "mass", "density")
-_LONGEST = 10.0
-"""Largest elongation of an ellipse."""
 
 
 @dataclass(frozen=True)
@@ -256,10 +254,8 @@ def _impossible(
         text = f"the distribution reaches {low:.4g}, and no rock has such a {name}"
         remedy = "cut it off with from, or take a lognormal one"
         yield Problem(where.of(key), text, remedy)
-    if name == "elongation" and not 1.0 <= low <= high <= _LONGEST:
-        text = (
-            f"the distribution reaches from {low:.4g} to {high:.4g}; allowed is 1 to {_LONGEST:g}"
-        )
+    if name == "elongation" and not 1.0 <= low <= high <= LONGEST:
+        text = f"the distribution reaches from {low:.4g} to {high:.4g}; allowed is 1 to {LONGEST:g}"
         yield Problem(where.of(key), text, "cut it off with from and to")
 
 
@@ -269,6 +265,7 @@ def _size_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
     sizes = [name for name in _POSITIVE if getattr(rock, name) is not None]
     measured = [name for name in ("file", "boulders") if getattr(rock, name) is not None]
     if measured:
+        yield from _boulder_problems(rock.boulders or [], where)
         for name in (*sizes, *(["elongation"] if rock.elongation is not None else [])):
             text = f"{name} and {measured[0]} exclude each other: measured boulders have their own"
             yield Problem(where.of(("rock", name)), text, "leave one of them out")
@@ -278,6 +275,14 @@ def _size_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
     elif rock.radius is not None and len(sizes) != 2:
         text = "a rock has a mass, or the density of a sphere"
         yield Problem(place, text, "give one of the two")
+
+
+def _boulder_problems(boulders: Sequence[Boulder], where: Places) -> Iterator[Problem]:
+    """Yield measured boulders that are no rocks; those of a file are told with its lines."""
+    for i, (_, _, elongation) in enumerate(boulders):
+        if not 1.0 <= elongation <= LONGEST:
+            text = f"boulder {i + 1} has the elongation {elongation:g}; 1 to {LONGEST:g} is allowed"
+            yield Problem(where.of(("rock", "boulders", i)), text, "correct it, or leave it out")
 
 
 def _shape_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
@@ -294,8 +299,8 @@ def _shape_problems(site: SlopeSite, where: Places) -> Iterator[Problem]:
         text = f"an elongation has no meaning for a {rock.shape}"
         yield Problem(where.of(("rock", "elongation")), text, 'take shape = "ellipse"')
     number = rock.elongation if not isinstance(rock.elongation, RandomQuantity) else None
-    if number is not None and not 1.0 <= number <= _LONGEST:
-        text = f"elongation = {number:g}: allowed is 1 to {_LONGEST:g}"
+    if number is not None and not 1.0 <= number <= LONGEST:
+        text = f"elongation = {number:g}: allowed is 1 to {LONGEST:g}"
         yield Problem(where.of(("rock", "elongation")), text, "give the longer axis / the shorter")
 
 

@@ -44,7 +44,9 @@ class Rock(Data):
     )
     mass: Chance[Mass] | None = field("mass", usual=(0.01, 2e6), likely=("t",))
     file: str | None = None
-    boulders: list[tuple[Positive, Positive, Positive]] | None = None
+    boulders: Annotated[list[tuple[Positive, Positive, Positive]], Field(min_length=1)] | None = (
+        None
+    )
     shape: Literal["sphere", "disc", "given", "ellipse"] = "sphere"
     elongation: Chance[Positive] | None = None
     moment_of_inertia: Positive | None = None
