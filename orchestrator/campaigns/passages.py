@@ -17,7 +17,7 @@ from rockshed.components.slope_rockfall.records import (
     UNFINISHED,
 )
 
-from ..metrics.percentiles import SHARES, Percentile, percentile, proportion, rank
+from ..metrics.percentiles import SHARES, Percentile, borne, percentile, proportion, rank
 from .campaign import Campaign, TrialRecords
 
 ENDS = {
@@ -109,9 +109,9 @@ class LinePassages:
         return proportion(self.count, self.trials)
 
     def percentiles(self, quantity: str) -> list[Percentile]:
-        """Return the percentiles of a quantity over the rocks that pass; none if no rock does."""
+        """Return those percentiles of a quantity that the number of rocks that pass bears."""
         values = self.values[quantity]
-        return [percentile(values, share) for share in SHARES] if self.count else []
+        return [percentile(values, share) for share in borne(SHARES, self.count)]
 
     def trial_of(self, quantity: str, share: float) -> int:
         """Return the number of the trial that has a percentile of a quantity."""

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..metrics.percentiles import SHARES, not_exceeded
+from ..metrics.percentiles import SHARES, needed, not_exceeded
 
 
 def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
@@ -17,7 +17,7 @@ def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
     Returns
     -------
     dict of str to array of float, shape (stations,)
-        ``max``, ``p50`` ... ``p99``; NaN where no rock came by.
+        ``max``, ``p50`` ... ``p99``; NaN where no rock came by, or too few for the percentile.
     """
     names = {f"p{100 * share:.0f}": share for share in SHARES}
     curves = {name: np.full(peaks.shape[1], np.nan) for name in ("max", *names)}
@@ -25,7 +25,8 @@ def envelope(peaks: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
         here = np.sort(peaks[peaks[:, i] >= 0.0, i])
         if len(here):
             curves["max"][i] = here[-1]
-            for name, share in names.items():
+        for name, share in names.items():
+            if needed(share) <= len(here):
                 curves[name][i] = not_exceeded(here, share)
     return curves
 

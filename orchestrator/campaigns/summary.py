@@ -69,7 +69,5 @@ def _of_quantity(prefix: str, line: LinePassages, quantity: PassageQuantity) -> 
         yield Metric(name, found.value, quantity.unit)
         if line.numbers:
             yield Metric(f"{name}.trial", line.trial_of(quantity.name, found.share))
-        if found.low is not None:
-            yield Metric(f"{name}.low", found.low, quantity.unit)
-        if found.high is not None:
-            yield Metric(f"{name}.high", found.high, quantity.unit)
+        yield Metric(f"{name}.low", found.low, quantity.unit)
+        yield Metric(f"{name}.high", found.high, quantity.unit)

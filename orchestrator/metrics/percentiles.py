@@ -4,6 +4,7 @@ Order statistics, without any assumed distribution.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,14 +26,34 @@ class Percentile:
         Part of the population.
     value : float
         Of the sample.
-    low, high : float or None
-        Bounds of the interval; None where the sample is too small for a bound.
+    low, high : float
+        Bounds of the interval.
     """
 
     share: float
     value: float
-    low: float | None
-    high: float | None
+    low: float
+    high: float
+
+
+def needed(share: float) -> int:
+    """Return the number of values of which a percentile has an interval with both bounds.
+
+    Between order statistics, no bound is there while all values may lie on one side of the
+    percentile with more than 2.5 % probability.
+
+    Parameters
+    ----------
+    share : float
+        Part of the population, between 0 and 1.
+    """
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    return math.ceil(math.log(tail) / math.log(max(share, 1.0 - share)))
+
+
+def borne(shares: Sequence[float], count: int) -> list[float]:
+    """Return the parts whose percentiles a sample of this size bears; the others are not told."""
+    return [share for share in shares if needed(share) <= count]
 
 
 def percentile(
@@ -46,7 +67,7 @@ def percentile(
     Parameters
     ----------
     ordered : array of float, shape (n,)
-        Values in ascending order.
+        Values in ascending order, as many as the percentile needs (:func:`needed`).
     share : float
         Part of the population.
     confidence : float
@@ -61,11 +82,7 @@ def percentile(
 
     test = quantile_test(ordered, p=share)
     low, high = test.confidence_interval(confidence)
-    return Percentile(share, float(not_exceeded(ordered, share)), _bound(low), _bound(high))
-
-
-def _bound(value: float) -> float | None:
-    return None if math.isnan(value) else float(value)
+    return Percentile(share, float(not_exceeded(ordered, share)), float(low), float(high))
 
 
 def not_exceeded(ordered: NDArray[np.floating], share: float) -> float:

@@ -155,20 +155,20 @@ def test_the_table_of_trials_has_units_and_agrees_with_the_summary(finished):
         < summary["line.road.energy.p90"]
         < summary["line.road.energy.p90.high"]
     )
-    assert "line.road.energy.p99.high" not in summary  # 200 trials do not bound it
+    assert "line.road.energy.p99" not in summary  # 200 trials do not bear it
     assert summary["barrier.fence.stopped"] == table["barrier"].to_pylist().count("fence") > 0
 
 
 def test_envelopes_lie_in_order(finished):
     table = pyarrow.parquet.read_table(finished[0] / "envelopes.parquet")
     for name in ("height", "speed", "energy"):
-        columns = [
-            table[f"{name}.{which}"].to_numpy() for which in ("p50", "p90", "p95", "p99", "max")
-        ]
+        columns = [table[f"{name}.{which}"].to_numpy() for which in ("p50", "p90", "p95", "max")]
+        assert np.isfinite(columns[-1]).sum() > 190
         for lower, upper in pairwise(columns):
-            here = np.isfinite(upper)
-            assert here.sum() > 190
+            here = np.isfinite(lower)
+            assert here.sum() > 100
             assert np.all(lower[here] <= upper[here])
+        assert np.isnan(table[f"{name}.p99"].to_numpy()).all()  # 200 rocks do not bear it
 
 
 def test_json_is_one_document_and_quiet_says_nothing(rockshed):

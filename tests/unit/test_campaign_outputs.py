@@ -36,8 +36,8 @@ def test_every_line_has_place_velocity_and_spin_of_each_trial(campaign):
 
 
 def test_the_trial_of_a_percentile_has_its_value(campaign):
-    number = campaign.metrics["line_upper_slope_energy_p95_trial"].value
-    value = campaign.metrics["line_upper_slope_energy_p95"].value
+    number = campaign.metrics["line_upper_slope_energy_p90_trial"].value
+    value = campaign.metrics["line_upper_slope_energy_p90"].value
     assert campaign.records.passages[number, 0, PASSAGE.kinetic] == value
 
 
@@ -103,9 +103,13 @@ def test_trials_that_are_not_finished_are_told_and_shown_where_they_are(campaign
 def test_percentiles_that_the_sample_does_not_bear_are_told(campaign):
     told = [note for note in campaign.notes if "do not bear a percentile" in note]
     assert any(
-        note.startswith("upper slope: 60 rocks pass") and "of 99 %:" in note for note in told
+        note.startswith("upper slope: 60 rocks pass") and "of 95 %, 99 %:" in note for note in told
     )
-    assert all("100 rocks" in note for note in told if "of 99 %:" in note)
+    assert all("from 72 rocks on" in note for note in told if "of 95 %, 99 %:" in note)
+    (line,) = [line for line in campaign.lines if line.name == "upper slope"]
+    assert [found.share for found in line.percentiles("energy")] == [0.5, 0.9]
+    assert "line.upper slope.energy.p95" not in campaign.metrics
+    assert np.isnan(campaign.envelopes["energy"]["p95"]).all()
 
 
 def test_results_without_the_velocity_at_the_lines_can_still_be_read(campaign, tmp_path):

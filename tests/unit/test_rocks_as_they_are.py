@@ -260,7 +260,7 @@ def test_what_no_rock_or_start_can_be_is_refused(parts, words):
         ("mass,radius,elongation\n3,1,2\n3,1,11\n", "line 3: boulder 2 has the elongation 11; 1"),
         ("mass (kg),radius (m)\n3,\n", "boulder 1 has no radius above 0"),
         ("mass (kg),radius (m)\n3,big\n", "line 2, column 3: 'big' is no finite number"),
-        ("mass (m),radius (m)\n3,1\n", "mass (m): must be a mass"),
+        ("mass (m),radius (m)\n3,1\n", "'mass (m)': must be a mass"),
         ("", "is empty"),
     ],
 )

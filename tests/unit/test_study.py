@@ -19,7 +19,6 @@ from rockshed.analyses.study.result import StudyResult
 from rockshed.analyses.study.statistics import (
     exceedance,
     mean_of,
-    needed,
     percentiles,
     ranks,
     sobol_table,
@@ -27,6 +26,7 @@ from rockshed.analyses.study.statistics import (
 )
 from rockshed.commands.vary import varied_of
 from rockshed.core.errors import InputRefused
+from rockshed.metrics.percentiles import needed
 from rockshed.runs.outcome import Outcome
 
 NAMES = {"force": MetricName("force", "N")}

@@ -361,12 +361,13 @@ def _density(kind: str, values: NDArray[np.float64], x: NDArray[np.float64]) -> 
 
 
 def _interval(axes: Axes, line: LinePassages, quantity: PassageQuantity) -> None:
-    found = next(p for p in line.percentiles(quantity.name) if p.share == 0.95)
-    low = found.value if found.low is None else found.low
-    high = found.value if found.high is None else found.high
+    """Draw a percentile and its interval, if the rocks that pass bear it."""
     scale = quantity.scale
-    axes.axvspan(low / scale, high / scale, color=GREY, alpha=0.35, linewidth=0.0)
-    axes.axvline(found.value / scale, color=GREY, linewidth=0.9)
+    for found in line.percentiles(quantity.name):
+        if found.share == 0.95:
+            low, high = found.low / scale, found.high / scale
+            axes.axvspan(low, high, color=GREY, alpha=0.35, linewidth=0.0)
+            axes.axvline(found.value / scale, color=GREY, linewidth=0.9)
 
 
 # --- ends ---

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from ...campaigns.passages import QUANTITIES, LinePassages, PassageQuantity
-from ...metrics.percentiles import CONFIDENCE, SHARES, Percentile, rank
+from ...metrics.percentiles import CONFIDENCE, SHARES, Percentile, needed
 from ...tables import Table, digits
 
 _TITLES = [f"{100 * share:.0f} %" for share in SHARES]
@@ -52,14 +52,14 @@ def _cells(line: LinePassages, quantity: PassageQuantity) -> Iterator[str]:
     yield quantity.shown
     yield _number(values.mean())
     yield _number(values.std(ddof=1)) if len(values) > 1 else ""
-    for found in line.percentiles(quantity.name):
-        yield _with_interval(found, quantity.scale)
+    by_share = {found.share: found for found in line.percentiles(quantity.name)}
+    for share in SHARES:
+        yield _with_interval(by_share[share], quantity.scale) if share in by_share else "-"
 
 
 def _with_interval(found: Percentile, scale: float) -> str:
-    low = "?" if found.low is None else _number(found.low / scale)
-    high = "?" if found.high is None else _number(found.high / scale)
-    return f"{_number(found.value / scale)} [{low}, {high}]"
+    value, low, high = (_number(x / scale) for x in (found.value, found.low, found.high))
+    return f"{value} [{low}, {high}]"
 
 
 def _number(value: float) -> str:
@@ -86,8 +86,7 @@ def notes(has_lines: bool, hypercube: bool) -> list[str]:
     if has_lines:
         sentences.append(
             "Percentiles are of the rocks that pass, at their first passage. [low, high]: "
-            f"{100.0 * CONFIDENCE:.0f} % confidence interval, from order statistics (?: the sample "
-            "is too small for a bound)."
+            f"{100.0 * CONFIDENCE:.0f} % confidence interval, from order statistics."
         )
     if hypercube:
         sentences.append(
@@ -98,7 +97,7 @@ def notes(has_lines: bool, hypercube: bool) -> list[str]:
 
 
 def thin_lines(lines: Sequence[LinePassages]) -> list[str]:
-    """Return the lines that so few rocks pass that a percentile of them is the largest value.
+    """Return the lines that so few rocks pass that a percentile of them has no interval.
 
     Parameters
     ----------
@@ -112,14 +111,11 @@ def thin_lines(lines: Sequence[LinePassages]) -> list[str]:
     """
     sentences = []
     for line in lines:
-        beyond = [
-            share for share in SHARES if line.count and rank(line.count, share) == line.count - 1
-        ]
+        beyond = [share for share in SHARES if 0 < line.count < needed(share)]
         if beyond:
-            needed = round(1.0 / (1.0 - beyond[0]))
             words = ", ".join(f"{100 * share:.0f} %" for share in beyond)
             sentences.append(
                 f"{line.name}: {line.count} rocks pass, which do not bear a percentile of "
-                f"{words}: it is the largest value; {needed} rocks are the fewest for the first."
+                f"{words}: its interval has two bounds from {needed(beyond[0])} rocks on."
             )
     return sentences

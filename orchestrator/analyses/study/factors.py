@@ -10,6 +10,7 @@ from ...core.errors import Problem
 from ...core.input_text import shown
 from ...core.system.system import Value
 from ...core.system.values import finite_number
+from ...input_files.form import LARGEST
 from ..frame import FloatArray
 
 _NEVER = 1e-12
@@ -312,9 +313,18 @@ def _meaning_faults(varied: Varied) -> Iterator[str]:
     content = (varied.low, varied.high) if isinstance(varied, Interval) else varied.parameters
     if any(isinstance(value, str) for value in content):
         yield "needs numbers, and no words"
+    elif any(abs(float(value)) > LARGEST for value in content):
+        yield f"has a number beyond {LARGEST:g}"
     elif isinstance(varied, Interval):
         fault = _uniform_fault(float(varied.low), float(varied.high))
         yield from filter(None, [fault])
     else:
         fault = _KINDS[varied.kind].fault(*map(float, varied.parameters))
-        yield from filter(None, [fault])
+        yield from filter(None, [fault or _reach_fault(varied)])
+
+
+def _reach_fault(varied: RandomValue) -> str:
+    """Return a fault where a distribution reaches values that nothing has."""
+    with np.errstate(over="ignore"):
+        ends = _frozen(varied).ppf([_NEVER, 1.0 - _NEVER])
+    return "" if np.all(np.abs(ends) <= LARGEST) else f"reaches beyond {LARGEST:g}"

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from ...core.results.metric import Metric
+from ...metrics.percentiles import borne
 from ...tables import Table
 from ..frame import Result, shared_folder
 from .designs import SAMPLED, SOBOL
 from .files import NAMES, run_table, write_files
 from .records import StudyRecords, values_of
-from .statistics import FEWEST_FOR_SOBOL, borne, mean_of, percentiles
+from .statistics import FEWEST_FOR_SOBOL, mean_of, percentiles
 from .tables import all_tables, notes
 
 _MOST_TEXTS = 5

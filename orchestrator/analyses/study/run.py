@@ -13,6 +13,7 @@ from ...core.input_text import shown
 from ...core.results.metric import identifier
 from ...core.system.names import nearest
 from ...core.system.system import Value
+from ...metrics.percentiles import borne, needed
 from ...runs.batch import INTERRUPTED, Outcome, Task, carry_out, orders_of
 from ...runs.building import Note, silent
 from ...runs.cluster import Certificates
@@ -29,7 +30,7 @@ from .factors import Factor, Interval, Levels, RandomValue, Varied, in_si
 from .headline import headline_metrics
 from .records import MetricName, StudyRecords, StudyRun, metrics_by_identifier
 from .result import StudyResult
-from .statistics import SHARES, needed
+from .statistics import SHARES
 from .tables import level_text
 
 EXTREME = 1e-3
@@ -354,8 +355,7 @@ def _shares(percentiles: Sequence[float] | None, plan: _Plan) -> list[float]:
         There is no such percentile, the design has no sample, or it does not bear them.
     """
     if percentiles is None:
-        size = _sample_size(plan)
-        return [share for share in SHARES if needed(share) <= size]
+        return borne(SHARES, _sample_size(plan))
     problems = []
     for percent in percentiles:
         where = f"percentiles {percent:g}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...metrics.percentiles import CONFIDENCE, Percentile, percentile
+from ...metrics.percentiles import CONFIDENCE, Percentile, borne, percentile
 from ..frame import FloatArray
 from .designs import FIRST, MIXED, SECOND
 from .factors import Factor
@@ -82,26 +82,6 @@ def mean_of(values: FloatArray) -> Mean:
 
 
 # --- percentiles ---
-
-
-def needed(share: float) -> int:
-    """Return the number of values of which a percentile has an interval with both bounds.
-
-    Between order statistics, no bound is there while all values may lie on one side of the
-    percentile with more than 2.5 % probability.
-
-    Parameters
-    ----------
-    share : float
-        Part of the population, between 0 and 1.
-    """
-    tail = 0.5 * (1.0 - CONFIDENCE)
-    return math.ceil(math.log(tail) / math.log(max(share, 1.0 - share)))
-
-
-def borne(shares: Sequence[float], count: int) -> list[float]:
-    """Return the parts whose percentiles a sample of this size bears."""
-    return [share for share in shares if needed(share) <= count]
 
 
 def percentiles(values: FloatArray, shares: Sequence[float]) -> list[Percentile]:

@@ -117,11 +117,9 @@ def percentile_table(
 
 def _percentile_text(found: Percentile | None, scale: float) -> str:
     if found is None:
-        return ""
-    low, high = (
-        "?" if bound is None else digits(bound / scale) for bound in (found.low, found.high)
-    )
-    return f"{digits(found.value / scale)} [{low}, {high}]"
+        return "-"
+    value, low, high = (digits(x / scale) for x in (found.value, found.low, found.high))
+    return f"{value} [{low}, {high}]"
 
 
 def spread_table(records: StudyRecords, metrics: Sequence[str]) -> Table:
