@@ -40,6 +40,7 @@ CONTENTS = {
         "python",
         "command-line",
         "systems",
+        "ssp",
         "results",
         "checkpoints",
         "studies",

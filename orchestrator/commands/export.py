@@ -1,4 +1,4 @@
-"""The command ``rockshed export``: a system as files, or a run in formats of other programs."""
+"""The command ``rockshed export``: a system as files or SSP, or a run in other formats."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import InputRefused, Problem
-from ..runs.request import Request
+from ..runs.request import AUTO, Request
 from ..runs.run import read_run
 from ..runs.system import System
 from .analysis import options_named
@@ -18,13 +18,32 @@ from .screen import opened
 _Target = Annotated[
     str,
     typer.Argument(
-        metavar="CASE|FILE.toml|RUN",
-        help="A case of `rockshed list`, a project or a system file; with --format the folder "
-        "of a run.",
+        metavar="CASE|FILE.toml|SSP|RUN",
+        help="A case of `rockshed list`, a project, a system file or an SSP; with --format the "
+        "folder of a run.",
     ),
 ]
 _Folder = Annotated[
-    Path | None, typer.Argument(metavar="[FOLDER]", help="Of a system: a new or empty folder.")
+    Path | None,
+    typer.Argument(
+        metavar="[FOLDER|NAME.ssp]", help="Of a system: a new or empty folder, or a new SSP."
+    ),
+]
+_Ssp = Annotated[
+    str | None,
+    typer.Option(
+        "--ssp",
+        metavar="1.0|2.0",
+        help="Version of an SSP; default 1.0, of a system that was an SSP that of it.",
+    ),
+]
+_Runtime = Annotated[
+    str,
+    typer.Option(
+        metavar="auto|native|python",
+        help="FMUs of a case: native, with Python inside, or native if they are there and up to "
+        "date.",
+    ),
 ]
 _Format = Annotated[
     str | None,
@@ -48,8 +67,8 @@ _MOST_TOLD = 3
 """Files of an export that are listed; of more, the first names the others."""
 _FAULT_OF_SYSTEM = Problem(
     "export",
-    "a system goes into a new folder, which stands behind its name",
-    "rockshed export CASE FOLDER; of a run: rockshed export RUN --format csv",
+    "a system goes into a new folder or SSP, which stands behind its name",
+    "rockshed export CASE FOLDER or CASE NAME.ssp; of a run: rockshed export RUN --format csv",
 )
 
 
@@ -62,12 +81,16 @@ def command(
     size: CaseSizes = None,
     coupling: CouplingScheme = None,
     model: ModelName = None,
+    ssp: _Ssp = None,
+    runtime: _Runtime = AUTO,
 ) -> None:
-    """Write a system as TOML with its FMUs, or a run in another format."""
+    """Write a system with its FMUs as TOML or SSP, or a run in another format."""
     problems: list[Problem] = []
     with opened() as screen:
         if format_ is not None:
-            of_systems = {"--set": set_, "--size": size, "--coupling": coupling, "--model": model}
+            of_systems = {"--set": set_, "--size": size, "--coupling": coupling}
+            of_systems |= {"--model": model, "--ssp": ssp}
+            of_systems |= {"--runtime": runtime if runtime != AUTO else None}
             _check_run(folder, of_systems)
             with options_named(("format", "output", "state_interval")):
                 files = read_run(Path(target)).export(format_, output)
@@ -78,10 +101,12 @@ def command(
             raise InputRefused([_FAULT_OF_SYSTEM])
         values = values_of("--set", set_ or [], problems)
         sizes = sizes_of(size or [], problems)
-        request = Request(target, values, sizes, coupling, model=model)
-        with options_named(("values", "sizes", "coupling", "model"), target):
+        request = Request(target, values, sizes, coupling, model=model, runtime=runtime)
+        names = ("values", "sizes", "coupling", "model", "ssp", "runtime", "exchange_step")
+        with options_named((*names, "stop_time"), target):
             system = System.prepared(request, screen.note, problems)
-        screen.say(str(system.save(folder)))
+            made = system.save(folder, ssp=ssp)
+        screen.say(str(made))
 
 
 def _check_run(folder: Path | None, of_systems: Mapping[str, object]) -> None:

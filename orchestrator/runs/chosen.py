@@ -11,6 +11,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.system.system import Value
 from ..input_files.form import read_toml
 from ..sites.shed.preparation import is_field, is_project, prepare
+from ..ssp.package import is_ssp
 from .request import Request
 from .target import wrong_target
 
@@ -63,7 +64,7 @@ def choose(request: Request, problems: list[Problem]) -> Chosen:
     if not request.is_file:
         found = case(request.target)
         return Chosen(found, request, {"case": found.name})
-    if is_project_file(request.target):
+    if not is_ssp(request.target) and is_project_file(request.target):
         return _of_project(request, Path(request.target), problems)
     return Chosen(None, request, {"system_file": request.target})
 

@@ -1,4 +1,4 @@
-"""Systems as files: the TOML that ``rockshed run`` takes, alone or in a folder with its FMUs."""
+"""Systems as files: the TOML that ``rockshed run`` takes, alone or with its FMUs, and SSPs."""
 
 import shutil
 from collections.abc import Mapping
@@ -8,10 +8,15 @@ from typing import Any
 import tomli_w
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.fmu.description import Port
 from ..core.fmu.slave import Source
+from ..core.run import sources_of
+from ..core.system.plan import Plan
+from ..core.system.planning import make_plan
 from ..core.system.system import Connection, SystemSpec
-
-SYSTEM = "system.toml"
+from ..temporary import TemporaryFolder
+from .job import Job
+from .target import SYSTEM
 
 
 def system_text(system: SystemSpec) -> str:
@@ -78,6 +83,62 @@ def export_system(
         text = system_text(system.model_copy(update={"components": specs}))
         (folder / SYSTEM).write_text(text, encoding="utf-8")
     return folder / SYSTEM
+
+
+def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
+    """Write a system as an SSP; one that was read from an SSP keeps everything that is in it.
+
+    Parameters
+    ----------
+    job : Job
+        The system.
+    file : Path
+        A new file.
+    version : str, optional
+        ``1.0`` or ``2.0``, by default that of the SSP that it was read from, else 1.0.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputRefused
+        There is such a file, it cannot be written, or the version is unknown.
+    """
+    from ..ssp.documents import VERSIONS
+    from ..ssp.rewriting import rewrite_ssp
+    from ..ssp.writing import write_ssp
+
+    if version not in (None, *VERSIONS):
+        choice = f"choose one of {', '.join(VERSIONS)}"
+        raise InputRefused([Problem("ssp", f"{version!r} is unknown", choice)])
+    if file.exists():  # before FMUs are made
+        raise InputRefused([Problem(str(file), "is there already, and stays", "name a new file")])
+    plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
+    if job.ssp is not None:
+        rewrite_ssp(job.ssp, plan, _changes(job.ssp.system, plan), file, version)
+        return file
+    with TemporaryFolder() as folder:
+        made = {
+            name: folder / _store(name, spec.fmu, folder, job.sources)
+            for name, spec in job.system.components.items()
+        }
+        write_ssp(plan, made, file, version or VERSIONS[0])
+    return file
+
+
+def _changes(before: SystemSpec, plan: Plan) -> list[tuple[str, Port, float | str]]:
+    """Return the values of a plan that are other than those of a system."""
+    known = make_plan(before, sources_of(before)).starts
+    told = {name: {port.name: value for port, value in known[name]} for name in known}
+    return [
+        (name, port, value)
+        for name, starts in plan.starts.items()
+        for port, value in starts
+        if told[name].get(port.name) != value
+    ]
 
 
 def _store(name: str, fmu: str, folder: Path, sources: Mapping[str, Source]) -> str:

@@ -17,6 +17,7 @@ from rockshed.fmus.places import fmu_folder, native_is_fresh
 
 from ..core.loop import machine_code
 from ..core.results.run_folder import unfinished
+from ..ssp.package import UNPACKED
 from ..tables import Table
 from ..temporary import left_behind
 from ..versions import versions
@@ -25,6 +26,7 @@ _STAMP = re.compile(r"[0-9a-f]{16}")
 _OBJECT = re.compile(rf"\w+-({'|'.join(PLATFORMS)})-[0-9a-f]{{24}}\.o")
 _LOOP = re.compile(r"loop-[0-9a-f]{24}\.o")
 _UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.tmp")
+_OF_SSP = "files of SSPs"
 _PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "fmpy", "pythonfmu", "matplotlib", "typer")
 
 
@@ -82,6 +84,10 @@ def _kept(entry: Path, current: set[str]) -> Iterator[Kept]:
         yield Kept(entry, "exchange loop", entry == machine_code.kept_file())
     elif entry.is_file() and _UNFINISHED.fullmatch(entry.name):
         yield Kept(entry, "unfinished file", False)
+    elif entry.is_dir() and entry.name == UNPACKED:
+        for file in sorted(entry.rglob("*")):
+            if file.is_file():
+                yield Kept(file, _OF_SSP, True)
 
 
 def cache_table() -> Table:
@@ -96,11 +102,16 @@ def cache_table() -> Table:
     found = kept_files()
     for kind in dict.fromkeys(kept.kind for kept in found):
         members = [kept for kept in found if kept.kind == kind]
-        damaged = sum(kept.is_current and not is_sound(kept.file) for kept in members)
+        damaged = sum(kept.is_current and not _is_sound(kept) for kept in members)
         old = sum(not kept.is_current for kept in members)
         size = _megabytes(_size(kept.file) for kept in members)
         table.add(kind, str(len(members)), size, str(damaged), str(old))
     return table
+
+
+def _is_sound(kept: Kept) -> bool:
+    """Tell whether a file is as it was written; those of SSPs are not told from others."""
+    return kept.kind == _OF_SSP or is_sound(kept.file)
 
 
 def place_table() -> Table:
@@ -231,7 +242,18 @@ def clean(found: Sequence[Kept]) -> int:
     for folder in {kept.file.parent for kept in found if _STAMP.fullmatch(kept.file.parent.name)}:
         with suppress(OSError):  # something else lies there
             folder.rmdir()
+    _remove_empty({kept.file.parent for kept in found if kept.kind == _OF_SSP})
     return freed
+
+
+def _remove_empty(folders: Iterable[Path]) -> None:
+    """Remove folders of SSPs in which nothing is left, and those around them."""
+    for folder in folders:
+        for place in (folder, *folder.parents):
+            if place.name == UNPACKED:
+                break
+            with suppress(OSError):
+                place.rmdir()
 
 
 def _size(file: Path) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.ports import Kind, Variable
@@ -37,9 +37,13 @@ from ..core.system.system import (
 from ..input_files.form import read_toml
 from ..input_files.quantities import doubt, in_si
 from ..metrics.filtering import LOAD_CELL_ROWS
+from ..ssp.package import is_ssp
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .chosen import choose
 from .request import AUTO, Request
+
+if TYPE_CHECKING:
+    from ..ssp.reading import Imported
 
 __all__ = ["Job", "Request", "plan_problems", "prepare"]
 
@@ -60,6 +64,8 @@ class Job:
         For the provenance of the run: case, sizes, request, what differs from the case, references.
     models : mapping of str to str
         Components of the catalogue by component of a case; those of a system file are not known.
+    ssp : Imported or None
+        The SSP that the system comes from.
     """
 
     name: str
@@ -67,6 +73,7 @@ class Job:
     sources: Mapping[str, Source]
     facts: Mapping[str, Any]
     models: Mapping[str, str] = field(default_factory=dict)
+    ssp: "Imported | None" = None
 
     @property
     def components(self) -> frozenset[str]:
@@ -233,7 +240,7 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
-    if Path(request.target).is_file():
+    if not is_ssp(request.target) and Path(request.target).is_file():
         read_toml(Path(request.target))  # what it is for is not known of one that is no TOML
     for argument, remedy, asked in (
         ("sizes", "build its FMUs in these sizes", request.sizes),
@@ -246,11 +253,23 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
             problems.append(Problem(argument, "is for cases only", remedy))
     if problems:
         raise InputRefused(problems)
-    facts = {
+    facts: dict[str, Any] = {
         "differences": {**request.values, **request.options},
     }
+    if is_ssp(request.target):
+        return _from_ssp(request, facts)
     system = _loaded(Path(request.target))
     return Job(system.name, system, {}, facts)
+
+
+def _from_ssp(request: Request, facts: dict[str, Any]) -> Job:
+    """Read the system of an SSP; its exchange step may be given by the request alone."""
+    from ..ssp.reading import read_ssp  # lxml, which systems of other kinds do not need
+
+    read = read_ssp(Path(request.target), request.options)
+    if read.warnings:
+        facts["warnings"] = list(read.warnings)
+    return Job(read.system.name, read.system, {}, facts, ssp=read)
 
 
 def _loaded(file: Path) -> SystemSpec:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..core.system.system import Value
+from ..ssp.package import is_ssp
 
 AUTO = "auto"
 """In the place of a runtime: native FMUs where all are there and up to date, else Python."""
@@ -38,7 +39,7 @@ class Request:
     Attributes
     ----------
     target : str
-        Name of a case, or path of a project or system file (TOML).
+        Name of a case, or path of a project or system file (TOML) or of an SSP.
     values : mapping of str to Value
         By ``component.parameter`` or by the name of a shared value (SI units, or texts with a
         unit); of a project also by the name of a field, ``cushion.thickness``.
@@ -76,6 +77,8 @@ class Request:
         """Whether the target is meant as a file and not as the name of a case."""
         if self.project is not None:
             return False
+        if is_ssp(self.target):
+            return True
         return self.target.lower().endswith(".toml") or "/" in self.target or "\\" in self.target
 
     def as_data(self) -> dict[str, Any]:

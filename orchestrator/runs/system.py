@@ -21,13 +21,15 @@ from ..core.system.system import (
     system_from,
     with_values,
 )
+from ..ssp.package import is_ssp
 from ..tables import Table
 from .building import Note, silent
-from .export import SYSTEM, export_system
+from .export import export_ssp, export_system
 from .inspection import Overview, describe_system
 from .job import Job, plan_problems, prepare
 from .request import Request, plain
 from .subsystem import Subsystem, component_of, whole_sizes
+from .target import SYSTEM
 
 _OF_REQUEST = ("load_cell", "runtime", "in_process")
 """Options of a case that are no keys of its system."""
@@ -53,13 +55,14 @@ class System:
 
     @classmethod
     def load(cls, path: str | Path) -> "System":
-        """Read a system file.
+        """Read a system file, or an SSP.
 
         Parameters
         ----------
         path : str or Path
             A TOML file, as ``rockshed export`` writes one, or a folder that :meth:`save` wrote.
-            Relative paths of FMUs count from the folder of the file.
+            Relative paths of FMUs count from the folder of the file. Or an SSP: its archive
+            (``.ssp``), its description (``.ssd``) or its folder.
 
         Returns
         -------
@@ -72,9 +75,10 @@ class System:
             There is no such file, or its content is not in order; with every reason.
         """
         file = Path(path)
-        if file.is_dir():
+        if file.is_dir() and not is_ssp(file):
             file = file / SYSTEM
-        return cls.prepared(Request(str(file if file.suffix == ".toml" else file.absolute())))
+        is_named = file.suffix == ".toml" or is_ssp(file)
+        return cls.prepared(Request(str(file if is_named else file.absolute())))
 
     @classmethod
     def prepared(
@@ -385,7 +389,7 @@ class System:
         facts = dict(self.job.facts)
         if "references" in facts:
             facts["references"] = {"remarks": ["not compared: the system was put together anew"]}
-        return System(replace(self.job, system=self._checked(entries), facts=facts))
+        return System(replace(self.job, system=self._checked(entries), facts=facts, ssp=None))
 
     def _with(self, spec: SystemSpec, differing: Mapping[str, Any]) -> "System":
         """Return the system with this content; provenance names what differs."""
@@ -452,13 +456,17 @@ class System:
         self.refuse_empty()
         return describe_system(self.job)
 
-    def save(self, folder: str | Path) -> Path:
-        """Write the system as ``system.toml`` with its FMUs.
+    def save(self, place: str | Path, *, ssp: str | None = None) -> Path:
+        """Write the system with its FMUs: as ``system.toml`` in a folder, or as an SSP.
 
         Parameters
         ----------
-        folder : str or Path
-            A new or empty folder. Components without FMUs become FMUs with Python inside.
+        place : str or Path
+            A new or empty folder, or a new file whose name ends in ``.ssp``. Components without
+            FMUs become FMUs with Python inside.
+        ssp : str, optional
+            Version of an SSP, ``1.0`` or ``2.0``; by default that of the SSP that the system was
+            read from, else 1.0.
 
         Returns
         -------
@@ -468,10 +476,16 @@ class System:
         Raises
         ------
         InputRefused
-            There is no component, or the folder holds something or cannot be written.
+            There is no component, or the place holds something or cannot be written.
         """
         self.refuse_empty()
-        return export_system(self.spec, Path(folder), self.job.sources)
+        path = Path(place)
+        if path.suffix.lower() == ".ssp":
+            return export_ssp(self.job, path, ssp)
+        if ssp is not None:
+            remedy = "name a file that ends in .ssp"
+            raise InputRefused([Problem(str(place), "is to be an SSP, and is a folder", remedy)])
+        return export_system(self.spec, path, self.job.sources)
 
     def __repr__(self) -> str:
         parts = ", ".join(self.spec.components) or "no component"

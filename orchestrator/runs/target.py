@@ -3,10 +3,12 @@
 from pathlib import Path
 
 from ..core.errors import Problem
-from .export import SYSTEM
+from ..ssp.package import is_ssp
 from .request import Request
 
-_SYSTEMS = "a run takes a case of `rockshed list` or a system file (TOML)"
+SYSTEM = "system.toml"
+"""Name of the file of a system in a folder that was made for it."""
+_SYSTEMS = "a run takes a case of `rockshed list`, a system file (TOML) or an SSP"
 
 
 def is_fmu(target: str) -> bool:
@@ -34,9 +36,8 @@ def wrong_target(target: str) -> Problem | None:
             "`rockshed export` writes one"
         )
         return Problem(target, f"is an FMU, and {_SYSTEMS}", remedy)
-    if path.suffix.lower() in (".ssp", ".ssd"):
-        what = f"is a system structure (SSP), which is not read; {_SYSTEMS}"
-        return Problem(target, what, "write its components and connections into a system file")
+    if is_ssp(target):
+        return None
     if path.is_dir():
         return Problem(target, f"is a folder; {_SYSTEMS}", _remedy_in(path))
     if path.is_file() and not Request(target).is_file:

@@ -110,12 +110,15 @@ def test_a_size_in_a_system_file_is_told_to_be_fixed_in_the_fmu():
 @pytest.mark.parametrize(
     ("target", "said"),
     [
-        (".", ".: is a folder; a run takes a case of `rockshed list` or a system file (TOML)"),
+        (
+            ".",
+            ".: is a folder; a run takes a case of `rockshed list`, a system file (TOML) or an SSP",
+        ),
         ("exported", "→ name the file exported/system.toml"),
         ("results", "→ it holds the results of a run: `rockshed plot results` draws them"),
         ("some/", "some/: is a folder; a run takes"),
         ("A.FMU", "A.FMU: is an FMU, and a run takes a case"),
-        ("plant.ssp", "plant.ssp: is a system structure (SSP), which is not read"),
+        ("plant.ssp", "plant.ssp: there is no such file"),
         ("notes.txt", "notes.txt: is a file whose name does not end in .toml"),
         ("lab-impakt", "→ did you mean lab-impact"),
     ],

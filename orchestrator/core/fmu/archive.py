@@ -1,4 +1,4 @@
-"""The zip archive of an FMU, also one that was packed on Windows or by hand."""
+"""The zip archive of an FMU or of an SSP, also one that was packed on Windows or by hand."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ from ...files import naming
 from ..input_text import shown
 
 MOST_UNPACKED = 2 << 30
-"""Largest size (bytes) of an unpacked FMU."""
+"""Largest size (bytes) of an unpacked archive."""
 MOST_DESCRIPTION = 256 << 20
 """Largest size (bytes) of a description in it."""
 MOST_MEMBERS = 100_000
@@ -64,25 +64,30 @@ class Archive:
     Parameters
     ----------
     file : Path or binary file
-        Of the FMU.
+        Of the archive.
+    kind : str
+        What it is to be, with its article, for messages.
 
     Raises
     ------
     ArchiveError
-        It is no zip archive, or has a member that would lie outside the FMU.
+        It is no zip archive, or has a member that is a link or would lie outside of it.
     """
 
-    def __init__(self, file: Path | IO[bytes]) -> None:
+    def __init__(self, file: Path | IO[bytes], kind: str = "an FMU") -> None:
         try:
             self._zip = zipfile.ZipFile(file)
         except _UNREADABLE as error:
             if isinstance(error, OSError) and error.filename is not None:  # it cannot be opened
                 raise
-            raise ArchiveError("is not an FMU: not a zip archive") from error
+            raise ArchiveError(f"is not {kind}: not a zip archive") from error
         listed = self._zip.infolist()
         told = _number_told(file)
         if told not in (_UNTOLD, len(listed)):
             raise ArchiveError(f"is damaged: it names {len(listed)} of its {told} files")
+        for info in listed:
+            if stat.S_ISLNK(info.external_attr >> 16):
+                raise ArchiveError(f"has a member that is a link: {shown(info.filename)}")
         self._members = {_clean(info.filename): info for info in listed}
 
     def __enter__(self) -> "Archive":
