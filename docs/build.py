@@ -45,6 +45,7 @@ CONTENTS = {
         "checkpoints",
         "studies",
         "report",
+        "check",
         "fmus",
         "security",
         "limits",
@@ -211,6 +212,7 @@ def appendix(source: str) -> str:
     """Return the part of a page that is made, below the text of its file."""
     made = {
         "README.md": contents,
+        "docs/check.md": probes,
         "docs/command-line.md": commands,
         "docs/glossary.md": old_names,
     }
@@ -227,6 +229,14 @@ def contents() -> str:
         lines = "\n".join(pages)
         parts.append(f"```{{toctree}}\n:hidden:\n:caption: {chapter}\n\n{lines}\n```\n")
     return "\n".join(parts)
+
+
+def probes() -> str:
+    """Return the table of what `rockshed check` looks at."""
+    from rockshed.checking.table import PROBES
+
+    rows = [f"| `{probe.name}` | {probe.about} |" for probe in PROBES]
+    return "\n".join(["\n## All probes\n", "| probe | what it looks at |", "|---|---|", *rows, ""])
 
 
 def variables(folder: str) -> str:

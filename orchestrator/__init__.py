@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .analyses.rockfall.run import rockfall
     from .analyses.study.factors import Interval, RandomValue
     from .analyses.study.run import StudyFailed, study
+    from .checking.check import check_fmu
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunDoubted, RunFailed, UnknownName
     from .reports.writing import report
@@ -54,6 +55,7 @@ _HOMES = {
     "build_fmu": "runs.building",
     "calibrate": "analyses.calibration.run",
     "calibrate_rockfall": "analyses.back_analysis.run",
+    "check_fmu": "checking.check",
     "converge": "analyses.convergence.run",
     "case": "runs.system",
     "component": "runs.subsystem",
@@ -92,6 +94,7 @@ __all__ = [
     "calibrate",
     "calibrate_rockfall",
     "case",
+    "check_fmu",
     "component",
     "converge",
     "formulas",

@@ -43,6 +43,7 @@ _OPTIONS = {
     "sizes": "--size",
     "folder": "--output-dir",
     "metrics": "--metric",
+    "probes": "--probe",
     "platforms": "--platform",
     "certificates": "--tls-ca, --tls-cert and --tls-key",
 }

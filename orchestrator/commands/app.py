@@ -22,6 +22,7 @@ COMMANDS = {
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU, a component or a system: ports, values, connections.",
+    "check": "Check any FMU: description, life cycle, steps, states, wrong values.",
     "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
     "resume": "Let a run that was ended go on from its last checkpoints.",
