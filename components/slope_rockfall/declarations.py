@@ -330,6 +330,14 @@ LAYOUT = Layout(
         param("receiver.bottom", "lower side of the receiver", 0.0, "m"),
         param("receiver.top", "upper side of the receiver", 0.0, "m"),
         param(
+            "frame.x",
+            "x, in the frame of the profile, of the origin from which position.x is put out: where "
+            "other components have theirs",
+            0.0,
+            "m",
+        ),
+        param("frame.y", "the same for position.y, upwards", 0.0, "m"),
+        param(
             "lead_time",
             "begin so long before the rock enters the receiver for the first time, or at the "
             "start of the trial if that is later; 1e30: at the start of the trial",
@@ -423,11 +431,11 @@ LAYOUT = Layout(
         # outputs
         out(
             "position.x",
-            "position of the centre, to the right",
+            "position of the centre, to the right from frame.x",
             "m",
             role=Role.STRIKING_PLACE,
         ),
-        out("position.y", "position of the centre, upwards", "m"),
+        out("position.y", "position of the centre, upwards from frame.y", "m"),
         out("angle", "angle, counter-clockwise", "rad"),
         out("velocity.x", "velocity, to the right", "m/s"),
         out("velocity.y", "velocity, upwards", "m/s"),
@@ -467,7 +475,7 @@ LAYOUT = Layout(
         ),
         out(
             "energy.gravity",
-            "potential energy in gravity, zero at y = 0",
+            "potential energy in gravity, zero at position.y = 0",
             "J",
             initial_dependencies=None,
             role=Role.GRAVITY_ENERGY,

@@ -375,34 +375,39 @@ def publish(time, w, x, k):
     """
     constants, b = world(w, x, k), view(x, k, A.body)
     span = max(0.0, time - b[BODY.time])
-    w[V.position_x] = b[BODY.x] + span * (b[BODY.vx] + 0.5 * span * b[BODY.ax])
-    w[V.position_y] = b[BODY.y] + span * (b[BODY.vy] + 0.5 * span * b[BODY.ay])
+    place = (
+        b[BODY.x] + span * (b[BODY.vx] + 0.5 * span * b[BODY.ax]),
+        b[BODY.y] + span * (b[BODY.vy] + 0.5 * span * b[BODY.ay]),
+    )
+    w[V.position_x], w[V.position_y] = place[0] - w[V.frame_x], place[1] - w[V.frame_y]
     w[V.angle] = b[BODY.angle] + span * (b[BODY.omega] + 0.5 * span * b[BODY.alpha])
     w[V.velocity_x] = b[BODY.vx] + span * b[BODY.ax]
     w[V.velocity_y] = b[BODY.vy] + span * b[BODY.ay]
     w[V.angular_velocity] = b[BODY.omega] + span * b[BODY.alpha]
-    publish_place(constants, b, w, x, k)
+    publish_place(constants, place, b, w, x, k)
     publish_energies(constants, span, b, w)
 
 
 @kernel
-def publish_place(world, b, w, x, k):
+def publish_place(world, place, b, w, x, k):
     """Publish mode, cell, height, next event and hand-over.
 
     Parameters
     ----------
     world : World
         Constants of the trial.
+    place : tuple of float
+        x and y (m) of the centre in the frame of the profile.
     b : ndarray of float64, shape (len(BODY),)
         The rock at its last event.
     w, x, k : ndarray
         Variables, state and integers of the instance.
     """
     origin = view(x, k, A.clock)[CLOCK.origin]
-    j = line_below(w[V.position_x], world.lines, world.path)
+    j = line_below(place[0], world.lines, world.path)
     w[V.mode] = b[BODY.mode]
     w[V.cell] = world.path[j * len(PATH) + PATH.cell] + 1.0
-    w[V.height] = height_above(j, w[V.position_x], w[V.position_y], world.path)
+    w[V.height] = height_above(j, place[0], place[1], world.path)
     w[V.next_event_time] = min(NEVER, origin + grid_after(b[BODY.next_time]))
     w[V.impacts], w[V.handovers] = b[BODY.impacts], b[BODY.handovers]
     w[V.received] = 1.0 if b[BODY.mode] == RECEIVED else 0.0

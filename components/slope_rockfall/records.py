@@ -31,3 +31,7 @@ Knot = namedtuple("Knot", "time x y angle vx vy omega ax ay alpha mode cell")
 KNOT = Knot(*range(12))
 """Columns of an event on a trajectory: the motion just after it, with the accelerations (m/s2,
 rad/s2) that last until the next one, the mode of motion, and the number of the cell, from 1."""
+Arrival = namedtuple("Arrival", "arrived time x y vx vy omega kinetic")
+ARRIVAL = Arrival(*range(8))
+"""Columns of the first hand-over of a trial: 1, or 0 of a trial that ends before; time (s), place
+of the centre (m), velocity (m/s), angular velocity (rad/s), kinetic energy (J)."""

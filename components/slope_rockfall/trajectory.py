@@ -13,6 +13,7 @@ from .events import begin, happen, world
 from .flight import move, passing
 from .geometry import build_path, height_above, line_below
 from .records import (
+    ARRIVAL,
     BARRIER,
     BELOW,
     KNOT,
@@ -598,6 +599,55 @@ def note_knot(world, b, knot):
     knot[KNOT.mode] = b[BODY.mode]
     j = line_below(b[BODY.x], world.lines, world.path)
     knot[KNOT.cell] = world.path[j * len(PATH) + PATH.cell] + 1.0
+
+
+# --- the way to the receiver ---
+
+
+@kernel
+def arrival(seed, number, left, right, lines, barriers, w, x, k, body, arrived):
+    """Compute one trial up to its first hand-over.
+
+    Parameters are those of :func:`trial`. What happens until then has the bits of the whole trial,
+    and of the FMU.
+
+    Parameters
+    ----------
+    arrived : ndarray of float64, shape (len(ARRIVAL),)
+        Overwritten; all zero where the trial ends before.
+    """
+    arrived[:] = 0.0
+    constants, source = world(w, x, k), stream(seed, number)
+    if not begin(constants, seed, number, w, body):
+        return
+    for _ in range(MOST_EVENTS):
+        if body[BODY.handovers] > 0.0:
+            arrived[ARRIVAL.arrived], arrived[ARRIVAL.time] = 1.0, body[BODY.time]
+            arrived[ARRIVAL.x], arrived[ARRIVAL.y] = body[BODY.x], body[BODY.y]
+            arrived[ARRIVAL.vx], arrived[ARRIVAL.vy] = body[BODY.vx], body[BODY.vy]
+            arrived[ARRIVAL.omega] = body[BODY.omega]
+            square = body[BODY.vx] * body[BODY.vx] + body[BODY.vy] * body[BODY.vy]
+            arrived[ARRIVAL.kinetic] = energy(constants, square, body[BODY.omega])
+            return
+        wait, end = stretch(left, right, body)
+        _, barrier = first_stop(constants, lines, barriers, wait, body)
+        if barrier >= 0 or end != UNFINISHED:
+            return
+        happen(constants, source, body)
+
+
+@released
+def arrivals(seed, first, left, right, lines, barriers, rocks, w, x, k, body, arrived):
+    """Compute the first hand-overs of trials number ``first`` on.
+
+    Parameters are those of :func:`arrival`, but ``arrived`` has a row for each trial; ``rocks`` is
+    that of :func:`trials`.
+    """
+    for i in range(arrived.shape[0]):
+        if rocks.shape[0] > 0:
+            set_rock(rocks[i], w, x, k)
+        where = (left, right, lines, barriers)
+        arrival(seed, first + i, *where, w, x, k, body, arrived[i])
 
 
 # --- campaigns ---

@@ -5,6 +5,7 @@ from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache, partial
+from pathlib import Path
 from typing import Any, cast
 
 from rockshed.components.catalogue import component
@@ -67,6 +68,8 @@ class Case:
         For the provenance of its runs: ``design``, ``project``.
     warnings : tuple of str
         Of its values.
+    files : callable or None
+        Writes further files into the folder of a run.
     """
 
     name: str
@@ -85,6 +88,7 @@ class Case:
     described: Callable[[SystemSpec, SystemSpec, ComponentSizes], str] = _as_it_is
     facts: Mapping[str, Any] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    files: Callable[[Path], None] | None = None
 
 
 @cache

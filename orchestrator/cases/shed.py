@@ -6,16 +6,21 @@ The sand is the model ``one-law``; the roof yields with its section.
 from collections.abc import Mapping
 from dataclasses import asdict
 from functools import partial
+from pathlib import Path
 from typing import Any
 
+from rockshed.components.catalogue import component
+from rockshed.components.common.ports import Causality
 from rockshed.components.common.units import kN, ms, standard_gravity
 
+from ..core.errors import Problem
 from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
-from ..sites.shed.geometry import ShedLayout, end_stiffness
+from ..sites.shed.geometry import WALL_HEIGHT, WALL_THICKNESS, ShedLayout, end_stiffness
 from ..sites.shed.materials import caution
-from ..sites.shed.preparation import PreparedShed
+from ..sites.shed.preparation import Cushioned, PreparedShed, SlopeRock, prepare
 from ..sites.shed.site import ShedProject
 from ..sites.shed.words import in_words
+from ..sites.source import SiteLike, SiteSource
 from .on_rods import SIDES, loads_at_rest, on_rods, rod_sizes
 from .registry import Case, ComponentSizes, weight_on_beam
 from .sand_models import SandLayer, Soil, changes, sand_model
@@ -24,18 +29,10 @@ from .sonoda1993 import impact_bonds, impact_connections
 MODEL = "one-law"
 """Model of the sand of every project."""
 _PARTNERS = ("rock", "beam")
+CAMPAIGN = "campaign"
+"""Folder of the campaign of a slope in that of a run."""
 
 FOLLOWS: Mapping[str, str] = {
-    "rock.radius": "rock.mass, rock.size and rock.density",
-    "sand.rock.radius": "rock.mass, rock.size and rock.density",
-    "rock_radius": "rock.mass, rock.size and rock.density",
-    "rock_mass": "rock.mass",
-    "sand.rock.mass": "rock.mass",
-    "rock.position0.x": "rock.place",
-    "rock.position0.y": "cushion.thickness and numerics.clearance",
-    "rock.velocity0.x": "rock.velocity and rock.angle",
-    "rock.velocity0.y": "rock.drop_height, or rock.velocity",
-    "rock.angular_velocity0": "rock.spin",
     "sand.thickness": "cushion.effective_width",
     "sand.disc.radius": "numerics.disc_radius",
     "sand.beam.radius": "roof.span and numerics.elements",
@@ -57,6 +54,53 @@ FOLLOWS: Mapping[str, str] = {
     **dict.fromkeys(("box_width", "sand.box.width", "beam.box.width"), "cushion.width"),
 }
 """Parameters that follow from fields of the project, and cannot be set apart from them."""
+_FOLLOW_FALL: Mapping[str, str] = {
+    "rock.radius": "rock.mass, rock.size and rock.density",
+    "sand.rock.radius": "rock.mass, rock.size and rock.density",
+    "rock_radius": "rock.mass, rock.size and rock.density",
+    "rock_mass": "rock.mass",
+    "sand.rock.mass": "rock.mass",
+    "rock.position0.x": "rock.place",
+    "rock.position0.y": "cushion.thickness and numerics.clearance",
+    "rock.velocity0.x": "rock.velocity and rock.angle",
+    "rock.velocity0.y": "rock.drop_height, or rock.velocity",
+    "rock.angular_velocity0": "rock.spin",
+}
+"""Those of a rock that falls."""
+_OF_SLOPE = ("rock_radius", "rock_mass", "sand.rock.radius", "sand.rock.mass")
+_WALLS = ("sand.box.wall_height", "sand.box.wall_thickness")
+_FREE = ("internal_step", "lead_time")
+"""Parameters of a rock from a slope that may be set."""
+
+
+def prepared(project: SiteLike, changes: Mapping[str, Any] | None = None) -> PreparedShed:
+    """Read and check a project, and carry out the campaign of its slope where it has one.
+
+    Parameters
+    ----------
+    project : path, mapping or ShedProject
+        Project file (TOML), or its content.
+    changes : mapping of str to Any, optional
+        Fields that replace those of the project.
+
+    Returns
+    -------
+    PreparedShed
+
+    Raises
+    ------
+    InputRefused
+        Everything that is wrong with the project or its slope.
+    """
+    return prepare(project, changes, _rock_of_slope)
+
+
+def _rock_of_slope(
+    project: ShedProject, source: SiteSource, cushioned: Cushioned, problems: list[Problem]
+) -> SlopeRock | None:
+    from .below_slope import rock_of_slope  # needs numba, which a rock that falls does not
+
+    return rock_of_slope(project, source, cushioned, problems)
 
 
 def shed_case(shed: PreparedShed) -> Case:
@@ -74,12 +118,15 @@ def shed_case(shed: PreparedShed) -> Case:
     """
     found = shed.layout
     words = shed.project.description or in_words(found)
+    if shed.slope is not None and not shed.project.description:
+        origin = shed.slope.origin
+        words += f"; the rock is trial {origin.trial} on the slope {origin.slope.name}"
     return Case(
         shed.name,
         words,
         models={
             "sand": "SandCushion",
-            "rock": "FallingRock",
+            "rock": "SlopeRockfall" if shed.slope else "FallingRock",
             "beam": "RBSMBeam",
             **dict.fromkeys(_of_supports(found, "rod"), "PileRod"),
             **dict.fromkeys(_of_supports(found, "ground"), "ImpulsiveGround"),
@@ -87,24 +134,62 @@ def shed_case(shed: PreparedShed) -> Case:
         sizes={
             "sand": {"discs": found.discs, "elements": found.elements},
             "beam": {"elements": found.elements},
+            **_cells(shed),
             **dict.fromkeys(_of_supports(found, "rod"), rod_sizes(found)),
         },
         couplings={
             "impulse": "sand first, kinematics extrapolated, mean forces, exchange every "
             f"{found.exchange_step / ms:g} ms"
         },
-        make=partial(_make, found, shed.name, words),
+        make=partial(_make, shed, words),
         one_size=("sand.elements", "beam.elements"),
         derived=partial(_derived, found),
-        follows={name: f"the project's {fields}" for name, fields in FOLLOWS.items()},
-        facts={"project": _project(shed), "design": design(shed.project, found)},
+        follows={name: f"the project's {fields}" for name, fields in _follows(shed).items()},
+        facts={"project": _project(shed), "design": design(shed.project, found), **_told(shed)},
         warnings=shed.warnings,
+        files=None if shed.slope is None else partial(_keep, shed.slope),
     )
 
 
+def _follows(shed: PreparedShed) -> Mapping[str, str]:
+    """Return the parameters that follow from fields of a project, and these fields."""
+    if shed.slope is None:
+        return {**FOLLOWS, **_FOLLOW_FALL}
+    every = component("SlopeRockfall").layout.variables
+    names = [v.name for v in every if v.causality is Causality.PARAMETER and v.name not in _FREE]
+    of_slope = [*(f"rock.{name}" for name in names), *_OF_SLOPE]
+    return {
+        **FOLLOWS,
+        **dict.fromkeys(of_slope, "slope, and its file"),
+        **dict.fromkeys(_WALLS, "cushion.thickness"),
+    }
+
+
+def _cells(shed: PreparedShed) -> dict[str, dict[str, int]]:
+    """Return the size of the slope; nothing where there is none."""
+    if shed.slope is None:
+        return {}
+    return {"rock": {"cells": len(shed.slope.origin.slope.nodes) - 1}}
+
+
+def _told(shed: PreparedShed) -> dict[str, Any]:
+    """Return campaign and choice of a slope for the provenance; nothing where there is none."""
+    if shed.slope is None or shed.project.slope is None:
+        return {}
+    from .below_slope import told  # needs numba
+
+    return {"slope": told(shed.slope.origin, shed.project.slope)}
+
+
+def _keep(slope: SlopeRock, folder: Path) -> None:
+    """Write the campaign of a slope into the folder of a run."""
+    from ..campaigns.keeping import keep  # needs numba
+
+    keep(slope.origin, folder / CAMPAIGN)
+
+
 def _make(
-    found: ShedLayout,
-    name: str,
+    shed: PreparedShed,
     words: str,
     fmus: Mapping[str, str],
     sizes: ComponentSizes,
@@ -112,12 +197,13 @@ def _make(
 ) -> SystemSpec:
     """Return the system; rock, sand and beam in one frame, whose origin is the left support."""
     watched = ("transmitted_force", "rock.force.y", "penetration", "clearance")
+    found = shed.layout
     system = SystemSpec(
-        name=name,
+        name=shed.name,
         description=words,
         components={
             "sand": ComponentSpec(fmu=fmus["sand"], record_states=True, parameters=_sand(found)),
-            "rock": ComponentSpec(fmu=fmus["rock"], parameters=_rock(found)),
+            "rock": ComponentSpec(fmu=fmus["rock"], parameters=_rock(shed)),
             "beam": ComponentSpec(fmu=fmus["beam"], parameters=_beam(found)),
         },
         shared=_shared(found),
@@ -183,10 +269,28 @@ def _sand(found: ShedLayout) -> dict[str, Value]:
         "kinematics": "linear",
         "forces": "mean",
         "internal_step": found.sand_step,
+        **_walls(found),
     }
 
 
-def _rock(found: ShedLayout) -> dict[str, Value]:
+def _walls(found: ShedLayout) -> dict[str, Value]:
+    """Return the walls over which a rock from a slope comes in; others have no upper end."""
+    if found.arrival is None:
+        return {}
+    return {
+        "box.wall_height": WALL_HEIGHT * found.cushion.thickness,
+        "box.wall_thickness": WALL_THICKNESS,
+    }
+
+
+def _rock(shed: PreparedShed) -> dict[str, Value]:
+    """Return the parameters of the rock; mass, radius and gravity are shared values."""
+    found = shed.layout
+    if shed.slope is not None and shed.project.slope is not None:
+        from .below_slope import slope_values  # needs numba
+
+        values = slope_values(shed.slope.origin, shed.project.slope)
+        return {**values, "internal_step": found.sand_step}
     return {
         "position0.x": found.start_x,
         "position0.y": found.start_y,

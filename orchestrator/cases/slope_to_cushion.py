@@ -12,12 +12,12 @@ from functools import cache
 from pathlib import Path
 
 from rockshed.components.common.component import Instance
-from rockshed.components.common.ports import Causality, Kind
 from rockshed.components.common.units import cm, cm2, kgf
 
 from ..core.system.system import ComponentSpec, SharedValue, SystemSpec, Value
 from .full_scale import GIRDER_THICKNESS, Impact, full_scale_system, layer
 from .sand_models import SandLayer
+from .slope_parameters import site_parameters
 
 SITE = Path(__file__).parents[1] / "examples" / "shed.toml"
 LINE = "cushion"
@@ -67,34 +67,6 @@ def _site() -> Instance:
     from ..sites.rockfall.preparation import prepare  # imports numba, which other cases need not
 
     return prepare(SITE).instance
-
-
-def site_parameters(instance: Instance) -> dict[str, Value]:
-    """Return every parameter of a slope that differs from its start value, as the FMU takes it.
-
-    Parameters
-    ----------
-    instance : Instance
-        A slope with all values set.
-
-    Returns
-    -------
-    dict of str to Value
-        By the name of the parameter.
-    """
-    found: dict[str, Value] = {}
-    names = iter(instance.references.items())
-    for variable in instance.component.layout.ordered:
-        for number in range(1 if variable.size is None else instance.sizes[variable.size]):
-            name, index = next(names)
-            value = float(instance.w[index])
-            if variable.causality is Causality.PARAMETER and value != variable.start_at(
-                number, instance.sizes
-            ):
-                found[name] = (
-                    variable.choices[int(value) - 1] if variable.kind is Kind.ENUMERATION else value
-                )
-    return found
 
 
 def receiver(radius: float) -> dict[str, Value]:

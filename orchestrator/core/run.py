@@ -51,6 +51,7 @@ def simulate(
     progress: Progress | None = None,
     facts: Facts | Callable[[Plan], Facts] | None = None,
     note: Callable[[str], None] = lambda text: None,
+    files: Callable[[Path], None] | None = None,
 ) -> StoredRun:
     """Run a system and write its results into a folder.
 
@@ -78,6 +79,8 @@ def simulate(
         under ``warnings`` become those of the run.
     note : callable, optional
         Called with a line before the run if its results will be large.
+    files : callable, optional
+        Called with the folder in which the run writes, when it begins: writes further files there.
 
     Returns
     -------
@@ -107,7 +110,7 @@ def simulate(
             session.keep_start(results.running)
             if large := session.large_results():
                 note(large)
-            session.run(progress)
+            session.run(progress, files)
         finally:
             session.close()
     return read_run(folder)
@@ -294,10 +297,12 @@ class Session:
         self.interruption.look()
         self.journal.prepares(component)
 
-    def run(self, progress: Progress | None) -> None:
+    def run(self, progress: Progress | None, files: Callable[[Path], None] | None = None) -> None:
         """Carry out the exchanges and finish the results, also those of a run that fails."""
         failure: RunFailed | None = None
         try:
+            if files is not None and self.results.running is not None:
+                files(self.results.running)
             is_complete = self.master.run(self.interruption, progress)
             status = "complete" if is_complete else "interrupted"
         except RunFailed as error:

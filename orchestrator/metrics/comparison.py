@@ -26,6 +26,7 @@ from .meanings import (
 from .mesh import mesh_in_words
 from .reported import ReportedMetric, reported
 from .screen_units import is_shown_in, screen_unit
+from .slope import slope_notes
 from .structure_notes import on_structures
 
 
@@ -384,7 +385,7 @@ def notes(run: StoredRun, known: Mapping[str, Known]) -> list[str]:
         references that are only about right (≈) come from, what the end of the run has cut off,
         why a settled force is above the peak, and how far the results hang on the mesh.
     """
-    remarks = [*_references(run).remarks, *_of_design(run)]
+    remarks = [*_references(run).remarks, *slope_notes(run), *_of_design(run)]
     remarks += [
         f"{name}: its gravity is 0, so moment and reactions are those beyond its own weight"
         for name in weightless(run)

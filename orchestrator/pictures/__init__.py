@@ -18,6 +18,7 @@ from ..metrics.divergence import until_divergence
 from ..metrics.energy import driven
 from ..metrics.pressure import roof_pressure
 from ..metrics.roles import members
+from ..metrics.slope import slope_of
 from .declared import declared_pictures
 from .references import KnownMetrics
 
@@ -135,7 +136,16 @@ def pictures_of(run: StoredRun) -> list[RunPicture]:
     ]
     striking = [member.column for member in members(run, Role.STRIKING)]
     balance = [RunPicture("energy", partial(energy, run), striking)] if striking else []
-    return of_cushions + of_components + balance
+    return of_cushions + of_components + balance + _of_slope(run)
+
+
+def _of_slope(run: StoredRun) -> list[RunPicture]:
+    """Return the picture of the slope that the rock comes from; none where there is none."""
+    if not slope_of(run):
+        return []
+    from .slope import slope  # matplotlib is imported when something is drawn
+
+    return [RunPicture("slope", partial(slope, run), [])]
 
 
 def _of_cushion(run: StoredRun, cushion: str, known: KnownMetrics) -> list[RunPicture]:

@@ -13,6 +13,7 @@ from ..metrics.contents import ForeignStateError
 from ..metrics.divergence import note_of, until_divergence
 from ..metrics.practice import formula_table
 from ..metrics.roles import parameters as values_of
+from ..metrics.slope import AS_SPHERE, slope_notes, slope_of, slope_table
 from ..metrics.structure_notes import on_structures
 from ..metrics.width_band import width_band_table
 from ..pictures import RunPicture, pictures_of
@@ -59,6 +60,7 @@ def report_of_run(
         *_formulas(run),
         *_effective_width(run),
         *_illustrations(run),
+        *_slope(run),
         *_inputs(run),
         _assumptions(run),
         *_meanings(run),
@@ -82,10 +84,12 @@ def title_of(run: StoredRun) -> str:
         table_of(run.provenance, "design", p) for p in ("rock", "cushion", "roof")
     )
     mass, height = number_of(rock, "mass"), number_of(rock, "drop_height")
+    slope = slope_of(run)
     thickness = number_of(cushion, "thickness")
     words = [
         _mass(mass) if mass else "",
-        f"from {digits(height, 3)} m" if height else "",
+        f"from {digits(height, 3)} m" if height and not slope else "",
+        f"from the slope {slope['name']}" if slope else "",
         f"on {digits(thickness, 3)} m of {_material(cushion)}" if thickness else "",
         f"over {roof['section']}" if roof.get("section") else "",
     ]
@@ -176,6 +180,13 @@ def _effective_width(run: StoredRun) -> Iterator[Chapter]:
         yield Chapter("Effective width", [text], [band])
 
 
+def _slope(run: StoredRun) -> Iterator[Chapter]:
+    """Yield campaign and choice of the slope that the rock comes from, where there is one."""
+    told = slope_of(run)
+    if told:
+        yield Chapter("Slope", slope_notes(run), [slope_table(run)])
+
+
 def _in_screen_unit(value: float, unit: str) -> tuple[str, str]:
     """Return a value in SI as a table shows it, and its unit."""
     if unit == "N":
@@ -242,6 +253,7 @@ def _assumptions(run: StoredRun) -> Chapter:
     told = [_FRAME]
     told += [f"Model: {text}." for text in models(run)]
     told += [str(text) for text in table_of(run.provenance, "design").get("notes", ())]
+    told += [f"{AS_SPHERE[0].upper()}{AS_SPHERE[1:]}."] if slope_of(run) else []
     if words := run.provenance.get("coupling_words"):
         told.append(f"Coupling {run.provenance['coupling']}: {words}.")
     for component in run.provenance["components"]:

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from ..cases.registry import Case, case, is_case
-from ..cases.shed import shed_case
+from ..cases.shed import prepared, shed_case
 from ..core.errors import InputRefused, Problem
 from ..core.system.system import Value
 from ..input_files.form import read_toml
-from ..sites.shed.preparation import is_field, is_project, prepare
+from ..sites.shed.preparation import is_field, is_project
 from ..ssp.package import is_ssp
 from .request import Request
 from .target import wrong_target
@@ -101,7 +101,7 @@ def _of_project(
     changes = {name: value for name, value in request.values.items() if is_field(name)}
     others = {name: value for name, value in request.values.items() if name not in changes}
     try:
-        found = shed_case(prepare(project, changes))
+        found = shed_case(prepared(project, changes))
     except InputRefused as refusal:
         raise InputRefused([*problems, *refusal.problems]) from None
     if request.sizes:

@@ -3,7 +3,7 @@
 Everything that is wrong with a request is collected before it is refused.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -66,6 +66,8 @@ class Job:
         Components of the catalogue by component of a case; those of a system file are not known.
     ssp : Imported or None
         The SSP that the system comes from.
+    files : callable or None
+        Writes further files into the folder of a run.
     """
 
     name: str
@@ -74,6 +76,7 @@ class Job:
     facts: Mapping[str, Any]
     models: Mapping[str, str] = field(default_factory=dict)
     ssp: "Imported | None" = None
+    files: Callable[[Path], None] | None = None
 
     @property
     def components(self) -> frozenset[str]:
@@ -327,7 +330,8 @@ def _from_case(
     differing = told_once(chosen, base, differing, [*request.values, *request.sizes])
     facts["differences"] = differing
     facts["references"] = references(chosen, differing).as_data()
-    return Job(chosen.name, _with_model(base, model), sources, facts, chosen.models)
+    system = _with_model(base, model)
+    return Job(chosen.name, system, sources, facts, chosen.models, chosen.files)
 
 
 def _coupling_problems(chosen: Case, coupling: str) -> list[Problem]:

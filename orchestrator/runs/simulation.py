@@ -160,6 +160,7 @@ def _carry_out(
         progress=progress,
         facts=lambda plan: {**job.facts, "warnings": _warnings(job, plan)},
         note=note,
+        files=job.files,
     )
 
 

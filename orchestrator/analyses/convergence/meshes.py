@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...cases.shed import prepared
 from ...core.system.system import Value
 from ...runs.batch import COLUMNS, Task
 from ...runs.request import Request
-from ...sites.shed.preparation import prepare
 
 Project = Path | Mapping[str, Any]
 """A project file, or its content."""
@@ -77,7 +77,7 @@ def meshes(project: Project, changes: Mapping[str, Value], finest: float) -> lis
     InputRefused
         The project is refused, with its own discs and elements or with others.
     """
-    own = prepare(project, changes).layout
+    own = prepared(project, changes).layout
     halves = round(2.0 * math.log2(finest))
     of_discs = [
         _mesh(project, changes, DISCS, 2.0 ** (0.5 * step), own.disc_radius, own.elements)
@@ -104,7 +104,7 @@ def _mesh(
     elif fineness != 1.0:
         elements = 2 * round(0.5 * (elements * fineness - 1.0)) + 1
     fields: dict[str, Value] = {DISC_FIELD: disc_radius, ELEMENT_FIELD: elements}
-    layout = prepare(project, {**changes, **fields}).layout
+    layout = prepared(project, {**changes, **fields}).layout
     return Resolution(refined, fineness, disc_radius, layout.discs, layout.elements)
 
 

@@ -4,12 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...cases.shed import prepared
 from ...core.errors import InputRefused, Problem
 from ...core.system.system import Value
 from ...runs.batch import INTERRUPTED, run_all
 from ...runs.building import Note, silent
 from ...runs.kept import FINISHED, KeptRuns
-from ...sites.shed.preparation import is_field, prepare
+from ...sites.shed.preparation import is_field
 from ..frame import StageProgress, counter, no_progress
 from .figures import common_cut_off, measured
 from .meshes import DISC_FIELD, ELEMENT_FIELD, SEED_FIELD, meshes, tasks
@@ -80,7 +81,7 @@ def converge(
     source = Path(project) if isinstance(project, str | Path) else project
     _check(packings, finest, given)
     fields = {name: value for name, value in given.items() if is_field(name)}
-    shed = prepare(source, fields)
+    shed = prepared(source, fields)
     found = meshes(source, fields, finest)
     runs = {mesh: tasks(source, given, mesh, shed.layout.seed, packings) for mesh in found}
     kept = KeptRuns(Path(folder) / FINISHED) if folder else None

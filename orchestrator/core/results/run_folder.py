@@ -387,7 +387,7 @@ def _carry(source: Path, target: Path) -> None:
 def _remove_leftover(folder: Path) -> None:
     """Remove what a killed run has left, but nothing that somebody else has put there."""
     for entry in list(folder.iterdir()):
-        if entry.name == "figures" and not entry.is_symlink():
+        if entry.name in ("figures", "campaign") and not entry.is_symlink():
             shutil.rmtree(entry, ignore_errors=True)
         elif entry.name == CHECKPOINTS and not entry.is_symlink():
             remove_checkpoints(folder)

@@ -40,10 +40,12 @@ def fit_problems(project: ShedProject, found: ShedLayout, where: Places) -> Iter
     """
     yield from _width_problems(project, found, where)
     yield from _criteria_problems(project, where)
-    yield from _rock_problems(found, where)
+    yield from _size_problems(found, where)
     yield from _disc_problems(found, where)
     yield from _number_problems(project, found, where)
-    yield from _start_problems(found, where)
+    if found.arrival is None:
+        yield from _place_problems(found, where)
+        yield from _start_problems(found, where)
     yield from _time_problems(found, where)
     yield from _rod_problems(found, where)
 
@@ -74,14 +76,20 @@ def _criteria_problems(project: ShedProject, where: Places) -> Iterator[Problem]
         yield _at(where, ("criteria", "stress"), text, "limit plastic_moment or deflection")
 
 
-def _rock_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+def _size_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
+    """Yield a rock that is larger than the cushion."""
+    if 2.0 * found.rock.radius >= found.cushion.width:
+        size = 2.0 * found.rock.radius
+        text = f"a rock of {size:.4g} m does not fit on it, {found.cushion.width:g} m wide"
+        yield _at(where, ("cushion", "width"), text, "widen it")
+
+
+def _place_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
     """Yield a rock that is not above the cushion when it starts or strikes."""
     left = found.box_left
     right = left + found.cushion.width
     radius = found.rock.radius
     if 2.0 * radius >= found.cushion.width:
-        text = f"a rock of {2.0 * radius:.4g} m does not fit on it, {found.cushion.width:g} m wide"
-        yield _at(where, ("cushion", "width"), text, "widen it")
         return
     for x, key, what in (
         (found.rock.place, ("rock", "place"), "strikes"),
@@ -122,7 +130,9 @@ def _number_problems(project: ShedProject, found: ShedLayout, where: Places) -> 
     by_rock = (
         found.rock.radius / DISCS_IN_RADIUS < 0.5 * found.cushion.thickness / DISCS_IN_THICKNESS
     )
-    rock = ("rock", "size" if project.rock.mass is None else "mass")
+    rock: Key = ("slope", "file")
+    if project.rock is not None:
+        rock = ("rock", "size" if project.rock.mass is None else "mass")
     text = (
         f"a rock of {found.rock.mass:.4g} kg and {2.0 * found.rock.radius:.3g} m on a cushion of "
         f"{found.cushion.thickness:.3g} m times {found.cushion.width:.3g} m makes {found.discs:,} "
@@ -171,6 +181,40 @@ def _rod_problems(found: ShedLayout, where: Places) -> Iterator[Problem]:
             f"{load / kN:.4g} kN: at rest the toe carries all of it"
         )
         yield _at(where, ("supports", "file"), text, "give the toe more resistance")
+
+
+def rock_source_problems(project: ShedProject, where: Places) -> Iterator[Problem]:
+    """Yield a project that has no rock, or two of them.
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    where : Places
+        Of the values of the project.
+
+    Yields
+    ------
+    Problem
+    """
+    if project.slope is None:
+        if project.rock is None:
+            text = "rock: is missing, or slope, the one that it comes from"
+            yield Problem(where.of(()), text, "give one of the two tables")
+        return
+    if project.rock is not None:
+        for key in sorted(project.rock.model_fields_set) or [""]:
+            name = f"rock.{key}".rstrip(".")
+            text = f"{name}: the rock comes from the slope"
+            remedy = "leave [rock] out, or [slope]; its rock is described in the slope's file"
+            yield Problem(where.of(("rock", key) if key else ("rock",)), text, remedy)
+    for key in ("percentile", "quantity"):
+        if project.slope.trial is not None and getattr(project.slope, key) is not None:
+            text = "a trial is chosen already by its number"
+            yield _at(where, ("slope", key), text, "leave it out, or slope.trial")
+    if project.numerics.clearance is not None:
+        text = "a rock from a slope starts where the campaign has it"
+        yield _at(where, ("numerics", "clearance"), text, "leave it out")
 
 
 def support_problems(project: ShedProject, where: Places) -> Iterator[Problem]:

@@ -24,6 +24,9 @@ FEWEST_ELEMENTS = 21
 CLEARANCE = 1.0
 """Way of the rock above the levelled surface, in diameters of the largest discs, of which the
 highest stands out by 0.6 at most."""
+WALL_HEIGHT, WALL_THICKNESS = 0.99, 0.5
+"""Walls beside the cushion over which rocks come in from a slope: height / thickness of the
+cushion, and thickness (m)."""
 SAND_STEPS = 4
 """Internal steps of sand and rock in an exchange."""
 _STEP_SHARE = 0.25
@@ -74,6 +77,29 @@ class RockPart:
     def drop_height(self) -> float:
         """Height of the fall that gives this speed (m)."""
         return self.speed**2 / (2.0 * standard_gravity)
+
+
+@dataclass(frozen=True)
+class RoofArrival:
+    """A rock from a slope as it is handed over, near the roof, in the frame of the shed.
+
+    Attributes
+    ----------
+    x, y : float
+        Place of its centre (m).
+    velocity_y : float
+        Upwards (m/s).
+    lead : float
+        Time (s) from the start of the run to the hand-over.
+    delay : float
+        Time (s) from the start of the run until it strikes the cushion's surface.
+    """
+
+    x: float
+    y: float
+    velocity_y: float
+    lead: float
+    delay: float
 
 
 @dataclass(frozen=True)
@@ -178,6 +204,8 @@ class ShedLayout:
         Number of the packing.
     rod : SupportRod or None
         Piles under each end of the roof; None where there are none.
+    arrival : RoofArrival or None
+        Of a rock from a slope, whose clearance and start are those at the hand-over.
     """
 
     rock: RockPart
@@ -203,6 +231,7 @@ class ShedLayout:
     state_interval: float
     seed: int
     rod: SupportRod | None = None
+    arrival: RoofArrival | None = None
 
 
 def girders_in(cushion: CushionPart, roof: RoofPart) -> float:
@@ -264,6 +293,7 @@ def layout(
     roof: RoofPart,
     numerics: Numerics,
     pile: PileDesign | None = None,
+    arrival: RoofArrival | None = None,
 ) -> ShedLayout:
     """Derive everything that follows from the parts of a shed.
 
@@ -275,6 +305,8 @@ def layout(
         Those of the rest that are given.
     pile : PileDesign, optional
         Under each end of each girder.
+    arrival : RoofArrival, optional
+        Of a rock from a slope.
 
     Returns
     -------
@@ -290,9 +322,8 @@ def layout(
     )
     ratio = BEAM_DAMPING_RATIO if pile is None else 0.0
     damping, beam_step = beam_steps(roof, element, ratio)
-    clearance = numerics.clearance or CLEARANCE * 2.0 * radius * (1.0 + SPREAD)
-    approach = (rock.velocity_y - speed_at_start(rock, clearance)) / standard_gravity
-    stop = numerics.stop_time or stop_time(rock, cushion, roof, girders, approach)
+    start = start_of(rock, cushion, numerics.clearance or clearance_of(radius), arrival)
+    stop = numerics.stop_time or stop_time(rock, cushion, roof, girders, start.delay)
     interval = numerics.output_interval or _round_down(stop / _ROWS)
     return ShedLayout(
         *(rock, cushion, roof, girders, radius),
@@ -300,17 +331,49 @@ def layout(
         elements,
         centred(roof.span, cushion.width),
         axis_below_top(roof.span, elements),
-        *(element, clearance),
-        rock.place - rock.velocity_x * approach,
-        cushion.thickness + clearance + rock.radius,
-        -speed_at_start(rock, clearance),
+        element,
+        *(start.y - cushion.thickness - rock.radius, start.x, start.y, start.velocity_y),
         *(exchange, exchange / SAND_STEPS, min(beam_step, exchange), damping),
         stop,
         _multiple(interval, exchange),
         _multiple(10.0 * interval, exchange),
         numerics.seed,
         None if pile is None else pile_rod(pile, girders, exchange),
+        arrival,
     )
+
+
+def clearance_of(radius: float) -> float:
+    """Return the way of the rock above the surface (m) where none is given.
+
+    Parameters
+    ----------
+    radius : float
+        Mean radius of the sand discs (m).
+    """
+    return CLEARANCE * 2.0 * radius * (1.0 + SPREAD)
+
+
+def start_of(
+    rock: RockPart, cushion: CushionPart, clearance: float, arrival: RoofArrival | None
+) -> RoofArrival:
+    """Return where and how fast the rock starts: in free fall above the surface, or from a slope.
+
+    Parameters
+    ----------
+    rock, cushion : RockPart, CushionPart
+        The parts.
+    clearance : float
+        Of a rock that falls (m).
+    arrival : RoofArrival or None
+        Of a rock from a slope.
+    """
+    if arrival is not None:
+        return arrival
+    speed = speed_at_start(rock, clearance)
+    delay = (rock.velocity_y - speed) / standard_gravity
+    x = rock.place - rock.velocity_x * delay
+    return RoofArrival(x, cushion.thickness + clearance + rock.radius, -speed, 0.0, delay)
 
 
 def speed_at_start(rock: RockPart, clearance: float) -> float:

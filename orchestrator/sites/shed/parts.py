@@ -53,6 +53,8 @@ def rock_part(project: ShedProject, where: Places, problems: list[Problem]) -> R
         None where it is not known.
     """
     rock = project.rock
+    if rock is None:
+        return None
     body = if_formed(_body, rock, where, problems)
     speed = if_formed(_speed, rock, where, problems)
     angle = if_formed(_angle, rock, where, problems)
@@ -416,7 +418,7 @@ def cushion_part(
     CushionPart or None
         None where it is not known.
     """
-    thickness = if_formed(_thickness, project, where, problems)
+    thickness = if_formed(thickness_of, project, where, problems)
     known = if_formed(lambda: sands(project.material, where, problems)) or {}
     name = if_formed(_material, project, where, problems)
     radius = rock.radius if rock else 0.0
@@ -427,7 +429,23 @@ def cushion_part(
     return CushionPart(thickness, width, *effective, str(name), known[str(name)])
 
 
-def _thickness(project: ShedProject, where: Places, problems: list[Problem]) -> float | None:
+def thickness_of(project: ShedProject, where: Places, problems: list[Problem]) -> float | None:
+    """Return the thickness of a cushion, of its layers too (m).
+
+    Parameters
+    ----------
+    project : ShedProject
+        The project.
+    where : Places
+        Of its values.
+    problems : list of Problem
+        What is missing, and contradictions, are appended.
+
+    Returns
+    -------
+    float or None
+        None where it is not known.
+    """
     cushion = project.cushion
     if not cushion.layers:
         if cushion.thickness is None:

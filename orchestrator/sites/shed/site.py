@@ -99,6 +99,31 @@ class StrikingRock(Data):
     )
 
 
+class SlopeAbove(Data):
+    """The slope that the rock comes from: the rock of a campaign, in the place of ``rock``."""
+
+    file: str = field("site file of the slope, as `rockshed rockfall` reads it", ...)
+    x: Place = field("x of the left support on its profile", ...)
+    y: Place = field("y of the roof's top, under the cushion, on its profile", ...)
+    percentile: Annotated[float, Field(gt=0.0, lt=100.0, strict=True)] | None = field(
+        "percentile, in percent, of the quantity over the rocks that strike the cushion: its rock "
+        "is taken; 95",
+        usual=(50.0, 99.9),
+    )
+    quantity: Literal["energy", "speed"] | None = field(
+        "energy: kinetic energy at the cushion's surface; or speed there; energy"
+    )
+    trial: Annotated[int, Field(ge=0, le=MOST_SEED, strict=True)] | None = field(
+        "number of a trial whose rock is taken, in the place of a percentile"
+    )
+    trials: Annotated[int, Field(ge=1, le=MOST_SEED, strict=True)] | None = field(
+        "trials of the campaign; those of the site file"
+    )
+    seed: Annotated[int, Field(ge=0, le=MOST_SEED, strict=True)] | None = field(
+        "seed of the campaign; that of the site file"
+    )
+
+
 class CushionLayer(Data):
     """A layer of the cushion, from below."""
 
@@ -296,7 +321,8 @@ class ShedProject(Data):
 
     name: str = field("name of the results", "")
     description: str = field("description; made of the values", "")
-    rock: StrikingRock = field("the rock", ...)
+    rock: StrikingRock | None = field("the rock; or slope")
+    slope: SlopeAbove | None = field("the slope that it comes from; or rock")
     cushion: Cushion = field("the cushion", ...)
     material: dict[str, SandMaterial] = field("own materials by name", {})
     roof: Roof = field("the roof", ...)
