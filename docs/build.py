@@ -37,6 +37,7 @@ CONTENTS = {
     "Use": (
         "getting-started",
         "designer",
+        "slope-to-shed",
         "python",
         "command-line",
         "systems",

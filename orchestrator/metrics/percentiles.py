@@ -103,21 +103,6 @@ def rank(count: int, share: float) -> int:
     return max(0, math.ceil(count * share - 1e-9) - 1)
 
 
-def needed(share: float) -> int:
-    """Return the number of values of which a percentile has an interval with both bounds.
-
-    Between order statistics, no bound is there while all values may lie on one side of the
-    percentile with more than 2.5 % probability.
-
-    Parameters
-    ----------
-    share : float
-        Part of the population, between 0 and 1.
-    """
-    tail = 0.5 * (1.0 - CONFIDENCE)
-    return math.ceil(math.log(tail) / math.log(max(share, 1.0 - share)))
-
-
 def proportion(hits: int, count: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
     """Return an interval that covers a probability.
 
