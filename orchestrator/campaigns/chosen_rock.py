@@ -78,7 +78,7 @@ class ChosenRock:
 
     @property
     def trial(self) -> int:
-        """Number of its trial."""
+        """Number of its trial in the campaign, from 0."""
         return int(self.strikes.number[self.place])
 
     @property

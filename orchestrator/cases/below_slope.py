@@ -111,7 +111,7 @@ def _prepared(
     file = source.folder / wanted.file
     if not file.is_file():
         text = f"slope.file: there is no file {file}"
-        remedy = "it counts from the folder of the project; `rockshed init --template slope`"
+        remedy = "it counts from the folder of the project"
         problems.append(Problem(source.places.of(("slope", "file")), text, remedy))
         return None
     try:

@@ -98,8 +98,14 @@ def _draw(
     axes.add_patch(Rectangle(box, width, depth, color=SAND, linewidth=0.0, label="cushion"))
     axes.plot(ends, [roof["y"]] * 2, color=BEAM, linewidth=2.0, label="top of the roof")
     for barrier in tables_of(told, "barriers"):
-        foot, top = float(barrier["y"]), float(barrier["y"]) + float(barrier["height"])
+        foot = float(barrier["y"])
         name = literal(str(barrier["name"]))
-        axes.plot([barrier["x"]] * 2, [foot, top], color=GREY, linewidth=2.0, label=name)
+        axes.plot(
+            [barrier["x"]] * 2,
+            [foot, foot + float(barrier["height"])],
+            color=GREY,
+            linewidth=2.0,
+            label=name,
+        )
     axes.set(xlabel="x (m)", ylabel="y (m)", xlim=(left, right), ylim=(low, high))
     axes.set_aspect("equal", adjustable="box")

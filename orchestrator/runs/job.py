@@ -331,7 +331,7 @@ def _from_case(
     facts["differences"] = differing
     facts["references"] = references(chosen, differing).as_data()
     system = _with_model(base, model)
-    return Job(chosen.name, system, sources, facts, chosen.models, chosen.files)
+    return Job(chosen.name, system, sources, facts, chosen.models, files=chosen.files)
 
 
 def _coupling_problems(chosen: Case, coupling: str) -> list[Problem]:
