@@ -42,6 +42,7 @@ CONTENTS = {
         "command-line",
         "systems",
         "ssp",
+        "fmi",
         "results",
         "checkpoints",
         "studies",

@@ -344,6 +344,7 @@ class Session:
             "warnings": self._all_warnings(),
             "wall_time": self._wall_time(),
             "cpu_time": {"exchanges": self.master.cpu_time},
+            "early_returns": dict(self.master.returned),
         }
 
     def _wall_time(self) -> dict[str, float]:
@@ -373,6 +374,10 @@ class Session:
             *self.accounts.metrics(),
             Metric("simulated time", simulated, "s"),
             Metric("exchanges", self.master.exchanges),
+            *(
+                Metric(f"early returns of {name}", count)
+                for name, count in self.master.returned.items()
+            ),
             Metric("wall time of the exchanges", self.master.wall_time, "s"),
         ]
 
@@ -410,4 +415,4 @@ class Session:
         count = sum(counts_of(slave.messages).values())
         status = slave.terminate()
         if not OK <= status <= WARNING and sum(counts_of(slave.messages).values()) == count:
-            slave.messages.append((status, f"fmi2Terminate returned {status_name(status)}"))
+            slave.messages.append((status, f"the end of the run returned {status_name(status)}"))

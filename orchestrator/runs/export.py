@@ -44,7 +44,7 @@ def system_text(system: SystemSpec) -> str:
 def _connection(connection: Connection) -> str | dict[str, Any]:
     if connection.is_linear:
         return connection.model_dump(exclude_defaults=True)
-    return f"{connection.source} -> {connection.target}"
+    return str(connection)
 
 
 def export_system(

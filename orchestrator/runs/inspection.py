@@ -10,7 +10,13 @@ from xml.etree import ElementTree
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
-from ..core.fmu.fmu_slave import READABLE, UNREADABLE_XML, FmuFile, UnusableError, read_description
+from ..core.fmu.fmu_slave import (
+    TERMINALS_FILE,
+    UNREADABLE_XML,
+    FmuFile,
+    UnusableError,
+    read_description,
+)
 from ..core.fmu.slave import REAL
 from ..core.run import sources_of
 from ..core.system.plan import Plan
@@ -24,7 +30,6 @@ from .undriven import undriven
 
 _ELEMENT = re.compile(r"\[[\d,]+\]")
 _CAUSALITIES = ("parameter", "input", "output")
-_TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
 
 
 @dataclass(frozen=True)
@@ -71,13 +76,13 @@ def describe_fmu(path: Path) -> Overview:
     file = FmuFile(path)
     xml = file.model_description()
     try:
-        description = read_description(xml, READABLE)
+        description = read_description(xml)
     except UnusableError as error:
         raise InputRefused([Problem(str(path), str(error), error.remedy)]) from error
     root = ElementTree.fromstring(xml)
     size = f"{path.stat().st_size / 1024:.0f} KiB"
     facts = _facts(description, root, {"file": f"{path}  {size}"})
-    terminals = _terminals(file.content(_TERMINALS))
+    terminals = _terminals(file.content(TERMINALS_FILE))
     remarks = [f"warning: {text}" for text in description.warnings]
     return Overview([facts, *_variables(description), *terminals, *remarks])
 
@@ -154,7 +159,7 @@ def _terminals(xml: bytes | None) -> list[str | Table]:
     try:
         found = list(ElementTree.fromstring(xml).iter("Terminal"))
     except UNREADABLE_XML as error:
-        return [f"warning: {_TERMINALS} cannot be read: {error}"]
+        return [f"warning: {TERMINALS_FILE} cannot be read: {error}"]
     table = Table(("terminals", "members", ""))
     for terminal in found:
         members = [

@@ -290,7 +290,9 @@ class System:
         ----------
         *connections : str
             ``"sand.rock.force.y -> rock.force.y"`` each, or two names: an output and an input.
-            ``[*]`` stands for all elements of an array, ``[1..24]`` for some.
+            The name of an array, or ``[*]`` behind it, stands for all its elements, ``[1..24]`` for
+            some. ``"sand.rock <-> rock.rock"`` connects two terminals: all variables that they have
+            in common, each in its direction.
 
         Returns
         -------

@@ -39,8 +39,7 @@ def undriven(plan: Plan) -> list[str]:
     """
     driven = {f"{end.component}.{_array(end.port)}" for end in plan.inputs}
     driven |= {f"{name}.{_array(port)}" for name in plan.starts for port, _ in plan.starts[name]}
-    heard = [plan.outputs[place] for place in plan.source]
-    used = {f"{end.component}.{_array(end.port)}" for end in heard}
+    used = {f"{source.component}.{_array(source.port)}" for _, _, source in plan.fed}
     return [
         _warning(bond)
         for name, description in plan.descriptions.items()

@@ -198,8 +198,9 @@ def _component(
 
 def _ends_of(plan: Plan, component: str) -> list[End]:
     """Return the connected ports of a component, in the order of its description."""
-    fed = {plan.outputs[place].name for place in plan.source}
-    ends = [*plan.inputs, *(end for end in plan.outputs if end.name in fed)]
+    feeding = {source.name for _, _, source in plan.fed}
+    ends = [target for _, target, _ in plan.fed]
+    ends += [end for end in plan.outputs if end.name in feeding]
     order = {name: turn for turn, name in enumerate(plan.descriptions[component].ports)}
     own = [end for end in ends if end.component == component]
     return sorted(own, key=lambda end: order[end.port.name])
@@ -258,8 +259,7 @@ def _text(port: Port, value: float | str) -> str:
 
 def _connections(plan: Plan) -> etree._Element:
     made = []
-    for place, end in enumerate(plan.inputs):
-        source = plan.outputs[plan.source[place]]
+    for place, end, source in plan.fed:
         link = etree.Element(
             f"{{{SSD}}}Connection",
             startElement=source.component,
@@ -298,7 +298,7 @@ def hints_of(system: SystemSpec) -> dict[str, Any]:
         name: {key: value for key, value in spec.items() if key not in ("fmu", "parameters")}
         for name, spec in data.pop("components").items()
     }
-    connections = [_more(connection) for connection in system.connections]
+    connections = [_more(c) for c in system.connections if not c.terminals]
     data["master"] = system.master
     data["connections"] = [told for told in connections if len(told) > 2]
     data["components"] = {name: told for name, told in components.items() if told}
@@ -313,7 +313,7 @@ def _more(connection: Connection) -> dict[str, Any]:
 def _units(plan: Plan) -> etree._Element | None:
     """Return the definitions of the units of all connectors."""
     used: dict[str, UnitDefinition] = {}
-    for end in (*plan.inputs, *(plan.outputs[place] for place in plan.source)):
+    for end in (end for _, *ends in plan.fed for end in ends):
         if end.port.kind == REAL and end.port.unit is not None and _is_defined(end.port.unit):
             used.setdefault(end.port.unit.name, end.port.unit)
     if not used:

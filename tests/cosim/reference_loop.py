@@ -74,12 +74,12 @@ class ReferenceLoop:
         """Fill a row; return component and status where one does not give finite values."""
         buses, snapshots = self.buses, self.buses.snapshots
         row = snapshots.rows[number]
-        row[: snapshots.exchanged] = buses.outputs
+        row[: snapshots.exchanged] = buses.outputs[: snapshots.exchanged]
         row[snapshots.taken] = buses.channels["taken"]
         row[snapshots.given_back] = buses.channels["given_back"]
         for name, blocks in snapshots.blocks.items():
             for block in blocks:
-                status = self.slaves[name].get(block.references, row[block.places], block.kind)
+                status = self.slaves[name].get(block.references, row[block.places], block.type)
                 if status > WARNING:
                     return name, status
                 if not np.isfinite(row[block.places]).all():

@@ -351,7 +351,10 @@ def test_a_description_that_is_no_xml(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (('fmiVersion="2.0"', 'fmiVersion="1.0"'), "is FMI 1.0; this program drives FMI 2.0"),
+        (
+            ('fmiVersion="2.0"', 'fmiVersion="1.0"'),
+            "is FMI 1.0; this program drives FMI 2.0 and 3.0",
+        ),
         (("CoSimulation", "ModelExchange"), "is for model exchange only; co-simulation is needed"),
     ],
 )

@@ -13,7 +13,7 @@ import os
 import sys
 import weakref
 import zipfile
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -48,8 +48,8 @@ from ..errors import InputRefused, Problem
 from .annotations import NOTHING, Annotation, read_annotations
 from .archive import MOST_DESCRIPTION, Archive, ArchiveError
 from .description import Description, Port, UnitDefinition
+from .fmi3_slave import Fmi3Slave
 from .slave import (
-    BOOLEAN,
     ERROR,
     FATAL,
     INTEGER,
@@ -57,16 +57,18 @@ from .slave import (
     REAL,
     Addresses,
     Messages,
+    Slave,
     ValueReferences,
     Values,
     status_name,
 )
+from .types import BOOLEAN_3, TYPES, TYPES_2
 
 _DESCRIPTION_FILE = "modelDescription.xml"
-DRIVEN = ("2.0",)
+TERMINALS_FILE = "terminalsAndIcons/terminalsAndIcons.xml"
+"""File in an FMU of FMI 3.0 that describes its terminals."""
+DRIVEN = ("2.0", "3.0")
 """Versions of FMI that this program drives."""
-READABLE = ("2.0", "3.0")
-"""Versions of FMI whose descriptions it can show."""
 UNREADABLE_XML = (ElementTree.ParseError, LookupError, ValueError)
 """Errors of the reader of XML: no XML, an encoding that nobody knows, bytes that it has not."""
 _LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
@@ -177,7 +179,7 @@ class FmuFile:
     def _refusal(self, what: str, remedy: str) -> InputRefused:
         return InputRefused([Problem(str(self.path), what, remedy)])
 
-    def instantiate(self, name: str) -> "FmuSlave":
+    def instantiate(self, name: str) -> Slave:
         """Unpack the file into a temporary folder, load its library and make an instance.
 
         Parameters
@@ -190,12 +192,15 @@ class FmuFile:
         InputRefused
             The library cannot be loaded, or it makes no instance.
         """
-        return FmuSlave(self, name)
+        description = read_description(self.model_description())
+        if description.is_fmi_3:
+            return Fmi3Slave(self, name, description)
+        return FmuSlave(self, name, description)
 
 
 @lru_cache(maxsize=32)
-def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Description:
-    """Read a model description.
+def read_description(xml: bytes, sizes: tuple[tuple[str, int], ...] = ()) -> Description:
+    """Read a model description of FMI 2.0 or 3.0.
 
     An array of FMI 3.0 is described by its elements, ``name[1]``, ``name[2]``, ...
 
@@ -203,8 +208,8 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
     ----------
     xml : bytes
         Content of ``modelDescription.xml``.
-    versions : tuple of str
-        Versions of FMI that are of use.
+    sizes : tuple of (str, int)
+        Names and values of structural parameters that differ from their start values.
 
     Returns
     -------
@@ -215,7 +220,7 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
     UnusableError
         It is for another version of FMI or no co-simulation, or cannot be understood.
     """
-    root = _checked_root(xml, versions)
+    root = _checked_root(xml)
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as file:
         file.writestr(_DESCRIPTION_FILE, xml)
@@ -230,7 +235,7 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
         raise UnusableError(what, "export it again") from error
     _check_references(model)
     try:
-        return _described(model, root, warnings)
+        return _described(model, root, warnings, dict(sizes))
     except UnusableError:
         raise
     except (ValueError, TypeError, AttributeError, OverflowError) as error:
@@ -239,11 +244,15 @@ def read_description(xml: bytes, versions: tuple[str, ...] = DRIVEN) -> Descript
 
 
 def _described(
-    model: ModelDescription, root: ElementTree.Element, warnings: tuple[str, ...]
+    model: ModelDescription,
+    root: ElementTree.Element,
+    warnings: tuple[str, ...],
+    sizes: Mapping[str, int],
 ) -> Description:
     units = {unit.name: _unit(unit) for unit in model.unitDefinitions}
     interface = model.coSimulation
     told = read_annotations(root)
+    ports = _Ports(root, units, sizes)
     return Description(
         model.modelName,
         model.guid,
@@ -254,13 +263,15 @@ def _described(
         {
             port.name: port
             for v in model.modelVariables
-            for port in _ports(v, units, told.variables.get(v.name, NOTHING))
+            for port in ports.of(v, told.variables.get(v.name, NOTHING))
         },
         warnings,
         told.contents,
         told.pictures,
         told.bonds,
         _tolerance(model.defaultExperiment),
+        model.fmiVersion,
+        interface.mightReturnEarlyFromDoStep,
     )
 
 
@@ -273,7 +284,7 @@ def _tolerance(experiment: Any) -> float | None:
     return value if 0.0 < value < 1.0 else None
 
 
-def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
+def _checked_root(xml: bytes) -> ElementTree.Element:
     """Return the root of a description, after a look at its version and kind."""
     try:
         root = ElementTree.fromstring(xml)
@@ -284,15 +295,13 @@ def _checked_root(xml: bytes, versions: tuple[str, ...]) -> ElementTree.Element:
         what = f"its {_DESCRIPTION_FILE} describes no FMU: it begins with <{root.tag}>"
         raise UnusableError(what, "export it again")
     version = root.get("fmiVersion") or "without a version"
-    if version.startswith(READABLE) and root.find("CoSimulation") is None:
+    if version.startswith(DRIVEN) and root.find("CoSimulation") is None:
         kinds = [text for tag, text in _OTHER_KINDS.items() if root.find(tag) is not None]
         what = f"is for {' and '.join(kinds) or 'nothing'} only; co-simulation is needed"
         raise UnusableError(what, "export it for co-simulation")
-    if not version.startswith(versions):
-        what = "shows FMI 2.0 and 3.0" if versions == READABLE else "drives FMI 2.0"
-        raise UnusableError(
-            f"is FMI {version}; this program {what}", "use an FMU of it for FMI 2.0"
-        )
+    if not version.startswith(DRIVEN):
+        what = f"is FMI {version}; this program drives FMI {' and '.join(DRIVEN)}"
+        raise UnusableError(what, "use an FMU of it for one of them")
     return root
 
 
@@ -301,7 +310,7 @@ _OTHER_KINDS = {"ModelExchange": "model exchange", "ScheduledExecution": "schedu
 
 def _is_co_simulation(xml: bytes) -> bool:
     try:
-        _checked_root(xml, READABLE)
+        _checked_root(xml)
     except UnusableError:
         return False
     return True
@@ -346,63 +355,103 @@ def _unit(unit: Any) -> UnitDefinition:
     )
 
 
-_KINDS_OF_FMI_3 = {
-    "Float32": REAL,
-    "Float64": REAL,
-    "Enumeration": INTEGER,
-    **dict.fromkeys(
-        (f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)), INTEGER
-    ),
-}
+_CALLED_2 = {"Enumeration": INTEGER}
+_CALLED_3 = {"Enumeration": "Int64", "Boolean": BOOLEAN_3}
+"""Types of FMI calls that move a variable of another type."""
 
 
-def _ports(
-    variable: ModelVariable, units: dict[str, UnitDefinition], annotation: Annotation
-) -> Iterator[Port]:
-    """Return one port, or as many as an array of fixed size has elements."""
-    port = replace(_port(variable, units), annotation=annotation)
-    lengths = [int(dimension.start or 1) for dimension in variable.dimensions]
-    if not lengths:
-        yield port
-        return
-    if math.prod(lengths) > _MOST_ELEMENTS:
-        what = f"its {variable.name} has more than {_MOST_ELEMENTS:,} elements"
-        raise UnusableError(what, "export it with smaller arrays")
-    places = list(itertools.product(*(range(1, length + 1) for length in lengths)))
-    starts: list[str | None] = [*(port.start or "").split()]
-    if len(starts) == 1:
-        starts *= len(places)
-    starts += [None] * len(places)
-    for place, start in zip(places, starts):
-        yield replace(port, name=f"{port.name}[{','.join(map(str, place))}]", start=start)
+class _Ports:
+    """Makes ports of variables.
 
+    Parameters
+    ----------
+    root : Element
+        Of the model description.
+    units : dict of str to UnitDefinition
+        By name.
+    sizes : mapping of str to int
+        Values of structural parameters that differ from their start values.
+    """
 
-def _port(variable: ModelVariable, units: dict[str, UnitDefinition]) -> Port:
-    def attribute(name: str) -> Any:
-        own = getattr(variable, name, None)
-        if own is not None or variable.declaredType is None:
-            return own
-        return getattr(variable.declaredType, name)
+    def __init__(
+        self,
+        root: ElementTree.Element,
+        units: dict[str, UnitDefinition],
+        sizes: Mapping[str, int],
+    ) -> None:
+        is_fmi_3 = (root.get("fmiVersion") or "").startswith("3")
+        listed = root.find("ModelVariables") if is_fmi_3 else None
+        self._called = _CALLED_3 if is_fmi_3 else _CALLED_2
+        self._elements = {entry.get("name"): entry for entry in ([] if listed is None else listed)}
+        self._units = units
+        self._sizes = sizes
 
-    def bound(name: str) -> float | None:
-        return None if attribute(name) is None else float(attribute(name))
+    def of(self, variable: ModelVariable, annotation: Annotation) -> Iterator[Port]:
+        """Yield one port, or as many as an array has elements."""
+        port = replace(self._port(variable), annotation=annotation)
+        if not variable.dimensions:
+            yield port
+            return
+        lengths = tuple(map(self._length, variable.dimensions))
+        if math.prod(lengths) > _MOST_ELEMENTS:
+            what = f"its {variable.name} has more than {_MOST_ELEMENTS:,} elements"
+            raise UnusableError(what, "export it with smaller arrays")
+        places = itertools.product(*(range(1, length + 1) for length in lengths))
+        starts = self._starts(variable, math.prod(lengths))
+        for element, (place, start) in enumerate(zip(places, starts)):
+            name = f"{port.name}[{','.join(map(str, place))}]"
+            yield replace(port, name=name, start=start, shape=lengths, element=element)
 
-    unit = attribute("unit")
-    items = variable.declaredType.items if variable.declaredType is not None else []
-    return Port(
-        variable.name,
-        variable.valueReference,
-        _KINDS_OF_FMI_3.get(variable.type, variable.type),
-        variable.causality,
-        None if unit is None else units.get(unit, UnitDefinition(unit)),
-        bound("min"),
-        bound("max"),
-        {item.name: int(item.value) for item in items},
-        variable.start,
-        variable.description or "",
-        has_own_start=_has_own_start(variable),
-        is_constant=variable.variability == "constant",
-    )
+    def _length(self, dimension: Any) -> int:
+        if dimension.start is not None:
+            return int(dimension.start)
+        size = dimension.variable
+        return self._sizes.get(size.name, int(size.start))
+
+    def _starts(self, variable: ModelVariable, count: int) -> list[str | None]:
+        """Return the start values of all elements.
+
+        They are unknown where there is another number of them: a size differs from its own start.
+        """
+        entry = self._elements[variable.name]
+        listed = [start.get("value", "") for start in entry.findall("Start")]
+        starts: list[str | None] = [*(listed or (variable.start or "").split())]
+        if len(starts) == 1:
+            return starts * count
+        return starts if len(starts) == count else [None] * count
+
+    def _port(self, variable: ModelVariable) -> Port:
+        def attribute(name: str) -> Any:
+            own = getattr(variable, name, None)
+            if own is not None or variable.declaredType is None:
+                return own
+            return getattr(variable.declaredType, name)
+
+        def bound(name: str) -> float | None:
+            own = attribute(name)
+            if own is None and variable.name in self._elements:  # the reader forgets unsigned ones
+                own = self._elements[variable.name].get(name)
+            return None if own is None else float(own)
+
+        unit = attribute("unit")
+        items = variable.declaredType.items if variable.declaredType is not None else []
+        called = self._called.get(variable.type, variable.type)
+        return Port(
+            variable.name,
+            variable.valueReference,
+            TYPES[called].kind if called in TYPES else called,
+            variable.causality,
+            called,
+            unit=None if unit is None else self._units.get(unit, UnitDefinition(unit)),
+            minimum=bound("min"),
+            maximum=bound("max"),
+            items={item.name: int(item.value) for item in items},
+            start=variable.start,
+            description=variable.description or "",
+            has_own_start=_has_own_start(variable),
+            is_constant=variable.variability == "constant",
+            is_alias=variable.alias is not None,
+        )
 
 
 def _has_own_start(variable: ModelVariable) -> bool:
@@ -471,13 +520,12 @@ _STEP = ctypes.CFUNCTYPE(
 
 
 class FmuSlave:
-    """An instance of an FMU. See :class:`rockshed.core.fmu.slave.Slave`."""
+    """An instance of an FMU of FMI 2.0. See :class:`rockshed.core.fmu.slave.Slave`."""
 
-    def __init__(self, file: FmuFile, name: str) -> None:
+    def __init__(self, file: FmuFile, name: str, description: Description) -> None:
         self.name = name
         self.messages: list[tuple[int, str]] = Messages()
         self._folder = TemporaryFolder()
-        description = read_description(file.model_description())
         self._fmu: Any = None
         self._by_pythonfmu = _made_by_pythonfmu(description.generation_tool)
         key = next(_keys)
@@ -544,8 +592,8 @@ class FmuSlave:
 
         return Addresses(
             int(self._fmu.component),
-            {kind: address(f"fmi2Set{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
-            {kind: address(f"fmi2Get{kind}") for kind in (REAL, INTEGER, BOOLEAN)},
+            {kind: address(f"fmi2Set{kind}") for kind in TYPES_2},
+            {kind: address(f"fmi2Get{kind}") for kind in TYPES_2},
             address("fmi2DoStep"),
         )
 

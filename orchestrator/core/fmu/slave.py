@@ -1,8 +1,9 @@
 """Interface of the master to a subsystem, in the order in which it is used.
 
 A :class:`Source` is an FMU file, or anything that behaves like one; a :class:`Slave` is an instance
-made from it. The calls are those of FMI 2.0 and return its status; messages about a status are in
-``messages``. Classes need not inherit from these protocols: having the same methods is enough.
+made from it. The calls are those of FMI, whatever its version, and return its status; messages
+about a status are in ``messages``. Classes need not inherit from these protocols: having the same
+methods is enough.
 
 The life of a slave: ``set`` parameters and inputs, ``setup_experiment``, ``enter_initialisation``,
 ``set`` and ``get`` as often as wanted, ``exit_initialisation``, then ``set``, ``step``, ``get`` in
@@ -11,7 +12,7 @@ turn, ``terminate``, ``free``.
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -42,7 +43,12 @@ REAL = "Real"
 INTEGER = "Integer"
 BOOLEAN = "Boolean"
 STRING = "String"
-"""Families of FMI calls. An enumeration travels as Integer."""
+BINARY = "Binary"
+CLOCK = "Clock"
+"""Kinds of values: what is of one kind can be connected. An enumeration is an Integer."""
+
+NUMBERS = (REAL, INTEGER, BOOLEAN)
+"""Kinds whose values a float can carry."""
 
 ValueReferences = NDArray[np.uint32]
 Values = NDArray[np.float64]
@@ -57,15 +63,18 @@ class Addresses:
     instance : int
         First argument of every call.
     set, get : mapping of str to int
-        Functions that move values, by kind.
+        Functions that move values, by :mod:`type <rockshed.core.fmu.types>`.
     do_step : int
         Function that advances.
+    may_return_early : bool
+        Whether that is the one of FMI 3.0, which tells how far it came.
     """
 
     instance: int
     set: Mapping[str, int]
     get: Mapping[str, int]
     do_step: int
+    may_return_early: bool = False
 
 
 class Messages(list[tuple[int, str]]):
@@ -114,10 +123,13 @@ class Slave(Protocol):
     addresses: Addresses | None
 
     def set(self, references: ValueReferences, values: Values, kind: str = REAL) -> int:
-        """Set variables of one kind. IntegerTable and booleans come as whole floats."""
+        """Set variables of one type, ``kind``; of arrays, all elements one after the other.
+
+        Whole numbers and booleans come as whole floats.
+        """
 
     def get(self, references: ValueReferences, out: Values, kind: str = REAL) -> int:
-        """Write the present values of variables of one kind into ``out``."""
+        """Write the present values of variables of one type, ``kind``, into ``out``."""
 
     def set_text(self, reference: int, text: str) -> int:
         """Set one variable of the kind String."""
@@ -171,6 +183,16 @@ class Slave(Protocol):
 
     def free(self) -> None:
         """Give back everything the slave holds. Nothing may be called afterwards."""
+
+
+class SlaveOfFmi3(Slave, Protocol):
+    """An instance with the calls that FMI 3.0 alone has."""
+
+    def configure(self, sizes: Sequence[tuple[ValueReferences, Values, str]]) -> int:
+        """Set structural parameters, references, values and type of each, before all else."""
+
+    def set_texts(self, reference: int, texts: Sequence[str]) -> int:
+        """Set all elements of an array of the kind String."""
 
 
 class Source(Protocol):

@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from ..fmu.slave import ValueReferences
+from ..fmu.types import TYPES
 from ..system.plan import End
 
 _WORTH_A_CALL = 16
@@ -17,26 +18,27 @@ slice. What lies between goes together."""
 
 @dataclass(frozen=True)
 class Block:
-    """Variables of one component and kind that one FMI call moves.
+    """Variables of one component and type that one FMI call moves.
 
     Attributes
     ----------
-    kind : str
-        Real, Integer or Boolean.
+    type : str
+        Key of :data:`rockshed.core.fmu.types.TYPES`.
     references : array of uint32
         Value references.
-    begin : int
-        Place of the first value in a row of numbers; the others follow.
+    begin, number : int
+        Place of the first value in a row of numbers, and how many follow one another there.
     """
 
-    kind: str
+    type: str
     references: ValueReferences
     begin: int
+    number: int
 
     @cached_property
     def places(self) -> slice:
         """Places of the values in the row."""
-        return slice(self.begin, self.begin + self.references.size)
+        return slice(self.begin, self.begin + self.number)
 
 
 def make_blocks(ends: Sequence[End], begin: int = 0) -> dict[str, list[Block]]:
@@ -45,7 +47,8 @@ def make_blocks(ends: Sequence[End], begin: int = 0) -> dict[str, list[Block]]:
     Parameters
     ----------
     ends : sequence of End
-        Ports in the order in which their values lie in a row of numbers.
+        Ports in the order in which their values lie in a row of numbers; of an array of FMI 3.0
+        all elements.
     begin : int
         Place of the first one.
 
@@ -55,15 +58,21 @@ def make_blocks(ends: Sequence[End], begin: int = 0) -> dict[str, list[Block]]:
         Blocks of each component.
     """
     blocks: dict[str, list[Block]] = {}
-    for (component, kind), group in groupby(
-        enumerate(ends, begin), lambda item: (item[1].component, item[1].port.kind)
+    for (component, moved), group in groupby(
+        enumerate(ends, begin), lambda item: (item[1].component, item[1].port.type)
     ):
         members = list(group)
         references = np.array([end.port.reference for _, end in members], np.uint32)
-        blocks.setdefault(component, []).extend(
-            Block(kind, references[a:b].copy(), members[a][0])
+        first = members[0][0]
+        made = blocks.setdefault(component, [])
+        if TYPES[moved].is_counted:
+            is_first = np.array([end.port.element == 0 for _, end in members])
+            made.append(Block(moved, references[is_first], first, references.size))
+            continue
+        made += [
+            Block(moved, references[a:b].copy(), first + a, b - a)
             for a, b in pairwise(_cuts(references))
-        )
+        ]
     return blocks
 
 

@@ -5,6 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from ..fmu.slave import OK, Slave, worst
+from ..fmu.types import TYPES
 from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
 from .blocks import Block, make_blocks
@@ -25,7 +26,8 @@ class Buses:
     Attributes
     ----------
     inputs, outputs : array of float
-        Newest values of all connected inputs and of all exchanged outputs.
+        Newest values of all connected inputs and of all exchanged outputs; behind these, the values
+        of the elements of inputs that nothing feeds.
     setters, getters : dict of str to list of Block
         Calls that move a component's values.
     channels : array of CHANNEL
@@ -39,7 +41,7 @@ class Buses:
     def __init__(self, plan: Plan, journal: IntegerTable | None = None) -> None:
         self.plan = plan
         self.inputs = np.zeros(len(plan.inputs))
-        self.outputs = np.zeros(len(plan.outputs))
+        self.outputs = np.concatenate((np.zeros(len(plan.outputs)), plan.held))
         self.setters = make_blocks(plan.inputs)
         self.getters = make_blocks(plan.outputs)
         self.channels = _channels(plan)
@@ -56,6 +58,7 @@ class Buses:
                 int(place)
                 for block in self.setters.get(name, [])
                 for place in self.plan.source[block.places]
+                if place < len(self.plan.outputs)
             }
             for name in self.plan.order
         }
@@ -89,7 +92,7 @@ class Buses:
             ways = self.linear[self.linear_of(block)]
             at = ways["place"] - block.begin
             values[at] = ways["factor"] * values[at] + ways["offset"]
-            status = worst(status, slave.set(block.references, values, block.kind))
+            status = worst(status, slave.set(block.references, values, block.type))
         return status
 
     def linear_of(self, block: Block) -> slice:
@@ -103,8 +106,32 @@ class Buses:
         status = OK
         for block in self.getters.get(slave.name, []):
             values = self.outputs[block.places]
-            status = worst(status, slave.get(block.references, values, block.kind))
+            status = worst(status, slave.get(block.references, values, block.type))
         return status
+
+    def clear(self) -> None:
+        """Forget all values that came from outputs."""
+        self.inputs[:] = 0.0
+        self.outputs[: len(self.plan.outputs)] = 0.0
+
+    def unfit(self, component: str, action: Action) -> tuple[End, float] | None:
+        """Return the first port that cannot hold its value, or whose value the bus cannot hold.
+
+        Parameters
+        ----------
+        component : str
+            Owner of the port.
+        action : Action
+            SET for inputs, GET for outputs.
+        """
+        is_set = action is Action.SET
+        ends = self.plan.inputs if is_set else self.plan.outputs
+        values = self.inputs if is_set else self.outputs
+        for end, value in zip(ends, values):
+            held = TYPES[end.port.type]
+            if end.component == component and not held.low <= value <= held.high:
+                return end, float(value)
+        return None
 
     def not_finite(self, component: str) -> End | None:
         """Return the first exchanged output of a component that is no finite number."""

@@ -7,15 +7,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu.slave import BOOLEAN, ERROR, INTEGER, REAL, Addresses, Slave
+from ..fmu.slave import ERROR, Addresses, Slave
+from ..fmu.types import TYPES, NumberType
 
 _MOVE = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p
 )
+_COUNTED_MOVE = ctypes.CFUNCTYPE(
+    ctypes.c_int,
+    ctypes.c_void_p,
+    ctypes.c_void_p,
+    ctypes.c_size_t,
+    ctypes.c_void_p,
+    ctypes.c_size_t,
+)
 _STEP = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int
 )
-_KINDS = (REAL, INTEGER, BOOLEAN)
 
 
 class Callbacks:
@@ -41,8 +49,8 @@ class Callbacks:
         self._slave = slave
         self._arrays: dict[tuple[int, int, Any], NDArray[Any]] = {}
         self.raised: BaseException | None = None
-        setters = {kind: _MOVE(self._guarded(self._setter(kind))) for kind in _KINDS}
-        getters = {kind: _MOVE(self._guarded(self._getter(kind))) for kind in _KINDS}
+        setters = {name: self._made(moved, self._set) for name, moved in TYPES.items()}
+        getters = {name: self._made(moved, self._get) for name, moved in TYPES.items()}
         step = _STEP(self._guarded(self._step))
         self._kept = (setters, getters, step)
         self.addresses = Addresses(
@@ -63,36 +71,35 @@ class Callbacks:
 
         return call
 
-    def _setter(self, kind: str) -> Callable[..., int]:
-        def move(_instance: Any, references: int, count: int, values: int) -> int:
-            numbers = self._array(references, count, ctypes.c_uint32)
-            if kind == REAL:
-                return self._slave.set(numbers, self._array(values, count, ctypes.c_double), kind)
-            whole = self._array(values, count, ctypes.c_int32)
-            return self._slave.set(numbers, whole.astype(np.float64), kind)
+    def _made(self, moved: NumberType, move: Callable[..., int]) -> Any:
+        """Return a C function that moves values of a type."""
 
-        return move
+        def call(_instance: Any, references: int, count: int, values: int, number: int = 0) -> int:
+            numbers = self._array(references, count, np.dtype(np.uint32))
+            return move(moved.name, numbers, self._array(values, number or count, moved.number))
 
-    def _getter(self, kind: str) -> Callable[..., int]:
-        def move(_instance: Any, references: int, count: int, values: int) -> int:
-            numbers = self._array(references, count, ctypes.c_uint32)
-            if kind == REAL:
-                return self._slave.get(numbers, self._array(values, count, ctypes.c_double), kind)
-            out = np.zeros(count)
-            status = self._slave.get(numbers, out, kind)
-            self._array(values, count, ctypes.c_int32)[:] = out
-            return status
+        return (_COUNTED_MOVE if moved.is_counted else _MOVE)(self._guarded(call))
 
-        return move
+    def _set(self, name: str, references: NDArray[np.uint32], values: NDArray[Any]) -> int:
+        return self._slave.set(references, values.astype(np.float64, copy=False), name)
+
+    def _get(self, name: str, references: NDArray[np.uint32], values: NDArray[Any]) -> int:
+        if values.dtype == np.float64:
+            return self._slave.get(references, values, name)
+        out = np.zeros(values.size)
+        status = self._slave.get(references, out, name)
+        values[:] = out
+        return status
 
     def _step(self, _instance: Any, time: float, step: float, _forgets: int) -> int:
         return self._slave.step(time, step)
 
-    def _array(self, address: int, count: int, number: Any) -> NDArray[Any]:
+    def _array(self, address: int, count: int, number: np.dtype[Any]) -> NDArray[Any]:
         """Return the numbers at an address; the loop uses the same few addresses all the time."""
         key = (address, count, number)
         if key not in self._arrays:
-            self._arrays[key] = np.frombuffer((number * count).from_address(address), number)
+            content: Any = (ctypes.c_uint8 * (count * number.itemsize)).from_address(address)
+            self._arrays[key] = np.frombuffer(content, number)
         return self._arrays[key]
 
 

@@ -61,6 +61,7 @@ class Parts:
             "channels": buses.channels,
             "watched": buses.watched,
             "warned": self.master.warned_table,
+            "returned": self.master.returned_table,
         }
 
     def take(self) -> Checkpoint:

@@ -14,9 +14,26 @@ from llvmlite import ir
 from numba import from_dtype, njit, types
 from numba.extending import intrinsic
 
+from ..fmu.fmi3_slave import MOST_RETURNS, ROUNDING
 from ..fmu.slave import OK, WARNING
 from ..system.schedule import Action
-from .tables import ENTRY, KINDS, NOT_FINITE, NUMBERS, Tables
+from .tables import (
+    BYTE,
+    DOUBLE,
+    ENDED,
+    ENTRY,
+    KINDS,
+    LONG,
+    NOT_FINITE,
+    NOT_FITTING,
+    NUMBERS,
+    SHORT,
+    SINGLE,
+    STUCK,
+    TRUTH,
+    TRUTH_OF_INTEGER,
+    Tables,
+)
 
 _SET = int(Action.SET)
 _STEP = int(Action.STEP)
@@ -59,6 +76,61 @@ def _call_move(  # type: ignore[no-untyped-def]
         )
 
     return types.int32(*[types.int64] * 5), generate
+
+
+@_intrinsic
+def _call_counted_move(  # type: ignore[no-untyped-def]
+    _context, function, instance, references, count, values, number
+):
+    """Call a C function at an address.
+
+    ``int function(void* instance, const unsigned* references, size_t count, void* values,
+    size_t number)``
+    """
+
+    def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        pointer = ir.IntType(8).as_pointer()
+        size = ir.IntType(64)
+        kind = ir.FunctionType(ir.IntType(32), [pointer, pointer, size, pointer, size])
+        f, c, r, n, v, m = arguments
+        return builder.call(
+            builder.inttoptr(f, kind.as_pointer()),
+            [_pointer(builder, c), _pointer(builder, r), n, _pointer(builder, v), m],
+        )
+
+    return types.int32(*[types.int64] * 6), generate
+
+
+@_intrinsic
+def _call_step_of_3(  # type: ignore[no-untyped-def]
+    _context, function, instance, time, step, told, reached
+):
+    """Call a C function at an address, which says that no earlier state is needed.
+
+    ``int function(void* instance, double time, double step, bool, bool* event, bool* end,
+    bool* early, double* reached)``; the three answers lie at ``told``, one byte each.
+    """
+
+    def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        real = ir.DoubleType()
+        pointer = ir.IntType(8).as_pointer()
+        integer = ir.IntType(32)  # a bool is passed in the lowest byte of a register
+        kind = ir.FunctionType(integer, [pointer, real, real, integer, *[pointer] * 4])
+        f, c, t, h, told, reached = arguments
+        answers = [builder.add(told, ir.Constant(told.type, place)) for place in range(3)]
+        return builder.call(
+            builder.inttoptr(f, kind.as_pointer()),
+            [
+                _pointer(builder, c),
+                t,
+                h,
+                ir.Constant(integer, 1),
+                *(_pointer(builder, place) for place in [*answers, reached]),
+            ],
+        )
+
+    whole = types.int64
+    return types.int32(whole, whole, types.float64, types.float64, whole, whole), generate
 
 
 @_intrinsic
@@ -152,11 +224,77 @@ def _give(tables, move):  # type: ignore[no-untyped-def]
         value = tables.inputs[way["place"]]
         tables.inputs[way["place"]] = way["factor"] * value + way["offset"]
     address = tables.inputs.ctypes.data + 8 * begin
-    if move["whole"]:
-        for i in range(number):
-            tables.integers[i] = int(inputs[i])
-        address = tables.integers.ctypes.data
-    return _call_move(move["function"], move["instance"], move["references"], number, address)
+    if move["form"] != DOUBLE:
+        if _pack(tables, move, inputs) > 0:
+            return NOT_FITTING
+        address = tables.longs.ctypes.data
+    return _call(move, address)
+
+
+@_compiled
+def _call(move, address):  # type: ignore[no-untyped-def]
+    """Let an FMU set or get the values at an address; return the status."""
+    function = move["function"]
+    instance = move["instance"]
+    references = move["references"]
+    count = move["count"]
+    if move["is_counted"]:
+        number = move["number"]
+        return _call_counted_move(function, instance, references, count, address, number)
+    return _call_move(function, instance, references, count, address)
+
+
+@_compiled
+def _pack(tables, move, values):  # type: ignore[no-untyped-def]
+    """Write values into the buffer as they travel; return how many do not fit."""
+    form = move["form"]
+    unfit = 0
+    for i in range(values.size):
+        value = values[i]
+        if not move["low"] <= value <= move["high"]:
+            unfit += 1
+        elif form == SINGLE:
+            tables.singles[i] = value
+        elif form in (BYTE, TRUTH):
+            tables.bytes[i] = int(value)
+        elif form == SHORT:
+            tables.shorts[i] = int(value)
+        elif form == LONG:
+            tables.longs[i] = int(value)
+        else:
+            tables.integers[i] = int(value)
+    return unfit
+
+
+@_compiled
+def _unpack(tables, move, values):  # type: ignore[no-untyped-def]
+    """Read values from the buffer; return how many the bus cannot hold."""
+    form = move["form"]
+    bits = 0
+    unfit = 0
+    for i in range(values.size):
+        if form == SINGLE:
+            values[i] = tables.singles[i]
+            continue
+        if form in (BYTE, TRUTH):
+            value = float(tables.bytes[i])
+            bits = 8
+        elif form == SHORT:
+            value = float(tables.shorts[i])
+            bits = 16
+        elif form == LONG:
+            value = float(tables.longs[i])
+            bits = 64
+        else:
+            value = float(tables.integers[i])
+            bits = 32
+        if form in (TRUTH, TRUTH_OF_INTEGER):
+            value = 1.0 if value != 0.0 else 0.0
+        elif value < 0.0 and move["low"] == 0.0:
+            value += 2.0**bits
+        values[i] = value
+        unfit += 0 if move["low"] <= value <= move["high"] else 1
+    return unfit
 
 
 @_compiled
@@ -168,26 +306,61 @@ def _take(tables, move, values, base):  # type: ignore[no-untyped-def]
     begin = base + move["begin"]
     number = move["number"]
     address = values.ctypes.data + 8 * begin
-    if move["whole"]:
-        address = tables.integers.ctypes.data
-    status = _call_move(move["function"], move["instance"], move["references"], number, address)
-    if move["whole"]:
-        for i in range(number):
-            values[begin + i] = float(tables.integers[i])
-    if status <= _WARNING and _lost(values[begin : begin + number]) > 0:
+    if move["form"] != DOUBLE:
+        address = tables.longs.ctypes.data
+    status = _call(move, address)
+    if _is_bad(status):
+        return status
+    if move["form"] != DOUBLE and _unpack(tables, move, values[begin : begin + number]) > 0:
+        return NOT_FITTING
+    if _lost(values[begin : begin + number]) > 0:
         return NOT_FINITE
     return status
 
 
 @_compiled
-def _operate(tables, operation, origin):  # type: ignore[no-untyped-def]
+def _step_in_parts(tables, number, time, step):  # type: ignore[no-untyped-def]
+    """Make a step of FMI 3.0, in as many parts as the FMU makes of it; return the status."""
+    operation = tables.operations[number]
+    told = tables.told.ctypes.data
+    reached = tables.reached.ctypes.data
+    end = time + step
+    worst = 0
+    for _ in range(MOST_RETURNS):
+        tables.told[0] = 0
+        tables.reached[0] = time
+        status = _call_step_of_3(
+            operation["do_step"], operation["instance"], time, step, told, reached
+        )
+        if _is_bad(status):
+            return status
+        if status != 0:
+            worst = status
+        if tables.told[0] >> 8 & 255:
+            return ENDED
+        at = tables.reached[0]
+        if tables.told[0] >> 16 & 255 == 0 or at >= end - ROUNDING * abs(end):
+            return worst
+        if not at > time:
+            return STUCK
+        tables.returned[number] += 1
+        time = at
+        step = end - time
+    return STUCK
+
+
+@_compiled
+def _operate(tables, number, origin):  # type: ignore[no-untyped-def]
     """Carry out an operation of a period that began at the tick ``origin``.
 
     Returns the first bad status, or the worst one.
     """
+    operation = tables.operations[number]
     if operation["action"] == _STEP:
         time = float(origin + operation["begin"]) / float(tables.rate)
         step = float(operation["length"]) / float(tables.rate)
+        if operation["may_return"]:
+            return _step_in_parts(tables, number, time, step)
         return _call_step(operation["do_step"], operation["instance"], time, step)
     worst = 0
     for m in range(operation["first_move"], operation["end_move"]):
@@ -208,7 +381,7 @@ def _record(tables, base):  # type: ignore[no-untyped-def]
 
     Returns the operation that failed, and its status.
     """
-    for i in range(tables.outputs.size):
+    for i in range(tables.exchanged):
         tables.snapshots[base + i] = tables.outputs[i]
     works = base + tables.width - 2 * tables.channels.size
     for i in range(tables.channels.size):
@@ -255,7 +428,7 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
         tables.journal[0] = n
         for o in range(tables.first[n % period], tables.first[n % period + 1]):
             tables.journal[1] = o
-            status = _operate(tables, tables.operations[o], origin)
+            status = _operate(tables, o, origin)
             if status != 0:
                 if _is_bad(status):
                     return n - first, o, status

@@ -6,12 +6,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..fmu.slave import REAL, Addresses, Slave
+from ..fmu.slave import BOOLEAN, Addresses, Slave
+from ..fmu.types import TYPES
 from ..system.schedule import Action, Operation
+from .blocks import Block
 from .buses import Buses
 from .callbacks import Callbacks
 from .machine_code import advance
-from .tables import MOVE, NUMBERS, OPERATION, IntegerTable, Records, Tables, head
+from .tables import (
+    FORMS,
+    MOVE,
+    NUMBERS,
+    OPERATION,
+    TRUTH_OF_INTEGER,
+    IntegerTable,
+    Records,
+    Tables,
+    head,
+)
 
 
 class Fault(NamedTuple):
@@ -60,6 +72,24 @@ class ExchangeLoop:
     def warned_table(self) -> IntegerTable:
         """Return how often each operation had the status Warning, to be changed in its place."""
         return self._tables.warned
+
+    @property
+    def returned_table(self) -> IntegerTable:
+        """Return how often the step of each operation has ended early, to be changed in place."""
+        return self._tables.returned
+
+    @property
+    def returned(self) -> Counter[str]:
+        """Return how often a step of each component has ended early."""
+        counts: Counter[str] = Counter()
+        for operation, count in zip(self._operations, self._tables.returned):
+            counts[operation.component] += int(count)
+        return +counts
+
+    @property
+    def reached(self) -> float:
+        """Return the time (s) that the newest step of an FMU of FMI 3.0 has reached."""
+        return float(self._tables.reached[0])
 
     def advance(self, first: int, count: int) -> Fault | None:
         """Carry out exchanges until the first operation that fails.
@@ -114,6 +144,7 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
     plan = buses.plan
     snapshots = buses.snapshots
     operations, moves = _calls(buses, addresses)
+    buffer = np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int64)
     return Tables(
         start=plan.timing.start,
         exchange=plan.schedule.exchange,
@@ -121,6 +152,7 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
         every=snapshots.every,
         width=snapshots.rows.shape[1],
         row=0,
+        exchanged=len(plan.outputs),
         first=np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
         operations=operations,
         moves=moves,
@@ -128,12 +160,19 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
         outputs=buses.outputs,
         source=plan.source.astype(np.uint64),
         linear=buses.linear,
-        integers=np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int32),
+        singles=buffer.view(np.float32),
+        bytes=buffer.view(np.int8),
+        shorts=buffer.view(np.int16),
+        integers=buffer.view(np.int32),
+        longs=buffer,
         channels=buses.channels,
         watched=buses.watched,
         snapshots=snapshots.rows.ravel(),
         journal=buses.journal,
         warned=np.zeros(len(operations), np.int64),
+        returned=np.zeros(len(operations), np.int64),
+        told=np.zeros(1, np.int64),
+        reached=np.zeros(1),
     )
 
 
@@ -143,18 +182,18 @@ def _calls(buses: Buses, addresses: Mapping[str, Addresses]) -> tuple[Records, R
     The arrays of references that the moves point to belong to the buses.
     """
     operations: list[tuple[int, ...]] = []
-    moves: list[tuple[int, ...]] = []
+    moves: list[tuple[float, ...]] = []
     for operation in buses.operations:
         called = addresses[operation.component]
         first = len(moves)
         moves += _moves(operation, buses, called)
         steps = (operation.begin, operation.length)
-        functions = (called.instance, called.do_step)
+        functions = (called.instance, called.do_step, called.may_return_early)
         operations.append((operation.action, *functions, *steps, first, len(moves)))
     return np.array(operations, OPERATION), np.array(moves, MOVE)
 
 
-def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[int, ...]]:
+def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[float, ...]]:
     if operation.action is Action.STEP:
         return []
     is_set = operation.action is Action.SET
@@ -167,14 +206,21 @@ def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[
     }[operation.action]
     return [
         (
-            functions[block.kind],
+            functions[block.type],
             called.instance,
-            block.references.ctypes.data,
-            block.references.size,
-            block.begin,
-            block.kind != REAL,
-            (buses.linear_of(block) if is_set else nothing).start,
-            (buses.linear_of(block) if is_set else nothing).stop,
+            *_move(block, buses.linear_of(block) if is_set else nothing),
         )
         for block in blocks.get(operation.component, [])
     ]
+
+
+def _move(block: Block, linear: slice) -> tuple[float, ...]:
+    """Return the row of a block in the table of moves, without function and instance."""
+    moved = TYPES[block.type]
+    form = FORMS[moved.number.name]
+    if moved.kind == BOOLEAN and not moved.is_counted:
+        form = TRUTH_OF_INTEGER
+    references = block.references
+    called = (references.ctypes.data, references.size, block.number, block.begin)
+    ways = (linear.start, linear.stop)
+    return (*called, form, moved.is_counted, *ways, moved.low, moved.high)

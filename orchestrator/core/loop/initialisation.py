@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import InputRefused, Problem
-from ..fmu.description import Port
+from ..fmu.access import read_value
 from ..fmu.slave import (
     DISCARD,
     OK,
@@ -25,6 +25,7 @@ from ..fmu.slave import (
 from ..system.limits import MOST_INTERNAL_STEPS
 from ..system.plan import Plan
 from .buses import Buses
+from .start_values import set_values
 
 _ROUNDS = 20
 """Most rounds in which outputs are passed on at the start; a chain of components needs one round
@@ -183,13 +184,7 @@ def _refuse_lost(buses: Buses) -> None:
 
 
 def _begin(plan: Plan, slave: Slave, start: float, stop: float) -> int:
-    status = OK
-    for port, value in plan.starts[slave.name]:
-        if isinstance(value, str):
-            status = worst(status, slave.set_text(port.reference, value))
-        else:
-            reference = np.array([port.reference], np.uint32)
-            status = worst(status, slave.set(reference, np.array([value]), port.kind))
+    status = set_values(slave, plan.descriptions[slave.name], plan.starts[slave.name])
     told = slave.setup_experiment(start, stop, plan.tolerance(slave.name))
     return worst(status, told, slave.enter_initialisation())
 
@@ -302,7 +297,7 @@ def _too_many(plan: Plan, slave: Slave) -> list[Problem]:
     step = plan.system.step(slave.name)
     if used is None:
         return []
-    length = _value(slave, ports[used])
+    length = read_value(slave, ports[used])
     if not 0.0 < length * MOST_INTERNAL_STEPS < step:
         return []
     return [
@@ -328,7 +323,7 @@ def _port_stability(plan: Plan, slave: Slave) -> list[Problem]:
     step = plan.system.step(slave.name)
     if "step_limit" not in ports:
         return []
-    limit = _value(slave, ports["step_limit"])
+    limit = read_value(slave, ports["step_limit"])
     if step <= limit * (1.0 + 1e-9):
         return []
     return [
@@ -346,11 +341,11 @@ def _internal_stability(plan: Plan, slave: Slave) -> list[Problem]:
     step = plan.system.step(slave.name)
     if "stable_step" not in ports or "internal_step" not in ports:
         return []
-    stable = _value(slave, ports["stable_step"])
-    internal = _value(slave, ports["internal_step"])
+    stable = read_value(slave, ports["stable_step"])
+    internal = read_value(slave, ports["internal_step"])
     longest = min(internal, step)
     if "time_step" in ports:
-        longest = _value(slave, ports["time_step"])
+        longest = read_value(slave, ports["time_step"])
     if longest <= stable:
         return []
     return [
@@ -361,9 +356,3 @@ def _internal_stability(plan: Plan, slave: Slave) -> list[Problem]:
             f"set {slave.name}.internal_step to less than {stable:.3g} s, or allow instability",
         )
     ]
-
-
-def _value(slave: Slave, port: Port) -> float:
-    values = np.zeros(1)
-    slave.get(np.array([port.reference], np.uint32), values)
-    return float(values[0])

@@ -66,6 +66,11 @@ class _DescribedOnce:
         """Return the description as it was read first."""
         return self._description
 
+    def content(self, name: str) -> bytes | None:
+        """Read a file in the FMU; return None where there is none."""
+        content = getattr(self._source, "content", None)
+        return None if content is None else content(name)
+
     def instantiate(self, name: str) -> Slave:
         """Make an instance for a component of this name."""
         return self._source.instantiate(name)
@@ -253,7 +258,7 @@ class KeptInstances:
     def _key(self, plan: Plan, slave: Slave) -> str:
         """Return a digest of everything that an instance is told before its initialisation."""
         place, _ = self._in_use[id(slave)]
-        starts = tuple((p.kind, p.reference, value) for p, value in plan.starts[slave.name])
+        starts = tuple((port.name, value) for port, value in plan.starts[slave.name])
         span = (plan.timing.seconds(0), plan.timing.seconds(plan.timing.exchanges))
         return _digest(place, starts, span, plan.tolerance(slave.name))
 
@@ -262,8 +267,7 @@ class KeptInstances:
         for slave in slaves.values():
             slave.messages = type(slave.messages)()
             slave.reset()
-        buses.inputs[:] = 0.0
-        buses.outputs[:] = 0.0
+        buses.clear()
 
     def _keep(self, system: str, settled: _Settled) -> None:
         self._settled.setdefault(system, []).insert(0, settled)

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import RunFailed
+from ..fmu.access import read_values
 from ..fmu.slave import WARNING, Slave
 from ..results.metric import Metric
 from ..results.run_folder import Column
@@ -234,13 +235,11 @@ class Accounts:
         """Return a value at the start; 0 without a port."""
         if end is None:
             return 0.0
-        value = np.zeros(1)
-        reference = np.array([end.port.reference], np.uint32)
-        status = self._slaves[end.component].get(reference, value, end.port.kind)
+        status, (value,) = read_values(self._slaves[end.component], [end.port])
         if status > WARNING:
             at = self.plan.timing.seconds(0)
             raise RunFailed(end.component, at, f"does not give {end.port.name}")
-        return float(value[0])
+        return value
 
 
 def _sums(rows: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -30,6 +30,7 @@ _SOURCES = (
     "loop/machine_code.py",
     "system/schedule.py",
     "fmu/slave.py",
+    "fmu/fmi3_slave.py",
     "loop/tables.py",
 )
 """Files that the machine code follows from."""

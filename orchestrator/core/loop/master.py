@@ -14,7 +14,7 @@ from ..system.schedule import Action
 from .buses import Buses
 from .exchange import ExchangeLoop, Fault
 from .recording import Recorder, last_words
-from .tables import NOT_FINITE, IntegerTable
+from .tables import ENDED, NOT_FINITE, NOT_FITTING, STUCK, IntegerTable
 
 _MOST_AT_ONCE = 1000
 """Exchanges between two looks at Ctrl-C."""
@@ -144,6 +144,11 @@ class Master:
         return self._loop.warned_table
 
     @property
+    def returned_table(self) -> IntegerTable:
+        """Return the early returns that the loop has counted, one for each operation."""
+        return self._loop.returned_table
+
+    @property
     def recording_time(self) -> float:
         """Return the time (s) from snapshots to files, and for states and checkpoints."""
         if self._began is None:
@@ -175,6 +180,11 @@ class Master:
         self.wall_time = float(times["exchanges"])
         self.cpu_time = float(times["cpu"])
         self._recorded_before = float(times["recording"])
+
+    @property
+    def returned(self) -> Counter[str]:
+        """Return how often a step of each component has ended early, at an event."""
+        return self._loop.returned
 
     def run(self, interruption: Interruption, progress: Progress | None = None) -> bool:
         """Carry out all exchanges. Rows up to the end are recorded in any case.
@@ -268,16 +278,25 @@ class Master:
         self._at_once = max(1, min(_MOST_AT_ONCE, _GROWTH * self._at_once, in_time))
 
     def _is_end(self, fault: Fault) -> bool:
-        """Tell whether a slave has discarded a step because it wants to end the run."""
-        if fault.status != DISCARD or fault.operation.action is not Action.STEP:
-            return False
-        ask = getattr(self._slaves[fault.operation.component], "terminated_at", None)
-        at = ask() if ask else None
+        """Tell whether a slave wants to end the run in a step."""
+        at = self._wants_end_at(fault)
         if at is None:
             return False
         self.ended_by = fault.operation.component
         self._ended_at = min(max(at, self._time(fault)), self._time(fault, 1.0))
         return True
+
+    def _wants_end_at(self, fault: Fault) -> float | None:
+        """Return the time (s) that a step has reached in which a slave wants to end the run.
+
+        One of FMI 3.0 says so in the step, one of FMI 2.0 is asked when it has discarded a step.
+        """
+        if fault.status == ENDED:
+            return self._loop.reached
+        if fault.status != DISCARD or fault.operation.action is not Action.STEP:
+            return None
+        ask = getattr(self._slaves[fault.operation.component], "terminated_at", None)
+        return ask() if ask else None
 
     def _arrive(self, count: int, fault: Fault | None) -> None:
         """Count exchanges and the rows that were taken in them, up to a fault."""
@@ -299,6 +318,11 @@ class Master:
             self._slaves[name].messages.append((FATAL, "cannot be used any more"))
         if fault.status == NOT_FINITE:
             return RunFailed(name, self._plan.timing.seconds(fault.exchange + 1), self._lost(fault))
+        if fault.status == NOT_FITTING:
+            return RunFailed(name, self._time(fault), self._unfit(fault))
+        if fault.status == STUCK:
+            at = self._loop.reached
+            return RunFailed(name, at, "the step returned early there again and again")
         what = f"{self._what(fault)} ({status_name(fault.status)}): {said}"
         return RunFailed(name, self._time(fault), what)
 
@@ -322,6 +346,14 @@ class Master:
         period = fault.exchange // schedule.period * schedule.period
         ticks = fault.operation.begin + round(part * fault.operation.length)
         return timing.lasts(timing.start + period * schedule.exchange + ticks)
+
+    def _unfit(self, fault: Fault) -> str:
+        """Name the value that a type cannot hold."""
+        found = self._buses.unfit(fault.operation.component, fault.operation.action)
+        if found is None:  # one that is recorded only
+            return "gives a whole number of more than 53 bits: leave it out of the record"
+        end, value = found
+        return f"{end.name} is of the type {end.port.type}, which cannot hold {value:.17g}"
 
     def _lost(self, fault: Fault) -> str:
         """Name the value that is no finite number, and say what may be done about it."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..system.plan import End, Plan
+from ..system.plan import End, Plan, with_whole_arrays
 from .blocks import make_blocks
 
 _MOST_ROWS = 1000
@@ -84,9 +84,15 @@ def _apart(plan: Plan) -> list[End]:
     exchanged = {end.name for end in plan.outputs}
     works = (bond.work for bond in plan.bonds if bond.work is not None)
     wanted = [*plan.recorded, *works, *plan.balances]
-    apart = {end.name: end for end in wanted if end.name not in exchanged}
+    apart = [end for end in wanted if end.name not in exchanged]
     turns = {name: turn for turn, name in enumerate(plan.order)}
     return sorted(
-        apart.values(),
-        key=lambda end: (turns[end.component], end.port.kind, end.port.reference),
+        with_whole_arrays(plan.descriptions, apart),
+        key=lambda end: (
+            turns[end.component],
+            end.port.type,
+            end.port.reference,
+            end.port.array,
+            end.port.element,
+        ),
     )

@@ -15,6 +15,12 @@ IntegerTable = NDArray[np.int64]
 NOT_FINITE = 1 << 40
 """Status of an operation that brought a value that is no finite number; no FMU returns it, as a
 status has 32 bits."""
+NOT_FITTING = 1 << 41
+"""Status of an operation with a number that its type, or the bus, cannot hold."""
+ENDED = 1 << 42
+"""Status of a step in which an FMU of FMI 3.0 wants the run to end."""
+STUCK = 1 << 43
+"""Status of a step that returned early again and again, and came no further."""
 
 
 def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
@@ -24,15 +30,29 @@ def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
     )
 
 
-OPERATION = _record("action instance do_step begin length first_move end_move")
-"""One action of the schedule. instance, do_step: addresses. begin, length: of a step, in ticks,
-from the beginning of the period. first_move, end_move: rows in the table of moves, for other
-actions."""
+OPERATION = _record("action instance do_step may_return begin length first_move end_move")
+"""One action of the schedule. instance, do_step: addresses. may_return: do_step is that of FMI 3.0,
+which may return early. begin, length: of a step, in ticks, from the beginning of the period.
+first_move, end_move: rows in the table of moves, for other actions."""
 
-MOVE = _record("function instance references number begin whole first_linear end_linear")
-"""A call that moves ``number`` values from place ``begin`` of a bus on. function, instance,
-references: addresses. whole: the values travel as 32-bit integers. first_linear, end_linear: rows
-in the table of linear inputs."""
+MOVE = _record(
+    "function instance references count number begin form is_counted first_linear end_linear",
+    "low high",
+)
+"""A call that moves ``number`` values from place ``begin`` of a bus on, those of ``count``
+references. function, instance, references: addresses. form: how they travel, see :data:`FORMS`.
+is_counted: the call is told ``number``. first_linear, end_linear: rows in the table of linear
+inputs. low, high: what the type can hold."""
+
+DOUBLE, SINGLE, BYTE, SHORT, INTEGER, LONG, TRUTH, TRUTH_OF_INTEGER = range(8)
+"""Forms of values in calls. A truth is one byte, and any other number than 0 is true."""
+
+FORMS = {
+    **{"float64": DOUBLE, "float32": SINGLE, "bool": TRUTH},
+    **{"int8": BYTE, "int16": SHORT, "int32": INTEGER, "int64": LONG},
+    **{"uint8": BYTE, "uint16": SHORT, "uint32": INTEGER, "uint64": LONG},
+}
+"""Forms by the name of the number in memory. Whether one has a sign follows from ``low``."""
 
 LINEAR = _record("place", "factor offset")
 """An input that gets factor times the value of its source plus offset."""
@@ -63,6 +83,8 @@ class Tables(NamedTuple):
         Numbers in a row.
     row : int
         The next row.
+    exchanged : int
+        Outputs that are exchanged; behind them stand values that nobody changes.
     first : array of int64
         Operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those
         after the last of a period read what is recorded.
@@ -77,8 +99,8 @@ class Tables(NamedTuple):
         look whether it counts from the end.
     linear : array of LINEAR
         Inputs that get other values than their sources have, by rising place.
-    integers : array of int32
-        Buffer for values on their way as integers, as long as any row of them.
+    singles, bytes, shorts, integers, longs : array of float32, int8, int16, int32, int64
+        One buffer for values on their way in another form, as long as any row of them.
     channels : array of CHANNEL
         Forces of power bonds.
     watched : array of WATCHED
@@ -89,6 +111,12 @@ class Tables(NamedTuple):
         Exchange and operation under way, -1 while none is.
     warned : array of int64
         For each operation, how often its status was Warning.
+    returned : array of int64
+        For each operation, how often its step has returned early.
+    told : array of int64, shape (1,)
+        The three truths that a step of FMI 3.0 tells: event, end of the run, early return.
+    reached : array of float64, shape (1,)
+        The time that it tells (s).
     """
 
     start: int
@@ -97,6 +125,7 @@ class Tables(NamedTuple):
     every: int
     width: int
     row: int
+    exchanged: int
     first: IntegerTable
     operations: Records
     moves: Records
@@ -104,15 +133,22 @@ class Tables(NamedTuple):
     outputs: FloatTable
     source: NDArray[np.uint64]
     linear: Records
+    singles: NDArray[np.float32]
+    bytes: NDArray[np.int8]
+    shorts: NDArray[np.int16]
     integers: NDArray[np.int32]
+    longs: NDArray[np.int64]
     channels: Records
     watched: Records
     snapshots: FloatTable
     journal: IntegerTable
     warned: IntegerTable
+    returned: IntegerTable
+    told: IntegerTable
+    reached: FloatTable
 
 
-NUMBERS = ("start", "exchange", "rate", "every", "width", "row")
+NUMBERS = ("start", "exchange", "rate", "every", "width", "row", "exchanged")
 """The numbers among the :class:`Tables`, which come first."""
 
 KINDS = {
@@ -123,12 +159,19 @@ KINDS = {
     "outputs": np.dtype(np.float64),
     "source": np.dtype(np.uint64),
     "linear": LINEAR,
+    "singles": np.dtype(np.float32),
+    "bytes": np.dtype(np.int8),
+    "shorts": np.dtype(np.int16),
     "integers": np.dtype(np.int32),
+    "longs": np.dtype(np.int64),
     "channels": CHANNEL,
     "watched": WATCHED,
     "snapshots": np.dtype(np.float64),
     "journal": np.dtype(np.int64),
     "warned": np.dtype(np.int64),
+    "returned": np.dtype(np.int64),
+    "told": np.dtype(np.int64),
+    "reached": np.dtype(np.float64),
 }
 """Types of the arrays among the :class:`Tables`, in their order."""
 

@@ -5,11 +5,10 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-import numpy as np
-
 from ...versions import versions
 from ..errors import Problem
-from ..fmu.description import Description
+from ..fmu.access import read_values
+from ..fmu.description import SIZE, Description
 from ..fmu.slave import Slave, Source
 from ..system.plan import Plan
 from ..system.values import written
@@ -151,9 +150,9 @@ def _parameters(plan: Plan, slave: Slave) -> dict[str, Any]:
         for port, value in plan.starts[slave.name]
         if isinstance(value, str)
     }
-    value = np.zeros(1)
-    for port in plan.descriptions[slave.name].named("parameter"):
-        if port.is_number:
-            slave.get(np.array([port.reference], np.uint32), value, port.kind)
-            found[port.name] = {"value": written(port, float(value[0])), "unit": port.unit_name}
+    known = plan.descriptions[slave.name]
+    ports = [port for port in known.named(SIZE) + known.named("parameter") if port.is_number]
+    _, values = read_values(slave, ports)
+    for port, value in zip(ports, values, strict=True):
+        found[port.name] = {"value": written(port, value), "unit": port.unit_name}
     return found

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 from ..errors import Problem
@@ -103,14 +104,14 @@ def _size(count: int) -> str:
     return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.3g} MB"
 
 
-def internal_step_problems(system: SystemSpec, starts: Starts) -> list[Problem]:
+def internal_step_problems(system: SystemSpec, starts: Mapping[str, Starts]) -> list[Problem]:
     """Find components that would make too many internal steps at once.
 
     Parameters
     ----------
     system : SystemSpec
         Gives the communication steps.
-    starts : Starts
+    starts : mapping of str to Starts
         Values of ``internal_step`` are looked for among them.
 
     Returns

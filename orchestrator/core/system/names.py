@@ -72,9 +72,10 @@ def expand(name: str, known: Iterable[str]) -> list[str]:
     tail = name[found.end() :]
     if found.group(1) is not None:
         return [f"{head}[{i}]{tail}" for i in _indices(*found.groups())]
-    element = re.compile(re.escape(head) + r"\[(\d+)\]" + re.escape(tail))
-    indices = sorted(int(m.group(1)) for m in map(element.fullmatch, known) if m)
-    return [f"{head}[{i}]{tail}" for i in indices]
+    element = re.compile(re.escape(head) + r"\[(\d+(?:,\d+)*)\]" + re.escape(tail))
+    found_names = (m for m in map(element.fullmatch, known) if m)
+    indices = sorted(tuple(map(int, m.group(1).split(","))) for m in found_names)
+    return [f"{head}[{','.join(map(str, index))}]{tail}" for index in indices]
 
 
 def _indices(first: str, last: str) -> range:
@@ -93,9 +94,11 @@ def matches(shorthand: str, name: str) -> bool:
     if found is None or shorthand == name:
         return shorthand == name
     head, tail = re.escape(shorthand[: found.start()]), re.escape(shorthand[found.end() :])
+    if found.group(1) is None:
+        return re.fullmatch(rf"{head}\[\d+(,\d+)*\]{tail}", name) is not None
     element = re.fullmatch(rf"{head}\[(\d{{1,{_LONGEST_NUMBER}}})\]{tail}", name)
-    if element is None or found.group(1) is None:
-        return element is not None
+    if element is None:
+        return False
     first, last = found.groups()
     fits = max(len(first), len(last)) <= _LONGEST_NUMBER
     return fits and int(first) <= int(element.group(1)) <= int(last)

@@ -1,6 +1,6 @@
 """A system ready to run: names replaced by places, times by ticks."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -12,8 +12,8 @@ from .schedule import Schedule
 from .system import SystemSpec
 from .timing import Timing
 
-Starts = Mapping[str, list[tuple[Port, float | str]]]
-"""Ports of each component that are set before the initialisation, and their values."""
+Starts = list[tuple[Port, float | str]]
+"""Ports of a component that are set before the initialisation, and their values."""
 
 
 class End(NamedTuple):
@@ -26,6 +26,25 @@ class End(NamedTuple):
     def name(self) -> str:
         """``component.port``, the name in the results."""
         return f"{self.component}.{self.port.name}"
+
+
+def with_whole_arrays(descriptions: Mapping[str, Description], ends: Iterable[End]) -> list[End]:
+    """Return every port once, and of each array of FMI 3.0 all elements.
+
+    Parameters
+    ----------
+    descriptions : mapping of str to Description
+        Of the components.
+    ends : iterable of End
+        Ports.
+    """
+    found: dict[tuple[str, str], list[End]] = {}
+    for end in ends:
+        key = (end.component, end.port.array)
+        if key not in found:
+            elements = descriptions[end.component].elements_of(end.port)
+            found[key] = [End(end.component, element) for element in elements]
+    return [end for listed in found.values() for end in listed]
 
 
 @dataclass(frozen=True)
@@ -72,13 +91,15 @@ class Plan:
         Times in ticks.
     schedule : Schedule
         Order of exchanges and steps.
-    starts : Starts
-        Values that are set before the initialisation.
+    starts : mapping of str to Starts
+        Values of each component that are set before the initialisation.
     inputs, outputs : tuple of End
-        Ports that take part in the exchange, in the order of the two buses: by component, kind,
-        reference.
+        Ports that take part in the exchange, in the order of the two buses: by component, type,
+        reference. Of an array of FMI 3.0, which is moved as a whole, all elements.
     source : array of int, shape (inputs,)
-        Place among the outputs that feeds each input.
+        Place among the outputs that feeds each input; one behind them leads to ``held``.
+    held : array of float
+        Values of the elements of inputs that nothing feeds.
     bonds : tuple of BondPlaces
         Power bonds.
     recorded : tuple of End
@@ -102,10 +123,11 @@ class Plan:
     descriptions: Mapping[str, Description]
     timing: Timing
     schedule: Schedule
-    starts: Starts
+    starts: Mapping[str, Starts]
     inputs: tuple[End, ...]
     outputs: tuple[End, ...]
     source: NDArray[np.int64]
+    held: NDArray[np.float64]
     bonds: tuple[BondPlaces, ...]
     recorded: tuple[End, ...]
     watched: NDArray[np.int64]
@@ -114,6 +136,13 @@ class Plan:
     kinetic: tuple[End, ...]
     warnings: tuple[str, ...] = ()
     linear: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def fed(self) -> Iterator[tuple[int, End, End]]:
+        """Yield place and port of each input that is fed, and the output that feeds it."""
+        for place, (target, source) in enumerate(zip(self.inputs, self.source, strict=True)):
+            if source < len(self.outputs):
+                yield place, target, self.outputs[source]
 
     def tolerance(self, component: str) -> float | None:
         """Return the relative tolerance that the solver of a component is told.

@@ -4,6 +4,7 @@ Nothing runs here. All problems of a system are found at once.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -13,18 +14,19 @@ from numpy.typing import NDArray
 from rockshed.components.common.roles import Role
 
 from ..errors import InputRefused, Problem, counted
-from ..fmu.description import Description, Port, UnitDefinition
+from ..fmu.description import SIZE, Description, Port, UnitDefinition
 from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import REAL, Source
+from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select, split_name
-from .plan import BondPlaces, End, Plan
+from .plan import BondPlaces, End, Plan, Starts, with_whole_arrays
 from .renaming import present_name, renaming_warning
 from .schedule import make_schedule
 from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
 from .units import is_force, is_joule, unit_text, units_agree
-from .values import value_for
+from .values import start_value, value_for
 
 
 def make_plan(system: SystemSpec, sources: Mapping[str, Source]) -> Plan:
@@ -69,7 +71,7 @@ class _Parts(NamedTuple):
     """The parts of a system by ports."""
 
     links: _Links
-    starts: dict[str, list[tuple[Port, float | str]]]
+    starts: dict[str, Starts]
     bonds: list[_Bond]
     watched: list[End]
     recorded: list[End]
@@ -108,6 +110,7 @@ class _Planner:
     def _parts(self) -> _Parts:
         links = self._links()
         starts = self._starts({target.name for _, target in links})
+        self._check_arrays(links, starts)
         bonds = [self._bond(name, bond, links) for name, bond in self.system.bonds.items()]
         return _Parts(
             links,
@@ -122,11 +125,15 @@ class _Planner:
         """Replace ports by places on the buses."""
         at_bonds = [end for bond in parts.bonds for end in bond.force + bond.position]
         sources = [source for source, _ in parts.links]
-        inputs = _sorted(order, (target for _, target in parts.links))
-        outputs = _sorted(order, [*sources, *parts.watched, *at_bonds])
+        targets = [target for _, target in parts.links]
+        inputs = _sorted(order, with_whole_arrays(self.descriptions, targets))
+        exchanged = [*sources, *parts.watched, *at_bonds]
+        outputs = _sorted(order, with_whole_arrays(self.descriptions, exchanged))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
         feeds = {target.name: place[source.name] for source, target in parts.links}
+        unfed = [end for end in inputs if end.name not in feeds]
+        feeds |= {end.name: len(outputs) + i for i, end in enumerate(unfed)}
         return Plan(
             system=self.system,
             order=order,
@@ -137,6 +144,7 @@ class _Planner:
             inputs=inputs,
             outputs=outputs,
             source=np.array([feeds[end.name] for end in inputs], np.int64),
+            held=np.array([_held(end, parts.starts) for end in unfed], np.float64),
             linear={
                 place_of_input[name]: way
                 for name, way in self.linear.items()
@@ -162,7 +170,7 @@ class _Planner:
     def _describe(self) -> None:
         for name, source in self.sources.items():
             try:
-                self.descriptions[name] = read_description(source.model_description())
+                self.descriptions[name] = self._description(name, source.model_description())
                 self.warnings += [f"{name}: {text}" for text in self.descriptions[name].warnings]
                 self.warnings += _of_texts(name, self.descriptions[name])
             except InputRefused as refusal:
@@ -172,6 +180,21 @@ class _Planner:
             except UnusableError as error:
                 self._refuse(name, f"{self.system.components[name].fmu} {error}", error.remedy)
         self._check_instances()
+
+    def _description(self, name: str, xml: bytes) -> Description:
+        """Read the description of a component in the sizes that it is given."""
+        known = read_description(xml)
+        given = dict(self.system.components[name].parameters)
+        for shared in self.system.shared.values():
+            for target in shared.targets:
+                component, parameter = self._split(target)
+                given |= {parameter: shared.value} if component == name else {}
+        sizes = []
+        for port in known.named(SIZE):
+            with suppress(ValueError):  # it is refused with all other values
+                if port.name in given:
+                    sizes.append((port.name, int(value_for(port, given[port.name]))))
+        return read_description(xml, tuple(sizes)) if sizes else known
 
     def _check_instances(self) -> None:
         """Refuse two instances of an FMU that may be in a process only once."""
@@ -232,8 +255,11 @@ class _Planner:
         if component not in self.descriptions:
             return []
         ports = self.descriptions[component].ports
+        present = self._present(component, name)
         try:
-            names = expand(self._present(component, name), ports)
+            names = expand(present, ports)
+            if present not in ports and (array := self.descriptions[component].arrays.get(present)):
+                names = list(array.names)
         except ValueError as error:
             self._refuse(where, f"{component}.{name} {error}", "give the range that the FMU has")
             return []
@@ -247,6 +273,13 @@ class _Planner:
             )
             return []
         return [End(component, ports[n]) for n in names]
+
+    def _array(self, component: str, name: str) -> tuple[int, ...]:
+        """Return the shape of the array that a name stands for; empty for anything else."""
+        known = self.descriptions[component]
+        present = self._present(component, name)
+        is_array = present not in known.ports and present in known.arrays
+        return known.arrays[present].shape if is_array else ()
 
     def _present(self, component: str, name: str) -> str:
         """Return the present name of a variable, and warn once of an older one."""
@@ -282,11 +315,16 @@ class _Planner:
             for port in known.ports.values()
         )
         ends = {end.name: end for end in every if end.port.is_number}
-        outputs = [name for name, end in ends.items() if end.port.causality == "output"]
+        outputs = [
+            name
+            for name, end in ends.items()
+            if end.port.causality == "output" and not end.port.is_alias
+        ]
         chosen: dict[str, End] = {}
         for given in patterns:
             pattern = self._present_pattern(given)
             names = [pattern] if pattern in ends and key == "record" else select(pattern, outputs)
+            names = names or [name for name in self._elements(pattern) if name in outputs]
             if self._is_text(pattern):
                 what = f"{pattern!r} is text, and only numbers are kept"
                 self._refuse(key, what, "leave it out")
@@ -298,6 +336,13 @@ class _Planner:
                 self._refuse(key, f"{pattern!r} selects no output", nearest(pattern, outputs))
             chosen |= {name: ends[name] for name in names}
         return list(chosen.values())
+
+    def _elements(self, name: str) -> list[str]:
+        """Return the names of the elements of an array; nothing if it is none."""
+        component, variable = self._split(name)
+        known = self.descriptions.get(component)
+        array = known.arrays.get(variable) if known else None
+        return [f"{component}.{element}" for element in array.names] if array else []
 
     def _is_text(self, name: str) -> bool:
         component, variable = self._split(name)
@@ -315,7 +360,9 @@ class _Planner:
     def _links(self) -> _Links:
         links: _Links = []
         for connection in self.system.connections:
-            links += self._expanded(connection)
+            parts = self._of_terminals(connection) if connection.terminals else [connection]
+            for part in parts:
+                links += self._expanded(part)
         drivers: dict[str, list[str]] = {}
         for source, target in links:
             drivers.setdefault(target.name, []).append(source.name)
@@ -328,8 +375,17 @@ class _Planner:
                 )
         return links
 
+    def _of_terminals(self, connection: Connection) -> list[Connection]:
+        """Return the connections that a connection of two terminals stands for."""
+        ends = (self._split(connection.source), self._split(connection.target))
+        try:
+            return Joiner(self.descriptions, self.sources).connections(str(connection), *ends)
+        except InputRefused as refusal:
+            self.problems += refusal.problems
+            return []
+
     def _expanded(self, connection: Connection) -> _Links:
-        where = f"{connection.source} -> {connection.target}"
+        where = str(connection)
         sources = self._of_causality(
             where, self._ends(where, *self._split(connection.source)), "output"
         )
@@ -337,6 +393,14 @@ class _Planner:
             where, self._ends(where, *self._split(connection.target)), "input"
         )
         if not sources or not targets:
+            return []
+        shapes = [
+            self._array(*self._split(name)) for name in (connection.source, connection.target)
+        ]
+        if all(shapes) and shapes[0] != shapes[1]:
+            texts = " with one of ".join(" x ".join(map(str, shape)) for shape in shapes)
+            remedy = "connect arrays of one shape, or elements: x[1], x[2..4]"
+            self._refuse(where, f"connects an array of {texts} elements", remedy)
             return []
         if len(sources) != len(targets):
             self._refuse(
@@ -362,9 +426,13 @@ class _Planner:
             if source.port.kind != target.port.kind or not source.port.is_number:
                 self._refuse(
                     where,
-                    f"{source.name} is {source.port.kind} and {target.name} is {target.port.kind}",
+                    f"{source.name} is {source.port.type} and {target.name} is {target.port.type}",
                     "connect ports of one type, Real, Integer or Boolean",
                 )
+                return
+            if source.port.items and target.port.items not in ({}, source.port.items):
+                names = [f"{end.name} is one of {_few(end.port.items)}" for end in (source, target)]
+                self._refuse(where, " and ".join(names), "connect enumerations of the same items")
                 return
             if is_linear and source.port.kind != REAL:
                 what = f"has a factor or an offset, and {source.name} is {source.port.kind}"
@@ -401,8 +469,7 @@ class _Planner:
         for key, shared in self.system.shared.items():
             for target in shared.targets:
                 self._give(given, target, f"shared.{key}", shared.value, connected)
-        starts: dict[str, list[tuple[Port, float | str]]]
-        starts = {name: [] for name in self.system.components}
+        starts: dict[str, Starts] = {name: [] for name in self.system.components}
         for end, _, value in given.values():
             try:
                 starts[end.component].append((end.port, value_for(end.port, value)))
@@ -413,6 +480,20 @@ class _Planner:
                     f"set {_described(end)} to another value",
                 )
         return starts
+
+    def _check_arrays(self, links: _Links, starts: Mapping[str, Starts]) -> None:
+        """Refuse arrays of FMI 3.0, which are set as a whole, if an element has no value."""
+        given = [End(name, port) for name, listed in starts.items() for port, _ in listed]
+        ends = [*given, *(target for _, target in links)]
+        known = {end.name for end in ends}
+        missing: dict[tuple[str, str], list[str]] = {}
+        for end in with_whole_arrays(self.descriptions, ends):
+            if end.port.shape and end.name not in known and start_value(end.port) is None:
+                array = (end.component, end.port.array)
+                missing.setdefault(array, []).append(end.port.name)
+        for array, names in missing.items():
+            what = f"is set as a whole, and there are no values of {_few(names)}"
+            self._refuse(".".join(array), what, "give all its elements, or none")
 
     def _parameters(self, name: str, spec: ComponentSpec) -> dict[str, Value]:
         """Return the values of a component.
@@ -569,10 +650,19 @@ def _sorted(order: tuple[str, ...], ends: Iterable[End]) -> tuple[End, ...]:
                 turns[end.component],
                 end.port.kind != REAL,
                 end.port.kind,
+                end.port.type,
                 end.port.reference,
+                end.port.array,
+                end.port.element,
             ),
         )
     )
+
+
+def _held(end: End, starts: Mapping[str, Starts]) -> float:
+    """Return the value of an element of an input that nothing feeds: given, or its start value."""
+    given = {port.name: value for port, value in starts[end.component]}
+    return float(given.get(end.port.name, start_value(end.port) or 0.0))
 
 
 def _bond_places(

@@ -128,22 +128,31 @@ class Connection(_Data):
     """An output that feeds an input, both written ``component.port``.
 
     In TOML: ``"sand.rock.force.x -> rock.force.x"``, or a table with ``source``, ``target`` and
-    what is else. ``[*]`` stands for all elements of an array, ``[1..24]`` for some; source and
-    target then need the same number of them.
+    what is else. The name of an array, or ``[*]`` behind it, stands for all its elements,
+    ``[1..24]`` for some; source and target then need the same number of them.
+
+    ``"sand.rock <-> rock.rock"`` connects two terminals: all variables that they have in common,
+    each in its direction.
 
     Attributes
     ----------
     source, target : str
-        Output and input.
+        Output and input, or two terminals.
     factor, offset : float
         The input gets ``factor`` times the output plus ``offset``. Where they are not 1 and 0,
         both are real, and their units are not compared: the numbers stand for what is between them.
+    terminals : bool
+        Whether two terminals are connected, in both directions.
     """
 
     source: str
     target: str
     factor: Finite = 1.0
     offset: Finite = 0.0
+    terminals: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.source} {'<->' if self.terminals else '->'} {self.target}"
 
     @property
     def is_linear(self) -> bool:
@@ -155,12 +164,22 @@ class Connection(_Data):
     def _from_text(cls, data: Any) -> Any:
         if not isinstance(data, str):
             return data
-        parts = [part.strip() for part in data.split("->")]
+        terminals = "<->" in data
+        parts = [part.strip() for part in data.split("<->" if terminals else "->")]
         if len(parts) != 2 or not all(parts):
             raise ValueError(
-                f'{data!r} is no connection; write "component.output -> component.input"'
+                f'{data!r} is no connection; write "component.output -> component.input", or '
+                '"component.terminal <-> component.terminal"'
             )
-        return {"source": parts[0], "target": parts[1]}
+        return {"source": parts[0], "target": parts[1], "terminals": terminals}
+
+    @model_validator(mode="after")
+    def _is_one_or_the_other(self) -> "Connection":
+        if self.terminals and self.is_linear:
+            raise ValueError(
+                "connects terminals, and has a factor or an offset; connect their variables"
+            )
+        return self
 
 
 class SharedValue(_Data):

@@ -6,6 +6,7 @@ from rockshed.components.common.units import range_in_words
 
 from ..fmu.description import Port
 from ..fmu.slave import BOOLEAN, INTEGER, REAL, STRING
+from ..fmu.types import TYPES
 from .system import Value
 
 _TRUE = ("true", "1", "on", "yes")
@@ -33,6 +34,8 @@ def value_for(port: Port, value: Value) -> float | str:
     """
     if port.kind == STRING:
         return str(value)
+    if not port.is_number:
+        raise ValueError(f"is of the type {port.kind}, and numbers and text can be given only")
     number = _item(port, value) if port.items else _number(port, value)
     low = -math.inf if port.minimum is None else port.minimum
     high = math.inf if port.maximum is None else port.maximum
@@ -41,7 +44,31 @@ def value_for(port: Port, value: Value) -> float | str:
     if not low <= number <= high:
         allowed = range_in_words(port.minimum, port.maximum, port.unit_name)
         raise ValueError(f"allowed is {allowed}")
+    held = TYPES[port.type]
+    if not held.low <= number <= held.high:
+        raise ValueError(f"allowed is {held.low:.17g} to {held.high:.17g}")
     return number
+
+
+def start_value(port: Port) -> float | str | None:
+    """Return the start value of a variable, as its description has it.
+
+    Parameters
+    ----------
+    port : Port
+        The variable.
+
+    Returns
+    -------
+    float, str or None
+        None where there is none that can be read.
+    """
+    if port.start is None or port.kind == STRING:
+        return port.start
+    try:
+        return _truth(port.start) if port.kind == BOOLEAN else float(port.start)
+    except ValueError:
+        return None
 
 
 def _item(port: Port, value: Value) -> float:
