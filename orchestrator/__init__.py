@@ -28,12 +28,13 @@ if TYPE_CHECKING:
     from .reports.writing import report
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
-    from .runs.continuing import resume
+    from .runs.continuing import branch, resume
     from .runs.projects import shed
     from .runs.run import Run, read_run
     from .runs.simulation import simulate
     from .runs.subsystem import Subsystem, component
     from .runs.system import System, case
+    from .runs.verification import verify
     from .tables import Table
 
     __version__: str
@@ -65,7 +66,9 @@ _HOMES = {
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
     "report": "reports.writing",
+    "branch": "runs.continuing",
     "resume": "runs.continuing",
+    "verify": "runs.verification",
     "rockfall": "analyses.rockfall.run",
     "shed": "runs.projects",
     "simulate": "runs.simulation",
@@ -90,6 +93,7 @@ __all__ = [
     "Table",
     "UnknownName",
     "__version__",
+    "branch",
     "build_fmu",
     "calibrate",
     "calibrate_rockfall",
@@ -109,6 +113,7 @@ __all__ = [
     "shed",
     "simulate",
     "study",
+    "verify",
 ]
 
 

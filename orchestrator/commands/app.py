@@ -26,6 +26,8 @@ COMMANDS = {
     "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
     "resume": "Let a run that was ended go on from its last checkpoints.",
+    "branch": "Run a variant of a run from one of its states.",
+    "verify": "Run a run again and compare every bit of its results.",
     "plot": "Draw a run again, also one that failed; or variables of several.",
     "animate": "Animate rock, sand with its force chains, and beam of a run; trials of a campaign.",
     "report": "Write a report that a reviewer can check: HTML page and PDF.",
@@ -42,7 +44,7 @@ COMMANDS = {
 """Commands by name, each a module of this package, with the first line of its help."""
 
 
-_DRIVING = ("run", "resume")
+_DRIVING = ("run", "resume", "branch", "verify")
 """Commands in whose process the code of FMUs runs."""
 
 

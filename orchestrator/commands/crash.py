@@ -47,6 +47,9 @@ def _report(ending: Ending, screen: Screen, code: int) -> int:
     running = Path(ending.facts["running"])
     unlock(folder)
     place = running if running.is_dir() else folder
+    if not place.is_dir():  # it was a temporary one
+        screen.fail(last_entry(place, ending.reason))
+        return code
     error = last_entry(place, ending.reason)
     for name in (FILE, LEGEND):
         (place / name).unlink(missing_ok=True)

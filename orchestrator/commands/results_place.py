@@ -85,10 +85,11 @@ def results_folder(name: str, where: str, origin: Origin, screen: Screen) -> Pat
         text = f"the name {shown(name)} {fault}, and would name the folder of the results"
         remedy = "give another name, or name the folder with --output-dir"
         raise InputRefused([Problem(where, text, remedy)])
-    return free_folder(name, origin, _provenance, screen)
+    return free_folder(name, origin, provenance_in, screen)
 
 
-def _provenance(folder: Path) -> Any:
+def provenance_in(folder: Path) -> Any:
+    """Return what describes the run in a folder."""
     return json.loads((folder / RUN).read_text(encoding="utf-8"))
 
 

@@ -40,7 +40,7 @@ def _resumed(folder: Path, screen: Screen) -> Run:
     """Let a run go on; one that fails or is interrupted gives what was computed until then."""
     stopped = stopped_at(folder)
     if stopped is not None:
-        begun = stopped.run.time[stopped.rows - 1] if stopped.rows else 0.0
+        begun = stopped.run.time[stopped.base.rows - 1]
         screen.note(f"goes on from t = {1e3 * begun:g} ms")
     with screen.progress("preparing") as progress:
         try:

@@ -1,7 +1,7 @@
 """Runs that go on from a checkpoint in another process, whatever ended the first one."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from itertools import islice
@@ -13,13 +13,15 @@ import numpy as np
 from ..versions import sources_digest
 from .errors import InputRefused, Problem
 from .fmu.slave import Source
+from .loop.changes import ValueChange, plan_change
 from .loop.checkpointing import PROGRAM, Checkpointing, checkpoint_exchanges
-from .loop.instances import SettledInstances
 from .loop.master import Interruption, Progress
 from .results.checkpoints import (
-    START,
     Checkpoint,
     copy_checkpoints,
+    known_checkpoints,
+    new_record,
+    read_settled,
     readable_checkpoints,
 )
 from .results.own_files import is_marked, read_data
@@ -51,24 +53,19 @@ class Stopped:
         Its final place.
     run : StoredRun
         What there is of it.
-    start : Checkpoint or None
-        Settled states.
-    base : Checkpoint or None
-        State from which it goes on; None where there is none but the start.
+    settled : Checkpoint or None
+        Settled states, with which FMUs come to their first step sooner.
+    base : Checkpoint
+        State from which it goes on.
     witness : Checkpoint or None
         Later state that it has to come by.
     """
 
     folder: Path
     run: StoredRun
-    start: Checkpoint | None
-    base: Checkpoint | None
+    settled: Checkpoint | None
+    base: Checkpoint
     witness: Checkpoint | None
-
-    @property
-    def rows(self) -> int:
-        """Number of rows that stay."""
-        return self.base.rows if self.base else 0
 
 
 def final_folder(folder: Path) -> Path:
@@ -126,7 +123,7 @@ def find_stopped(folder: Path) -> Stopped | None:
     if not found:
         what = "has no checkpoint that is whole: it was ended before the first one"
         raise InputRefused([Problem(str(folder), what, AGAIN)])
-    return max(found, key=lambda stopped: stopped.rows)
+    return max(found, key=lambda stopped: stopped.base.exchange)
 
 
 def _folders(place: Path) -> list[Path]:
@@ -153,17 +150,11 @@ def _stopped(place: Path, path: Path) -> Stopped | None:
         run = read_run(path)
     except InputRefused:
         return None
-    known = readable_checkpoints(path)
-    start = next((c for c in known if c.exchange == START), None)
-    later = [c for c in known if c.exchange != START and c.rows <= run.time.size]
-    if start is None and not later:
+    known = [c for c in readable_checkpoints(path) if c.rows <= run.time.size]
+    if not known:
         return None
-    base = later[-2] if len(later) > 1 else None
-    witness = later[-1] if later else None
-    if start is None and base is None:
-        base = witness
-        witness = None
-    return Stopped(place, run, start, base, witness)
+    witness = known[-1] if len(known) > 1 else None
+    return Stopped(place, run, read_settled(path), known[-2:][0], witness)
 
 
 def resume(
@@ -200,20 +191,52 @@ def resume(
     """
     provenance = stopped.run.provenance
     plan = make_plan(system_of(stopped.run), sources)
-    refuse_others(stopped, plan, sources)
-    record = provenance["checkpoints"]
-    plan = replace(plan, warnings=tuple(map(str, record["warnings"])))
-    every = checkpoint_exchanges(plan, float(record["every"]))
+    refuse_others(stopped.run, sources, (stopped.base, stopped.witness))
+    plan = replace(plan, warnings=_warnings_before(stopped.run))
+    every = checkpoint_exchanges(plan, float(provenance["checkpoints"]["every"]))
+    course = Course(plan, sources, every, change_of(provenance), progress)
+    return _gone_on(stopped, course, _continued(stopped, plan))
+
+
+@dataclass(frozen=True)
+class Course:
+    """How a run goes on.
+
+    Attributes
+    ----------
+    plan, sources
+        Of the run.
+    every : int
+        Number of exchanges between two checkpoints; 0 for none.
+    change : ValueChange, optional
+        Values that change on the way.
+    progress : callable, optional
+        Called now and then with the time reached and the stop time (s).
+    """
+
+    plan: Plan
+    sources: Mapping[str, Source]
+    every: int
+    change: ValueChange | None = None
+    progress: Progress | None = None
+
+
+def _gone_on(stopped: Stopped, course: Course, facts: dict[str, Any]) -> StoredRun:
+    """Let a run go on into the folder of its results, or into another one."""
+    changing = plan_change(course.plan, course.change) if course.change is not None else None
     with Interruption() as interruption, RunFolder(stopped.folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
-        session = Session(plan, sources, results, interruption)
-        session.take_checkpoints(Checkpointing(every, results.running, stopped.witness))
-        if stopped.start is not None and isinstance(session.instances, SettledInstances):
-            session.instances.know(stopped.start)
+        session = Session(course.plan, course.sources, results, interruption)
+        session.begin_with(stopped.settled, changing)
+        if course.every:
+            keeper = Checkpointing(course.every, results.running, stopped.witness)
+            session.take_checkpoints(keeper)
         try:
-            session.prepare(True, _continued(stopped, plan))
+            session.prepare(True, facts)
             _take_over(stopped, session, results)
-            session.run(progress)
+            if changing is not None:
+                changing.look(stopped.base.exchange)
+            session.run(course.progress)
         except InputRefused:
             results.discard()
             raise
@@ -222,35 +245,132 @@ def resume(
     return read_run(stopped.folder)
 
 
-def refuse_others(stopped: Stopped, plan: Plan, sources: Mapping[str, Source]) -> None:
+def change_of(provenance: Mapping[str, Any]) -> ValueChange | None:
+    """Return the change of a run that has branched off another one on its way."""
+    record = provenance.get("branch")
+    if not isinstance(record, Mapping) or record["at"] == provenance["system"]["start_time"]:
+        return None
+    return ValueChange(float(record["at"]), dict(record["values"]))
+
+
+def branch(
+    parent: StoredRun,
+    change: ValueChange,
+    folder: Path,
+    sources: Mapping[str, Source],
+    *,
+    checkpoint_every: float | None = None,
+    progress: Progress | None = None,
+) -> StoredRun:
+    """Let a variant of a run go on from one of its states.
+
+    It begins at the newest checkpoint at or before the time of the change, and runs on to that time
+    as its parent did.
+
+    Parameters
+    ----------
+    parent : StoredRun
+        The run.
+    change : ValueChange
+        Time and values.
+    folder : Path
+        Of the results, which begin with the rows of the parent.
+    sources : mapping of str to Source
+        Makers of all components.
+    checkpoint_every : float, optional
+        Simulated time (s) between two checkpoints of the variant.
+    progress : callable, optional
+        Called now and then with the time reached and the stop time (s).
+
+    Returns
+    -------
+    StoredRun
+        Complete or interrupted.
+
+    Raises
+    ------
+    InputRefused
+        FMUs or programs are others than those of the run; times or values that cannot be.
+    RunFailed
+        The variant could not go on; the results until then are in the folder.
+    """
+    plan = make_plan(system_of(parent), sources)
+    number = plan_change(plan, change).exchange
+    every = checkpoint_exchanges(plan, checkpoint_every)
+    known = readable_checkpoints(parent.folder)
+    before = [c for c in known if c.exchange <= number and c.rows <= parent.time.size]
+    if not before:
+        what = "has no checkpoint before this time"
+        remedy = "run it again with checkpoint_every=..., or branch at its start"
+        raise InputRefused([Problem(str(parent.folder), what, remedy)])
+    stem = Stopped(folder, parent, read_settled(parent.folder), before[-1], None)
+    refuse_others(parent, sources, (stem.base,))
+    plan = replace(plan, warnings=_warnings_before(parent))
+    facts = _branch_facts(parent, change)
+    if checkpoint_every is not None:
+        facts["checkpoints"] = new_record(checkpoint_every, plan.warnings)
+    return _gone_on(stem, Course(plan, sources, every, change, progress), facts)
+
+
+def _warnings_before(run: StoredRun) -> tuple[str, ...]:
+    """Return the warnings that a run with checkpoints had before its first step."""
+    record = run.provenance.get("checkpoints") or {}
+    return tuple(map(str, record.get("warnings", ())))
+
+
+def _branch_facts(parent: StoredRun, change: ValueChange) -> dict[str, Any]:
+    """Return the provenance of a variant that has its parent's up to a time."""
+    left_out = (*_OF_THE_END, "checkpoints", "resumed")
+    known = {key: value for key, value in parent.provenance.items() if key not in left_out}
+    differing = {**known.get("differences", {}), **change.values}
+    started = datetime.now(UTC).isoformat()
+    record = branch_record(parent.folder, change)
+    return {**known, "started": started, "differences": differing, "branch": record}
+
+
+def branch_record(parent: Path, change: ValueChange) -> dict[str, Any]:
+    """Return the entry of a variant in its provenance.
+
+    Parameters
+    ----------
+    parent : Path
+        Folder of the run that it branches off.
+    change : ValueChange
+        Time and values.
+    """
+    return {"of": str(parent.resolve()), "at": change.at, "values": dict(change.values)}
+
+
+def refuse_others(
+    run: StoredRun, sources: Mapping[str, Source], checkpoints: Sequence[Checkpoint | None] = ()
+) -> None:
     """Refuse FMUs and programs that are others than those of a run.
 
     Parameters
     ----------
-    stopped : Stopped
+    run : StoredRun
         The run.
-    plan : Plan
-        Of its system: the FMUs have been read.
     sources : mapping of str to Source
-        Makers of all components.
+        Makers of all components; their descriptions have been read.
+    checkpoints : sequence of Checkpoint or None
+        States from which it goes on.
 
     Raises
     ------
     InputRefused
         With all that is other than it was.
     """
-    provenance = stopped.run.provenance
     problems = [
-        *program_problems(provenance, AGAIN),
+        *program_problems(run.provenance, AGAIN),
         *(
             problem
-            for name in plan.order
-            for problem in source_problems(name, provenance, sources[name], AGAIN)
+            for name, source in sources.items()
+            for problem in source_problems(name, run.provenance, source, AGAIN)
         ),
     ]
     problems += [
         Problem("rockshed", "its sources have changed since the checkpoint was taken", AGAIN)
-        for checkpoint in (stopped.base, stopped.witness)
+        for checkpoint in checkpoints
         if checkpoint and checkpoint.facts.get("program") != sources_digest(PROGRAM)
     ][:1]
     if problems:
@@ -260,7 +380,7 @@ def refuse_others(stopped: Stopped, plan: Plan, sources: Mapping[str, Source]) -
 def _continued(stopped: Stopped, plan: Plan) -> dict[str, Any]:
     """Return the provenance of a run that goes on."""
     known = {k: v for k, v in stopped.run.provenance.items() if k not in _OF_THE_END}
-    at = plan.timing.seconds(stopped.base.exchange if stopped.base else START)
+    at = plan.timing.seconds(stopped.base.exchange)
     event = {"at": at, "when": datetime.now(UTC).isoformat()}
     return {**known, "status": "running", "resumed": [*known.get("resumed", []), event]}
 
@@ -271,23 +391,22 @@ def _take_over(stopped: Stopped, session: Session, results: RunFolder) -> None:
     Checkpoints come last: a folder that has one has all rows before it.
     """
     base = stopped.base
-    if base is not None:
-        session.parts.put_back(base)
-        series = stopped.run.series
-        values = [series[column.name][: base.rows] for column in stopped.run.columns[1:]]
-        results.rows(stopped.run.time[: base.rows], np.reshape(values, (-1, base.rows)).T)
-        for name, at, state in _frames(stopped, session.plan):
-            results.frame(name, at, state)
-    known = [c.exchange for c in (stopped.start, base) if c is not None]
-    copy_checkpoints(stopped.run.folder, results.running, known)
+    session.parts.put_back(base)
+    series = stopped.run.series
+    values = [series[column.name][: base.rows] for column in stopped.run.columns[1:]]
+    results.rows(stopped.run.time[: base.rows], np.reshape(values, (-1, base.rows)).T)
+    for name, at, state in _frames(stopped, session.plan):
+        results.frame(name, at, state)
+    if session.checkpointing is not None:
+        known = {base.exchange, *known_checkpoints(stopped.run.folder)[:1]}
+        copy_checkpoints(stopped.run.folder, results.running, sorted(known))
 
 
 def _frames(stopped: Stopped, plan: Plan) -> Iterator[tuple[str, float, bytes]]:
     """Yield the recorded states up to a checkpoint in the order in which they were recorded."""
     components = plan.system.components
     framed = [name for name in plan.order if components[name].record_states]
-    number = stopped.base.frames if stopped.base else 0
-    kept = {name: islice(stopped.run.states(name), number) for name in framed}
+    kept = {name: islice(stopped.run.states(name), stopped.base.frames) for name in framed}
     for together in zip(*kept.values(), strict=True):
         for name, (at, state) in zip(kept, together):
             yield name, at, state

@@ -13,6 +13,7 @@ from .errors import InputRefused, Problem, RunFailed
 from .fmu.fmu_slave import FmuFile
 from .fmu.slave import FATAL, OK, WARNING, Slave, Source, counts_of, status_name
 from .loop.buses import Buses
+from .loop.changes import Changing, ValueChange, plan_change
 from .loop.checkpointing import Checkpointing, Parts, checkpoint_exchanges
 from .loop.initialisation import free, initialise, instantiate
 from .loop.instances import FreshInstances, KeptInstances, SettledInstances
@@ -20,7 +21,7 @@ from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Keeper, Master, Progress
 from .loop.recording import Hearing, Recorder
-from .results.checkpoints import new_record, write_checkpoint
+from .results.checkpoints import Checkpoint, new_record, write_settled
 from .results.memory import MemoryResults
 from .results.metric import Metric
 from .results.provenance import describe_run
@@ -48,6 +49,8 @@ def simulate(
     sources: Mapping[str, Source] | None = None,
     allow_unstable: bool = False,
     checkpoint_every: float | None = None,
+    settled: Checkpoint | None = None,
+    change: ValueChange | None = None,
     progress: Progress | None = None,
     facts: Facts | Callable[[Plan], Facts] | None = None,
     note: Callable[[str], None] = lambda text: None,
@@ -72,6 +75,10 @@ def simulate(
     checkpoint_every : float, optional
         Simulated time (s) between two checkpoints, from which a run that was killed goes on; by
         default there are none.
+    settled : Checkpoint, optional
+        Settled states of another run, which are of use where the same was set before.
+    change : ValueChange, optional
+        Values that change at one time of the run.
     progress : callable, optional
         Called now and then with the time reached and the stop time (s).
     facts : mapping or callable, optional
@@ -99,15 +106,17 @@ def simulate(
     known = dict(facts(plan) if callable(facts) else facts or {})
     plan = replace(plan, warnings=(*plan.warnings, *known.pop("warnings", ())))
     every = checkpoint_exchanges(plan, checkpoint_every)
+    changing = plan_change(plan, change) if change is not None else None
     with Interruption() as interruption, RunFolder(folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
         session = Session(plan, made_from, results, interruption)
+        session.begin_with(settled, changing)
         if checkpoint_every is not None:
             session.take_checkpoints(Checkpointing(every, results.running))
             known["checkpoints"] = new_record(checkpoint_every, plan.warnings)
         try:
             session.prepare(allow_unstable, known)
-            session.keep_start(results.running)
+            session.keep_settled(results.running)
             if large := session.large_results():
                 note(large)
             session.run(progress, files)
@@ -242,6 +251,7 @@ class Session:
     instances: FreshInstances | KeptInstances = field(default_factory=FreshInstances)
     keepers: list[Keeper] = field(default_factory=list)
     checkpointing: Checkpointing | None = None
+    changing: Changing | None = None
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
     finished: bool = False
@@ -251,7 +261,17 @@ class Session:
         """Take checkpoints during the run, whose instances then are made for that."""
         self.checkpointing = checkpointing
         self.keepers.append(checkpointing)
-        self.instances = SettledInstances()
+        if not isinstance(self.instances, SettledInstances):
+            self.instances = SettledInstances()
+
+    def begin_with(self, settled: Checkpoint | None, changing: Changing | None) -> None:
+        """Begin with settled states of another process, and with values that change on the way."""
+        if settled is not None:
+            self.instances = SettledInstances()
+            self.instances.know(settled)
+        if changing is not None:
+            self.changing = changing
+            self.keepers.insert(0, changing)
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         """Make and initialise the slaves, then open the results."""
@@ -271,6 +291,8 @@ class Session:
         self.parts = Parts(self.slaves, buses, self.accounts, recorder, self.master, self.hearing)
         if self.checkpointing is not None:
             self.checkpointing.parts = self.parts
+        if self.changing is not None:
+            self.changing.slaves = self.slaves
         self.journal.legend(buses.operations, plan)
         self.journal.rests()
         self.preparation = time.perf_counter() - began
@@ -278,11 +300,12 @@ class Session:
         self.columns = recorder.columns
         self.results.begin(self.columns, {**known, **facts})
 
-    def keep_start(self, folder: Path) -> None:
-        """Write the settled states into the folder of a run that takes checkpoints."""
-        start = self.instances.start() if isinstance(self.instances, SettledInstances) else None
-        if start is not None:
-            write_checkpoint(folder, start)
+    def keep_settled(self, folder: Path) -> None:
+        """Write the settled states with which the run begins into its folder, if it has them."""
+        if isinstance(self.instances, SettledInstances):
+            settled = self.instances.settled()
+            if settled is not None:
+                write_settled(folder, settled)
 
     def large_results(self) -> str:
         """Say what the results will take, if that is much; else nothing."""

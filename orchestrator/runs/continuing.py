@@ -1,6 +1,7 @@
-"""Runs that go on from a checkpoint: continued."""
+"""Runs that go on from a checkpoint: continued, or as variants."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,21 @@ from ..core import continuing
 from ..core.continuing import Stopped, find_stopped, system_of
 from ..core.errors import InputRefused, Problem, RunFailed, UnknownName
 from ..core.fmu.slave import Source
+from ..core.loop.changes import ValueChange
 from ..core.loop.master import Progress
+from ..core.results.checkpoints import read_settled
 from ..core.results.reading import StoredRun
+from ..core.run import simulate as simulate_spec
 from ..core.run import sources_of
+from ..core.system.plan import Plan
+from ..core.system.planning import make_plan
+from ..core.system.system import Value, with_values
+from ..temporary import TemporaryFolder
+from .building import Note, silent
+from .job import Job
+from .request import Request, plain
 from .run import Run, read_run
-from .simulation import checked, measured
+from .simulation import checked, kept, measured, warnings_of
 from .system import System
 
 
@@ -85,6 +96,124 @@ def stopped_at(folder: Path) -> Stopped | None:
         return find_stopped(folder)
     except InputRefused:
         return None
+
+
+def branch(
+    run: StoredRun | str | Path,
+    values: Mapping[str, Value],
+    *,
+    at: float | None = None,
+    folder: str | Path | None = None,
+    checkpoint_every: float | None = None,
+    progress: Progress | None = None,
+    note: Note = silent,
+) -> Run:
+    """Run a variant of a run from one of its states.
+
+    From the start, any parameter may have another value: components of which nothing is other than
+    in the run begin with their settled states (a bed of sand does not settle again), the others are
+    initialised anew. From a later time on, the variant has the rows of the run before it, and
+    takes what FMI lets a master set between two steps: tunable parameters, and inputs that nothing
+    feeds.
+
+    Parameters
+    ----------
+    run : Run, str or Path
+        The run, or its folder. States are there if it had ``checkpoint_every``; without them the
+        variant takes as long as a run.
+    values : mapping of str to Value
+        By ``component.variable``, of a case from the start also as ``with_values`` takes them.
+    at : float, optional
+        Time (s) from which on the values hold; by default the start of the run.
+    folder : str or Path, optional
+        Folder of the results; by default a temporary one, as for :func:`rockshed.simulate`.
+    checkpoint_every : float, optional
+        Simulated time (s) between two checkpoints of the variant.
+    progress : callable, optional
+        Called with the time reached and the stop time (s), every now and then.
+    note : callable, optional
+        Called with a line for each FMU that is built.
+
+    Returns
+    -------
+    Run
+        The variant.
+
+    Raises
+    ------
+    InputRefused
+        FMUs, kernels or versions are others than those of the run; values that cannot be set then,
+        or do not fit; a time without an exchange.
+    RunFailed
+        The variant could not go on; its attribute ``run`` has the results until then.
+
+    Examples
+    --------
+    >>> import rockshed
+    >>> system = rockshed.case("lab-impact", in_process=True, stop_time=0.001)
+    >>> run = rockshed.simulate(system, checkpoint_every=5e-4)
+    >>> slower = rockshed.branch(run, {"rock.velocity0.y": -4.0})
+    >>> float(slower["rock.velocity.y"][0])
+    -4.0
+    """
+    parent = run if isinstance(run, StoredRun) else read_run(run)
+    begin = system_of(parent).start_time
+    change = ValueChange(begin if at is None else at, plain(values))
+    temporary = TemporaryFolder("rockshed-") if folder is None else None
+    name = f"{parent.provenance.get('name', 'run')}-branch"
+    place = Path(temporary.name) / name if temporary else Path(str(folder))
+    conduct: dict[str, Any] = {"checkpoint_every": checkpoint_every, "progress": progress}
+    try:
+        if change.at == begin:
+            _from_start(parent, change, place, note, conduct)
+        else:
+            continuing.branch(parent, change, place, sources_of_run(parent), **conduct)
+    except RunFailed as failure:
+        failure.run = kept(measured(place), temporary)
+        raise
+    except BaseException:
+        if temporary:
+            temporary.cleanup()
+        raise
+    return kept(measured(place), temporary)
+
+
+def _from_start(
+    parent: StoredRun, change: ValueChange, folder: Path, note: Note, conduct: Mapping[str, Any]
+) -> None:
+    """Run a system with other values from the settled states of a run."""
+    job = _job_with(parent, {}, note)
+    sources = {**sources_of(job.system), **job.sources}
+    make_plan(job.system, sources)  # reads the FMUs
+    continuing.refuse_others(parent, sources)
+    if job.system.model_dump(mode="json") != parent.provenance["system"]:
+        what = "is another system now: its case or project has changed"
+        raise InputRefused([Problem(str(parent.folder), what, continuing.AGAIN)])
+    varied = _job_with(parent, change.values, note)
+    record = continuing.branch_record(parent.folder, change)
+
+    def facts(plan: Plan) -> dict[str, Any]:
+        return {**varied.facts, "branch": record, "warnings": warnings_of(varied, plan)}
+
+    simulate_spec(
+        varied.system,
+        folder,
+        sources=varied.sources,
+        settled=read_settled(parent.folder),
+        facts=facts,
+        **conduct,
+    )
+
+
+def _job_with(run: StoredRun, values: Mapping[str, Value], note: Note) -> Job:
+    """Make the system of a run with other values; that of a case is made again, as they follow."""
+    told = run.provenance.get("request")
+    if told is not None:
+        request = Request(**told)
+        return System.prepared(replace(request, values={**request.values, **values}), note).job
+    spec = with_values(system_of(run), values)
+    known = run.provenance.get("differences", {})
+    return Job(spec.name, spec, sources_of_run(run), {"differences": {**known, **values}})
 
 
 def sources_of_run(run: StoredRun, system: System | None = None) -> dict[str, Source]:

@@ -94,13 +94,13 @@ def simulate(
     try:
         _carry_out(system, place, progress, allow_unstable, note, checkpoint_every)
     except RunFailed as failure:
-        failure.run = _kept(measured(place), temporary)
+        failure.run = kept(measured(place), temporary)
         raise
     except BaseException:
         if temporary:
             temporary.cleanup()
         raise
-    return checked(_kept(measured(place), temporary), strict)
+    return checked(kept(measured(place), temporary), strict)
 
 
 def checked(done: Run, strict: bool) -> Run:
@@ -134,7 +134,7 @@ def _system(system: System | str) -> System:
     return system
 
 
-def _warnings(job: Job, plan: Plan) -> list[str]:
+def warnings_of(job: Job, plan: Plan) -> list[str]:
     """Return warnings of the preparation, and of bodies that nothing drives."""
     return [*job.facts.get("warnings", ()), *undriven(plan)]
 
@@ -158,7 +158,7 @@ def _carry_out(
         allow_unstable=allow_unstable,
         checkpoint_every=checkpoint_every,
         progress=progress,
-        facts=lambda plan: {**job.facts, "warnings": _warnings(job, plan)},
+        facts=lambda plan: {**job.facts, "warnings": warnings_of(job, plan)},
         note=note,
         files=job.files,
     )
@@ -209,7 +209,7 @@ def with_facts(run: Run, found: Mapping[str, Any]) -> Run:
     return Run(**{**vars(run), "provenance": {**run.provenance, **found}})
 
 
-def _kept(run: Run, temporary: TemporaryFolder | None) -> Run:
+def kept(run: Run, temporary: TemporaryFolder | None) -> Run:
     """Return the run; a temporary folder of its results goes with it."""
     if temporary:
         weakref.finalize(run, temporary.cleanup)

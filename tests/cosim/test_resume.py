@@ -223,7 +223,7 @@ def test_a_damaged_checkpoint_is_passed_over_for_the_one_before(tmp_path, whole)
     content[len(content) // 2] ^= 1
     newest.write_bytes(content)
     stopped = find_stopped(folder)
-    assert (stopped.base, stopped.witness.exchange) == (None, 18)
+    assert (stopped.base.exchange, stopped.witness.exchange) == (0, 18)
     resumed(folder)
     assert not differing(whole / "sequential", folder)
 

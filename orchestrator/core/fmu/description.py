@@ -86,6 +86,8 @@ class Port:
         Whether nobody can set it.
     is_alias : bool
         Whether it is another name of a variable.
+    is_tunable : bool
+        Whether a parameter may be set between two steps (FMI: ``variability`` is tunable).
     """
 
     name: str
@@ -105,6 +107,7 @@ class Port:
     has_own_start: bool = False
     is_constant: bool = False
     is_alias: bool = False
+    is_tunable: bool = False
 
     @property
     def can_be_set(self) -> bool:

@@ -450,6 +450,7 @@ class _Ports:
             description=variable.description or "",
             has_own_start=_has_own_start(variable),
             is_constant=variable.variability == "constant",
+            is_tunable=variable.variability == "tunable",
             is_alias=variable.alias is not None,
         )
 

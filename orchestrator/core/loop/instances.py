@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..fmu.slave import ERROR, OK, Slave, Source
-from ..results.checkpoints import START, Checkpoint
+from ..results.checkpoints import BEGIN, Checkpoint
 from ..system.plan import Plan
 from .buses import Buses
 from .initialisation import Entering, Stages, free, initialise, instantiate
@@ -208,20 +208,20 @@ class KeptInstances:
 
     # ------------------------------------------------------------------ settled states
 
-    def start(self) -> Checkpoint | None:
+    def settled(self) -> Checkpoint | None:
         """Return the newest settled states, for another process; None where there are none."""
         if not self._settled:
             return None
         system = next(reversed(self._settled))
         settled = self._settled[system][0]
         facts = {"system": system, "keys": dict(settled.keys)}
-        return Checkpoint(START, facts, {"outputs": settled.outputs}, settled.states)
+        return Checkpoint(BEGIN, facts, {"outputs": settled.outputs}, settled.states)
 
-    def know(self, start: Checkpoint) -> None:
-        """Take settled states that :meth:`start` gave; those of another system are of no use."""
-        keys = {str(name): str(key) for name, key in start.facts["keys"].items()}
-        settled = _Settled(keys, start.states, start.tables["outputs"])
-        self._keep(str(start.facts["system"]), settled)
+    def know(self, settled: Checkpoint) -> None:
+        """Take settled states that :meth:`settled` gave; those of another system are of no use."""
+        keys = {str(name): str(key) for name, key in settled.facts["keys"].items()}
+        known = _Settled(keys, settled.states, settled.tables["outputs"])
+        self._keep(str(settled.facts["system"]), known)
 
     def initialise(
         self, slaves: Mapping[str, Slave], buses: Buses, allow_unstable: bool, entering: Entering

@@ -226,7 +226,7 @@ class Master:
         if not self._has_begun:
             self._buses.open_accounts()
             self._record()
-            self._recorder.frames(0)
+            self._look(0)
         while self.exchanges < timing.exchanges and not interruption.requested:
             nexts = (keeper.next(self.exchanges) for keeper in self._keepers)
             due = min(self._recorder.next_frames(self.exchanges), timing.exchanges, *nexts)
@@ -235,14 +235,18 @@ class Master:
                 self._record_end()
                 return True
             if self.exchanges == due:
-                self._recorder.frames(due)
-                for keeper in self._keepers:
-                    keeper.look(due)
+                self._look(due)
             if progress is not None:
                 progress(timing.seconds(self.exchanges), stop)
         if self.exchanges % snapshots.every:
             self._record()
         return self.exchanges == timing.exchanges
+
+    def _look(self, exchange: int) -> None:
+        """Record states, and do what else is due after this number of exchanges."""
+        self._recorder.frames(exchange)
+        for keeper in self._keepers:
+            keeper.look(exchange)
 
     def _record(self) -> None:
         """Take a row of the present values."""

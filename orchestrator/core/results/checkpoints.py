@@ -2,7 +2,7 @@
 
 A file holds numbers and JSON, behind a line that names its format and one with the hash of what
 follows; nothing in it is executed. It is written whole, and the two newest ones are kept beside
-that of the start, so that a process that is killed while it writes loses nothing.
+that of the begin, so that a process that is killed while it writes loses nothing.
 """
 
 import hashlib
@@ -25,14 +25,16 @@ from ...files import write_file
 
 FOLDER = "checkpoints"
 """Folder of the checkpoints in that of their run."""
-START = 0
-"""Number of exchanges of the checkpoint before the first one: states in initialisation mode."""
+BEGIN = 0
+"""Number of exchanges of the checkpoint that is kept besides the newest ones."""
+_SETTLED = "settled.checkpoint"
+"""File of the settled states, which are those of FMUs in initialisation mode."""
 KEPT = 2
 """Number of the newest checkpoints that are kept, besides that of the start."""
 _FORMAT = b"rockshed checkpoint 1\n"
 _HASH = 64
 _NAME = re.compile(r"exchange-(\d{12})\.checkpoint")
-_UNFINISHED = re.compile(r"\.exchange-\d{12}\.[0-9a-f]{8}\.checkpoint")
+_UNFINISHED = re.compile(r"\.(exchange-\d{12}|settled)\.[0-9a-f]{8}\.checkpoint")
 _FACTS, _STATES = "facts", "states"
 """Entries of a file: JSON, and all states one after the other."""
 _DAMAGED = (OSError, ValueError, LookupError, TypeError, MemoryError, EOFError, zipfile.BadZipFile)
@@ -107,12 +109,25 @@ def write_checkpoint(run: Path, checkpoint: Checkpoint) -> None:
     OSError
         It cannot be written; the earlier ones are there.
     """
-    folder = run / FOLDER
-    folder.mkdir(exist_ok=True)
-    write_file(folder / f"exchange-{checkpoint.exchange:012d}.checkpoint", _packed(checkpoint))
-    later = [exchange for exchange in known_checkpoints(run) if exchange != START]
+    (run / FOLDER).mkdir(exist_ok=True)
+    write_file(file_of(run, checkpoint.exchange), _packed(checkpoint))
+    later = [exchange for exchange in known_checkpoints(run) if exchange != BEGIN]
     for exchange in later[:-KEPT]:
         file_of(run, exchange).unlink(missing_ok=True)
+
+
+def write_settled(run: Path, settled: Checkpoint) -> None:
+    """Write the settled states with which a run begins, from which variants can begin too."""
+    (run / FOLDER).mkdir(exist_ok=True)
+    write_file(run / FOLDER / _SETTLED, _packed(settled))
+
+
+def read_settled(run: Path) -> Checkpoint | None:
+    """Return the settled states with which a run began; None where there are none to be had."""
+    try:
+        return _unpacked((run / FOLDER / _SETTLED).read_bytes())
+    except _DAMAGED:
+        return None
 
 
 def file_of(run: Path, exchange: int) -> Path:
@@ -170,8 +185,10 @@ def readable_checkpoints(run: Path) -> list[Checkpoint]:
 
 
 def copy_checkpoints(source: Path, target: Path, exchanges: Sequence[int]) -> None:
-    """Copy checkpoints from the folder of a run to that in which it goes on."""
+    """Copy checkpoints and settled states of a run to the folder in which it goes on."""
     (target / FOLDER).mkdir(exist_ok=True)
+    with suppress(OSError):
+        shutil.copyfile(source / FOLDER / _SETTLED, target / FOLDER / _SETTLED)
     for exchange in exchanges:
         shutil.copyfile(file_of(source, exchange), file_of(target, exchange))
 
@@ -179,7 +196,7 @@ def copy_checkpoints(source: Path, target: Path, exchanges: Sequence[int]) -> No
 def remove_checkpoints(run: Path) -> None:
     """Remove the checkpoints of a run, and their folder if it holds nothing else."""
     for file in (run / FOLDER).iterdir() if (run / FOLDER).is_dir() else ():
-        if _NAME.fullmatch(file.name) or _UNFINISHED.fullmatch(file.name):
+        if file.name == _SETTLED or _NAME.fullmatch(file.name) or _UNFINISHED.fullmatch(file.name):
             file.unlink(missing_ok=True)
     with suppress(OSError):
         (run / FOLDER).rmdir()
