@@ -7,6 +7,7 @@ from rockshed.bench.exchange import BARE, OURS, PEERS, Pair
 from rockshed.fmus.build import Runtime
 
 
+@pytest.mark.slow
 def test_every_tool_there_is_connects_the_pair():
     """A contestant refuses to be timed if an output does not show what the other one was given."""
     with Pair(Runtime.PYTHON, 4) as pair:

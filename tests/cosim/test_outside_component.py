@@ -77,11 +77,13 @@ def test_its_energies_are_layers_under_their_label(run):
     assert "buffers, kinetic and elastic" in labels
 
 
+@pytest.mark.slow
 def test_it_has_a_picture_of_its_own(run, tmp_path):
     pictures = run.figures(tmp_path)
     assert pictures["buffers"].stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_fmus_of_it_give_the_same_results(run, buffer, tmp_path):
     files = [rockshed.build_fmu(buffer, folder=tmp_path)]
     try:

@@ -66,6 +66,7 @@ def test_the_first_force_at_the_head_is_impedance_times_velocity(spt, graph):
     assert graph[0].head_force == pytest.approx(5.8e-4 * 7850.0 * 5120.0 * velocity, rel=0.01)
 
 
+@pytest.mark.slow
 def test_more_segments_hardly_change_the_set(site, graph):
     fine = site(
         SPT, ("segments = 100", "segments = 400"), ("[5e3, 7.5e3, 10e3, 15e3, 20e3", "[20e3")

@@ -117,6 +117,7 @@ def test_the_shed_keeps_its_energy_and_settles(shed):
     )
 
 
+@pytest.mark.slow
 def test_the_shed_on_stiff_strong_ground_is_the_one_on_rigid_supports(tmp_path):
     """Thick piles on ground that hardly gives: forces and deflection as on the girders of 8 m."""
     stiff = {

@@ -30,6 +30,7 @@ def table_5(tmp_path_factory):
     return folder, result
 
 
+@pytest.mark.slow
 def test_table_5_has_its_nine_rows_with_both_models(table_5):
     folder, result = table_5
     content = json.loads((folder / "reproduction.json").read_text())
@@ -48,6 +49,7 @@ def test_table_5_has_its_nine_rows_with_both_models(table_5):
     assert "runs: 27 of 27" in result.stderr
 
 
+@pytest.mark.slow
 def test_the_page_holds_its_figures(table_5):
     folder, _ = table_5
     page = (folder / "reproduction.html").read_text()

@@ -79,6 +79,7 @@ def test_the_books_of_energy_close(run):
     assert [message.split(":")[0] for message in told] == ["stress past yield"]
 
 
+@pytest.mark.slow
 def test_it_has_its_table_and_pictures(run, tmp_path):
     rows = {row["quantity"]: (row["computed"], row["unit"]) for row in table(run, {})}
     value, unit = rows["impact energy E0"]
@@ -99,6 +100,7 @@ def test_it_has_its_table_and_pictures(run, tmp_path):
     assert told == []
 
 
+@pytest.mark.slow
 def test_afterwards_it_goes_on_down_the_slope(tmp_path):
     """Off the roof and over its wall to the ground below; with the impulse-conserving coupling, four times as fast."""
     job = prepare(

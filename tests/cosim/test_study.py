@@ -80,6 +80,7 @@ def test_a_run_of_a_study_has_the_numbers_of_a_run_by_itself(alone):
     assert last.metrics["peak_transmitted_force"] == found["peak_transmitted_force"].value
 
 
+@pytest.mark.slow
 def test_a_study_whose_worker_is_killed_loses_nothing(tmp_path):
     process = started(tmp_path, 0.008)
     assert after_a_run(process)

@@ -32,6 +32,7 @@ assert sys.path == path
 """
 
 
+@pytest.mark.slow
 def test_200_instances_one_after_the_other_leave_less_than_3_megabytes(fmus, python, tmp_path):
     assert int(python(CYCLES, fmus["FallingRock"], tmp_path / "with a space")) < 3_000_000
 

@@ -226,6 +226,7 @@ def loop_file(cache_folder: Path) -> Path:
     return Path(done.stdout.strip())
 
 
+@pytest.mark.slow
 def test_a_damaged_exchange_loop_is_compiled_anew(tmp_path):
     file = loop_file(tmp_path / "cache")
     whole, number = file.read_bytes(), random.Random(3)

@@ -81,7 +81,7 @@ EXTREMES = {
     "all at once": lambda run: renamed(much_changed(scaled(run, -1e9))),
     "a run that failed": lambda run: with_facts(run, status="failed", error="diverged " * 50),
 }
-QUICK = ("plain", "all at once")
+QUICK = ("all at once",)
 
 
 @pytest.fixture

@@ -29,6 +29,7 @@ def test_bounds_that_a_small_sample_does_not_have_are_missing():
     assert borne((0.5, 0.9, 0.95, 0.99), 71) == [0.5, 0.9]
 
 
+@pytest.mark.slow
 def test_the_interval_covers_the_percentile_as_often_as_it_says():
     sample, truth = np.random.default_rng(1), -np.log(0.1)
     found = [percentile(np.sort(sample.exponential(size=80)), 0.9) for _ in range(3000)]

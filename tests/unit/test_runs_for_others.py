@@ -86,6 +86,7 @@ def test_an_export_replaces_its_own_files_and_no_others(run, tmp_path):
         run.export("xls")
 
 
+@pytest.mark.slow
 def test_an_animation_has_a_frame_for_each_state_and_stands_still_at_its_end(run, tmp_path):
     file = run.animate(tmp_path / "impact.gif")
     with Image.open(file) as movie:

@@ -47,6 +47,7 @@ def test_the_fits_contradict_the_model():
     )  # by a pocket calculator
 
 
+@pytest.mark.slow
 def test_reproduction_draws_its_figures(tmp_path):
     assert [study.name for study in studies("mogami1973")] == ["mass", "settlement", "fits"]
     reproduce("mogami1973", tmp_path, workers=1)

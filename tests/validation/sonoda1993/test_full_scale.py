@@ -158,6 +158,7 @@ def test_masses_of_deck_and_box_lower_the_girders_energy_and_leave_the_compariso
     assert case("girders-8").references({"beam.density": 8000}).known == {}
 
 
+@pytest.mark.slow
 def test_literal_model_puts_as_much_into_the_girders():
     """Measured 50 percent by (5), (6) at 8 m, ratio 1.02."""
     done = run("girders-8", model="literal")

@@ -34,11 +34,13 @@ def test_peak_force_and_energy_of_test_4(figures):
     assert abs(found[names.RESIDUAL_SHARE]) < 0.002
 
 
+@pytest.mark.slow
 def test_static_spring_constant_of_test_4(figures):
     assert figures("static-test")[names.STATIC_STIFFNESS] == pytest.approx(39.1 * kgf / cm, rel=0.4)
 
 
 @pytest.mark.parametrize("span", [8, 12])
+@pytest.mark.slow
 def test_energy_in_the_girders(figures, span):
     """Table 6: 5.6 and 7.6 percent; elastic lattices give 33 to 40."""
     name = f"girders-{span}"
