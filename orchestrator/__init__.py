@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunDoubted, RunFailed, UnknownName
     from .reports.writing import report
+    from .runs.alone import alone
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
     from .runs.continuing import branch, resume
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOMES = {
+    "alone": "runs.alone",
     "ComponentError": "components.common.component",
     "InputRefused": "core.errors",
     "Interval": "analyses.study.factors",
@@ -93,6 +95,7 @@ __all__ = [
     "Table",
     "UnknownName",
     "__version__",
+    "alone",
     "branch",
     "build_fmu",
     "calibrate",

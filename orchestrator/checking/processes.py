@@ -118,8 +118,9 @@ def _verdict(job: ProbeJob, ending: dict[str, Any]) -> Seen | None:
     printed = " ".join(_text(place / OUTPUT).split())[-_LONGEST_OUTPUT:]
     said = f"; it printed: {printed}" if printed else ""
     if error := _text(place / "error"):
-        what = f"the probe could not go on in {where}: {error}{said}"
-        return Seen(Verdict.FAILED, what, "let the FMU return what FMI says")
+        what = f"the probe could not go on after {where}: {error}{said}"
+        remedy = "correct what the FMU returned there; if it is right, this is a fault of the check"
+        return Seen(Verdict.FAILED, what, remedy)
     return Seen(
         Verdict.CRASHED,
         f"{_ended(int(ending['code']))} in {where}{said}",

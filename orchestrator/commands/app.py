@@ -22,6 +22,7 @@ COMMANDS = {
     "list": "List all cases and components.",
     "build": "Build FMUs of components, always anew.",
     "info": "Show an FMU, a component or a system: ports, values, connections.",
+    "simulate": "Simulate one FMU alone, with its inputs from a CSV file.",
     "check": "Check any FMU: description, life cycle, steps, states, wrong values.",
     "export": "Write a system as TOML with its FMUs, or a run in another format.",
     "run": "Run a case, a project or a system file, compare, draw.",
@@ -44,7 +45,7 @@ COMMANDS = {
 """Commands by name, each a module of this package, with the first line of its help."""
 
 
-_DRIVING = ("run", "resume", "branch", "verify")
+_DRIVING = ("run", "resume", "branch", "verify", "simulate")
 """Commands in whose process the code of FMUs runs."""
 
 

@@ -202,7 +202,7 @@ SEEDS = (
     ),
     seed(
         "negative steps",
-        "stepping/bad",
+        "stepping/negative",
         (SLAVE, STEP, STEP + "  if (!(step > 0.0)) { m->s.time = end; return OK; }\n"),
         (SLAVE, "else if (!(step > 0.0 && isfinite(step)))", "else if (0)"),
         (

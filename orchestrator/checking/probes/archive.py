@@ -36,7 +36,7 @@ def names(subject: Subject) -> Seen:
     seen = [posixpath.normpath(m.filename) for m in members]
     twice = sorted({name for name in seen if seen.count(name) > 1})
     if twice:
-        return failed(f"{listed(twice)} is in it twice", "pack each file once")
+        return warned(f"{listed(twice)} is in it twice", "pack each file once")
     return passed(f"{len(members)} members, all inside the FMU")
 
 

@@ -28,7 +28,7 @@ def step_first(subject: Subject) -> Seen:
 def step_initialising(subject: Subject) -> Seen:
     """Step in the initialisation mode."""
     instance = subject.instantiate()
-    instance.enter_initialisation(subject.start, subject.stop)
+    instance.enter_initialisation(subject.start, subject.horizon)
     return _refuses(instance, "a step in the initialisation mode", instance.step, subject.step)
 
 
@@ -75,7 +75,7 @@ def after_refusal(subject: Subject) -> Seen:
     if not instance.attempt(instance.call, "ExitInitializationMode").refused:
         return not_applicable("no refused call was found")
     instance.reset()
-    instance.initialise(subject.start, subject.stop)
+    instance.initialise(subject.start, subject.horizon)
     instance.step(subject.step)
     if not_finite(instance.get(subject.readable)):
         return failed("values are not finite after a reset", "set everything back to its start")

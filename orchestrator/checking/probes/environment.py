@@ -23,7 +23,7 @@ _SHOWN = 60
 def _life(subject: Subject, logging: bool = False) -> list[Any]:
     """Live a short life; return its messages."""
     instance = subject.instantiate(logging=logging)
-    instance.initialise(subject.start, subject.stop)
+    instance.initialise(subject.start, subject.horizon)
     for _ in range(min(3, subject.steps)):
         if instance.step(subject.step).terminated:
             break
@@ -162,7 +162,7 @@ def logging(subject: Subject) -> Seen:
         held = (ctypes.c_char_p * max(1, len(chosen)))(*chosen)
         instance.call("SetDebugLogging", True, len(chosen), held)
     instance.call("SetDebugLogging", False, 0, None)
-    instance.initialise(subject.start, subject.stop)
+    instance.initialise(subject.start, subject.horizon)
     before = len(instance.messages)
     instance.step(subject.step)
     if len(instance.messages) > before:

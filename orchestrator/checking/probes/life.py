@@ -87,10 +87,10 @@ def reset(subject: Subject) -> Seen:
     fresh = course(subject, instance, variables=subject.readable)
     instance.reset()
     perturbed(subject, instance)
-    instance.initialise(subject.start, subject.stop)
+    instance.initialise(subject.start, subject.horizon)
     instance.attempt(instance.step, subject.step)  # may be refused with those inputs
     instance.reset()
-    instance.initialise(subject.start, subject.stop)
+    instance.initialise(subject.start, subject.horizon)
     after = course(subject, instance, variables=subject.readable)
     if difference := first_difference(fresh, after):
         return failed(
@@ -108,7 +108,7 @@ def two(subject: Subject) -> Seen:
     one = subject.begun("one")
     other = subject.instantiate("other")
     perturbed(subject, other)
-    other.initialise(subject.start, subject.stop)
+    other.initialise(subject.start, subject.horizon)
     rows = course(subject, one, 0)
     goes_on = True
     for _ in range(len(alone) - 1):
@@ -129,7 +129,7 @@ def freed_early(subject: Subject) -> Seen:
     """Free instances in every phase of their life."""
     subject.instantiate("only made").free()
     inside = subject.instantiate("initialising")
-    inside.enter_initialisation(subject.start, subject.stop)
+    inside.enter_initialisation(subject.start, subject.horizon)
     inside.free()
     running = subject.begun("running")
     running.step(subject.step)

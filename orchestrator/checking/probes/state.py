@@ -68,7 +68,7 @@ def initialising(subject: Subject) -> Seen:
     if nothing := _no_state(subject):
         return nothing
     instance = subject.instantiate()
-    instance.enter_initialisation(subject.start, subject.stop)
+    instance.enter_initialisation(subject.start, subject.horizon)
     state = instance.state()
     instance.exit_initialisation()
     first = _everything(subject, instance, subject.start)

@@ -23,7 +23,7 @@ def _fixed(subject: Subject) -> Seen | None:
 
 def _limit(subject: Subject) -> float:
     """Return the time (s) that no step may pass."""
-    return math.inf if subject.stop is None else subject.stop
+    return math.inf if subject.horizon is None else subject.horizon
 
 
 def odd(subject: Subject) -> Seen:
@@ -72,17 +72,21 @@ def large(subject: Subject) -> Seen:
     return passed(f"a step of {step:g} s is made")
 
 
-def bad(subject: Subject) -> Seen:
-    """Make steps of negative length, and of one that is no number."""
-    accepted = []
-    for step in (-subject.step, math.nan):
-        instance = subject.begun()
-        if not instance.attempt(instance.step, step).refused:
-            accepted.append(f"{step:g} s")
-        instance.free()
-    if accepted:
-        return failed(f"steps are made that are none: {listed(accepted)}", "return an error")
-    return passed("steps that are negative or no number are refused")
+def negative(subject: Subject) -> Seen:
+    """Make a step of negative length."""
+    return _refused(subject, -subject.step)
+
+
+def not_a_number(subject: Subject) -> Seen:
+    """Make a step whose length is no number."""
+    return _refused(subject, math.nan)
+
+
+def _refused(subject: Subject, step: float) -> Seen:
+    instance = subject.begun()
+    if instance.attempt(instance.step, step).refused:
+        return passed(f"a step of {step:g} s is refused")
+    return failed(f"a step of {step:g} s is made", "return an error for a step that is none")
 
 
 def gap(subject: Subject) -> Seen:

@@ -53,7 +53,7 @@ def starts(subject: Subject) -> Seen:
 def read_back(subject: Subject) -> Seen:
     """Set parameters while initialising and inputs while running, and read them."""
     instance = subject.instantiate()
-    instance.enter_initialisation(subject.start, subject.stop)
+    instance.enter_initialisation(subject.start, subject.horizon)
     parameters = [v for v in subject.readable if v.causality == "parameter"]
     lost = _not_read_back(instance, parameters)
     running = subject.begun("running") if _may_have_two(subject) else None
@@ -252,7 +252,7 @@ def _passes_on(subject: Subject, instance: Called, variable: Declared, value: fl
 
 def _stays_lost(subject: Subject, instance: Called) -> bool:
     instance.reset()
-    instance.initialise(subject.start, subject.stop)
+    instance.initialise(subject.start, subject.horizon)
     instance.step(subject.step)
     return bool(not_finite(instance.get(subject.outputs)))
 
@@ -268,7 +268,7 @@ def out_of_range(subject: Subject) -> Seen:
         tried += 1
         instance = subject.instantiate()
         said = instance.attempt(instance.set, variable, (value,) * variable.size)
-        later = instance.attempt(instance.initialise, subject.start, subject.stop)
+        later = instance.attempt(instance.initialise, subject.start, subject.horizon)
         heard = said.refused or later.refused or said.said or later.said
         if not heard:
             taken.append(f"{variable.name} = {value:g}")

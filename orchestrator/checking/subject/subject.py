@@ -97,6 +97,11 @@ class Subject:
         stop = self._experiment("stopTime")
         return stop if stop is not None and stop > self.start else None
 
+    @property
+    def horizon(self) -> float | None:
+        """End (s) that instances are told; None where the experiment is shorter than a probe."""
+        return self.stop if self.steps >= STEPS else None
+
     @cached_property
     def step(self) -> float:
         """Communication step (s) of ordinary simulations."""
@@ -193,7 +198,7 @@ class Subject:
     def begun(self, name: str = "instance", **asked: bool) -> Called:
         """Return a new instance that is initialised, ready for its first step."""
         instance = self.instantiate(name, None, True, **asked)
-        instance.initialise(self.start, self.stop)
+        instance.initialise(self.start, self.horizon)
         return instance
 
     def has_instance(self, token: str) -> bool:

@@ -148,9 +148,11 @@ def _start(text: Any, kind: str, size: int) -> Numbers | None:
     """Return the start values of a description; None where they cannot be read."""
     if text is None:
         return None
-    if kind in ("String", "Binary"):
+    if kind == "String":
         return (text,) if size == 1 and isinstance(text, str) else None
     try:
+        if kind == "Binary":
+            return (bytes.fromhex(text),) if size == 1 else None
         values = tuple(_value(word, kind) for word in str(text).split())
     except ValueError:
         return None
