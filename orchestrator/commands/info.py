@@ -8,8 +8,9 @@ import typer
 from rockshed.components.catalogue import NAMES
 
 from ..cases.registry import cases
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.system.names import nearest
+from ..files import write_file
 from ..runs.export import system_text
 from ..runs.inspection import describe_component, describe_fmu
 from ..runs.request import Request
@@ -22,8 +23,9 @@ from .screen import opened
 _Subject = Annotated[
     str,
     typer.Argument(
-        metavar="FMU|COMPONENT|CASE|SYSTEM.toml",
-        help="An FMU, also a stranger's, a component such as RBSMBeam, a case, or a system file.",
+        metavar="FMU|COMPONENT|CASE|SYSTEM.toml|SSP",
+        help="An FMU, also a stranger's, a component such as RBSMBeam, a case, a system file or an "
+        "SSP.",
     ),
 ]
 _Toml = Annotated[
@@ -31,9 +33,23 @@ _Toml = Annotated[
 ]
 
 
-def command(target: _Subject, toml: _Toml = False, model: ModelName = None) -> None:
+_Diagram = Annotated[
+    Path | None,
+    typer.Option(
+        "--diagram",
+        metavar="FILE.svg",
+        help="Draw the system into a new file: components, steps, connections, power bonds.",
+    ),
+]
+
+
+def command(
+    target: _Subject, toml: _Toml = False, diagram: _Diagram = None, model: ModelName = None
+) -> None:
     """Show an FMU, a component or a system: ports, values, connections."""
     with opened() as screen:
+        if diagram is not None:
+            _check_diagram(target, diagram)
         if is_fmu(target):
             screen.overview(describe_fmu(Path(target)))
             return
@@ -49,6 +65,21 @@ def command(target: _Subject, toml: _Toml = False, model: ModelName = None) -> N
             screen.out.file.write(system_text(system.spec))
         else:
             screen.overview(system.describe())
+        if diagram is not None:
+            with refusing_unwritable(diagram, "name another file"):
+                write_file(diagram, system.diagram())
+            screen.note(f"drawn into {diagram}")
+
+
+def _check_diagram(target: str, file: Path) -> None:
+    """Refuse what cannot be drawn, and a file that is there."""
+    if is_fmu(target) or target in NAMES:
+        what = "draws a system, and this is one component"
+        raise InputRefused([Problem("--diagram", what, "leave it out")])
+    if file.suffix.lower() != ".svg":
+        raise InputRefused([Problem("--diagram", f"{file} is no .svg", "name a file in .svg")])
+    if file.exists():
+        raise InputRefused([Problem(str(file), "is there already, and stays", "name a new file")])
 
 
 def _refuse_unknown(target: str) -> None:

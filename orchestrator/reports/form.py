@@ -108,6 +108,8 @@ class Illustration:
         Whether the page shows it: a film shows what several pictures show.
     printed : str
         Ending of the drawn file for print, ``.svg`` where lines are to stay sharp.
+    shown : str
+        Ending of the drawn file for the page.
     """
 
     title: str
@@ -116,6 +118,7 @@ class Illustration:
     draw: Drawer | None = None
     on_page: bool = True
     printed: str = ".png"
+    shown: str = ".png"
 
     def drawn_into(self, file: Path) -> str:
         """Draw the picture into a file.

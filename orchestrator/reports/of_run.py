@@ -5,8 +5,11 @@ from typing import Any
 
 from rockshed.components.common.units import ms, tonne
 
+from ..core.errors import InputRefused
 from ..core.results.facts import number_of, table_of, tables_of
 from ..core.results.reading import StoredRun
+from ..core.system.system import system_from
+from ..files import write_file
 from ..metrics import comparison, contents
 from ..metrics.caption import models
 from ..metrics.contents import ForeignStateError
@@ -17,6 +20,7 @@ from ..metrics.slope import AS_SPHERE, slope_notes, slope_of, slope_table
 from ..metrics.structure_notes import on_structures
 from ..metrics.width_band import width_band_table
 from ..pictures import RunPicture, pictures_of
+from ..pictures.diagram import system_diagram
 from ..runs.run import Run
 from ..tables import Table, digits
 from . import inputs, origin
@@ -61,6 +65,7 @@ def report_of_run(
         *_effective_width(run),
         *_illustrations(run),
         *_slope(run),
+        *_system(run),
         *_inputs(run),
         _assumptions(run),
         *_meanings(run),
@@ -230,6 +235,21 @@ def _illustration(
         return Illustration(title, draw=picture.draw, on_page=False, printed=_SHARP)
     film = films[picture.states_of] = film_of(run, picture.states_of)
     return Illustration(title, film=film, draw=picture.draw, printed=_SHARP)
+
+
+def _system(run: StoredRun) -> Iterator[Chapter]:
+    """Yield the diagram of the system."""
+    try:
+        system = system_from(table_of(run.provenance, "system"))
+    except InputRefused:  # another version wrote it
+        return
+    drawn = Illustration(
+        "Components, their steps, and the values that go between them",
+        draw=lambda file: write_file(file, system_diagram(system)),
+        printed=_SHARP,
+        shown=_SHARP,
+    )
+    yield Chapter("System", illustrations=[drawn])
 
 
 def _inputs(run: StoredRun) -> Iterator[Chapter]:

@@ -25,6 +25,8 @@ GENERATOR = '<meta name="generator" content="rockshed'
 _ROWS = 4000
 """Points of a curve, at most: more than a screen is wide."""
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif"
+_KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
+"""Kinds of pictures by their ending."""
 
 
 def page(report: Document) -> str:
@@ -116,10 +118,11 @@ def _illustration(illustration: Illustration, collected: _Collected) -> dict[str
 def _image(illustration: Illustration) -> tuple[str, str]:
     """Return the drawn picture as an address that the page has inside, or why there is none."""
     with TemporaryFolder("rockshed-") as folder:
-        file = folder / "picture.png"
+        file = folder / f"picture{illustration.shown}"
         if reason := illustration.drawn_into(file):
             return "", reason
-        return f"data:image/png;base64,{_base64(file.read_bytes())}", ""
+        kind = _KINDS[illustration.shown]
+        return f"data:{kind};base64,{_base64(file.read_bytes())}", ""
 
 
 def _figure(chart: Chart) -> dict[str, Any]:

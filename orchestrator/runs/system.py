@@ -496,6 +496,22 @@ class System:
             f"{self.spec.exchange_step:g} s>"
         )
 
+    def diagram(self) -> str:
+        """Draw components, their steps, what goes from one to another, and power bonds.
+
+        Returns
+        -------
+        str
+            An SVG picture, as text; a notebook shows it with the system.
+        """
+        from ..pictures.diagram import system_diagram  # the room of pictures imports matplotlib
+
+        self.refuse_empty()
+        return system_diagram(self.spec)
+
+    def _repr_svg_(self) -> str | None:
+        return self.diagram() if self.spec.components else None
+
     def _repr_html_(self) -> str:
         table = Table(("component", "FMU", "values"))
         for name, spec in self.spec.components.items():
@@ -505,7 +521,8 @@ class System:
         for name, entry in self.spec.shared.items():
             shared.add(name, str(entry.value), ", ".join(entry.targets))
         more = shared._repr_html_() if len(shared) else ""
-        return f"<p>{escape(repr(self)[1:-1])}</p>{table._repr_html_()}{more}"
+        drawn = self._repr_svg_() or ""
+        return f"<p>{escape(repr(self)[1:-1])}</p>{drawn}{table._repr_html_()}{more}"
 
 
 def _in_process(name: str, made: Component, sizes: Mapping[str, int] | None) -> Source:

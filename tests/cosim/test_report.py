@@ -59,6 +59,7 @@ def test_a_page_has_results_inputs_assumptions_origin_and_the_way_to_repeat_it(r
         "Results",
         "Formulas of practice",
         "Figures",
+        "System",
         "Inputs",
         "All parameters",
         "Assumptions",
@@ -88,7 +89,10 @@ def test_a_page_loads_nothing(text):
     assert not re.search(r"<(link|iframe|object|embed|base)\b|@import|url\(", text)
     addresses = re.findall(r'\b(?:src|href)="([^"]*)"', text)
     assert addresses
-    assert all(a.startswith(("#", "data:image/png;base64,")) for a in addresses)
+    assert all(
+        a.startswith(("#", "data:image/png;base64,", "data:image/svg+xml;base64,"))
+        for a in addresses
+    )
 
 
 def test_charts_and_states_of_a_page_are_those_of_the_run(run, text):
