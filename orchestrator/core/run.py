@@ -286,6 +286,7 @@ class Session:
         self.accounts = Accounts(self.slaves, buses)
         recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results)
         self.watched = buses.watched
+        self.texts = buses.texts
         self.master = Master(self.slaves, buses, recorder, self.keepers)
         self.hearing = Hearing(self.slaves)
         self.parts = Parts(self.slaves, buses, self.accounts, recorder, self.master, self.hearing)
@@ -368,6 +369,7 @@ class Session:
             "wall_time": self._wall_time(),
             "cpu_time": {"exchanges": self.master.cpu_time},
             "early_returns": dict(self.master.returned),
+            "texts": self.texts.changes,
         }
 
     def _wall_time(self) -> dict[str, float]:
@@ -386,7 +388,7 @@ class Session:
         if self.master.ended_by:
             ended = [f"{self.master.ended_by} has ended the run at t = {self.master.reached:.9g} s"]
         said = self.hearing.warnings(self.master.warned)
-        return self.warnings + self.accounts.warnings + ended + said
+        return self.warnings + self.accounts.warnings + ended + self.texts.cut + said
 
     def _metrics(self) -> list[Metric]:
         simulated = self.plan.timing.lasts(self.master.exchanges * self.plan.timing.exchange)

@@ -2,7 +2,8 @@
 
 Every input of a simple type passes to the output of that type. ``y`` is twice ``u``, both of the
 size ``n``; ``sum`` is that of the matrix ``m``. Steps return early at every multiple of ``period``
-(where that is positive), count them in ``events``, and end the run at ``end``.
+(where that is positive), count them in ``events``, and end the run at ``end``; ``said`` is ``text``
+with the number of events behind it.
 """
 
 import os
@@ -31,11 +32,12 @@ HEAD = r"""
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 typedef unsigned long long size;
 typedef struct {
-  double time, u[8], m[6], period, end; int events; long long option; size n; char text[64];
+  double time, u[8], m[6], period, end; int events; long long option; size n; char text[64], said[80];
   void *environment; void (*log)(void *, int, const char *, const char *); bool early; int mode;
   FIELDS
 } Thing;
@@ -83,7 +85,8 @@ int fmi3GetFloat64(void *c, const unsigned *r, size_t n, double *v, size_t value
 int fmi3SetString(void *c, const unsigned *r, size_t n, const char **v, size_t values) {
   for (size_t i = 0; i < n; i++) strncpy(((Thing *)c)->text, v[i], 63); return 0; }
 int fmi3GetString(void *c, const unsigned *r, size_t n, const char **v, size_t values) {
-  for (size_t i = 0; i < n; i++) v[i] = ((Thing *)c)->text; return 0; }
+  Thing *t = c; snprintf(t->said, sizeof t->said, "%s %d", t->text, t->events);
+  for (size_t i = 0; i < n; i++) v[i] = r[i] == 42 ? t->text : t->said; return 0; }
 int fmi3DoStep(void *c, double time, double step, bool forgets, bool *event, bool *end,
     bool *early, double *reached) {
   Thing *t = c; double stop = time + step;

@@ -128,6 +128,12 @@ class MockSlave:
         self.values[self.names[reference]] = text
         return 0
 
+    def set_texts(self, reference, texts) -> int:
+        return self.set_text(reference, texts[0])
+
+    def get_texts(self, reference, count) -> tuple[int, list[str]]:
+        return 0, [str(self.values[self.names[reference]])]
+
     def setup_experiment(self, start, stop, tolerance=None) -> int:
         return 0
 

@@ -139,6 +139,7 @@ def test_a_value_that_a_type_cannot_hold_ends_the_run_and_is_named(thing, tmp_pa
         ("a.y[1] -> b.Int32_in", "a.y[1] is Float64 and b.Int32_in is Int32"),
         ("a.Boolean_out -> b.UInt8_in", "a.Boolean_out is Boolean"),
         ("a.given -> b.bytes", "a.given is Binary and b.bytes is Binary"),
+        ("a.said -> b.u[1]", "a.said is String and b.u[1] is Float64"),
         ("a.sum -> b.u", "connects 1 output with 2 inputs"),
         ("a.y[3] -> b.u[1]", "a has no variable 'y[3]'"),
         ("a.y -> b.m", "b.m[1,1] is of the causality parameter, and an input is needed"),
@@ -154,6 +155,21 @@ def test_what_does_not_fit_together_is_refused_in_words(thing, reasons, connecti
 def test_arrays_of_different_shapes_are_refused_with_both(thing, reasons):
     said = reasons(things(thing, ["a.y -> b.u"], {"n": 3}))
     assert "connects an array of 3 with one of 2 elements" in said
+
+
+def test_a_unit_that_is_not_defined_is_refused_unless_a_factor_says_what_it_means(
+    binary, tmp_path, reasons
+):
+    xml = XML.replace("name='sum'", "name='sum' unit='furlong'").replace(
+        "name='u' ", "name='u' unit='m' "
+    )
+    odd = pack(binary, tmp_path / "X.fmu", xml)
+    said = reasons(things(odd, ["a.sum -> b.u[1]"]))
+    assert "the unit furlong of a.sum is not defined in its model description" in said
+    assert "b.u[1] is in m (1 m)" in said
+    given = {"source": "a.sum", "target": "b.u[1]", "factor": 201.168}
+    run = simulate(things(odd, [given]), tmp_path / "run")
+    assert last(run, "b.y[1]") == 2.0 * 201.168 * 21.0
 
 
 @pytest.mark.parametrize(
@@ -207,6 +223,26 @@ def test_a_step_that_ends_early_at_an_event_is_made_to_its_end_and_counted(thing
         # three events of a period of ten fall on the end of a step
         assert run.provenance["early_returns"] == {"a": 30}
         assert run.metrics["early_returns_of_a"].value == 30
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_texts_are_passed_on_and_recorded_with_the_times_of_their_changes(thing, tmp_path, back):
+    given = {"text": "block", "period": 0.25}
+    system = things(thing, ["a.said -> b.text"], given, record=["*.said"])
+    run = simulate(system, tmp_path / "run", sources=called_back(system) if back else None)
+    times = [0.0, 0.3, 0.5, 0.8, 1.0]
+    assert [at for at, _ in run.texts["a.said"]] == pytest.approx(times, abs=1e-12)
+    assert [text for _, text in run.texts["a.said"]] == [f"block {n}" for n in range(5)]
+    # b takes its turn after a, and says the same with its own number behind
+    assert run.texts["b.said"] == [(at, f"{text} 0") for at, text in run.texts["a.said"]]
+
+
+def test_texts_travel_between_both_versions_of_fmi(thing, tmp_path):
+    mock = Mock([inp("heard", kind="String"), out("told", kind="String"), out("x")])
+    mock.step = lambda v, _time, _step: v.update(told=str(v["heard"]).upper())
+    system = things(thing, ["a.said -> b.heard"], {"text": "rock"}, record=["*"])
+    run = simulate(system, tmp_path / "run", sources={"b": mock})
+    assert run.texts["b.told"][-1] == (0.1, "ROCK 0")
 
 
 def test_an_fmu_ends_the_run_in_the_middle_of_a_step(thing, tmp_path):

@@ -269,21 +269,18 @@ def test_an_internal_step_that_the_exchange_cuts_short_gives_no_warning(rockshed
 # ------------------------------------------------------------------ texts
 
 
-def test_outputs_that_are_text_are_said_to_be_left_out():
+def test_texts_are_recorded_apart_from_numbers():
     mock = Mock([out("level"), out("phase", kind="String"), out("word", kind="String")])
-    system, sources = wired({"a": mock}, [])
-    plan = make_plan(system, sources)
-    assert plan.warnings == ("a: phase, word are text and are not recorded",)
+    plan = make_plan(*wired({"a": mock}, [], record=["a.level", "*.ph*"]))
     assert [end.name for end in plan.recorded] == ["a.level"]
+    assert [end.name for end in plan.recorded_texts] == ["a.phase"]
 
 
-@pytest.mark.parametrize("key", ["record", "watch"])
-def test_a_text_that_is_asked_for_is_refused(key):
+def test_a_text_that_is_to_be_watched_is_refused():
     mock = Mock([out("level"), out("phase", kind="String")])
-    system, sources = wired({"a": mock}, [], **{key: ["a.phase", "a.level"]})
-    assert f"{key}: 'a.phase' is text, and only numbers are kept; leave it out" in problems(
-        system, sources
-    )
+    system, sources = wired({"a": mock}, [], watch=["a.phase", "a.level"])
+    said = problems(system, sources)
+    assert "watch: 'a.phase' is text, which has no extremes; leave it out" in said
 
 
 # ------------------------------------------------------------------ steps without an end

@@ -8,7 +8,8 @@ from rockshed.campaigns import campaign
 from rockshed.components.catalogue import component
 from rockshed.components.common import stepping
 from rockshed.core import input_text
-from rockshed.core.fmu import archive, fmu_slave
+from rockshed.core.fmu import archive, fmi3_slave, fmu_slave
+from rockshed.core.loop import texts
 from rockshed.core.system import clock, limits, names
 from rockshed.input_files import csv_table, form
 from rockshed.sites.pile import site as pile
@@ -36,6 +37,8 @@ GIB, MIB = 1 << 30, 1 << 20
         ("points of a drawn profile", [f"{profile_files.MOST_POINTS:,}"]),
         ("a number in an input file", [f"{form.LARGEST:.0e}".replace("+", "")]),
         ("values in the time series", [f"{limits.MOST_VALUES:,}"]),
+        ("changes of a recorded text", [f"{texts.MOST_CHANGES:,}"]),
+        ("early returns", [f"{fmi3_slave.MOST_RETURNS:,}"]),
         ("recorded states", [f"{limits.MOST_STATES:,}"]),
         ("results of a run without", [f"{limits.MUCH // 10**6} MB"]),
         (

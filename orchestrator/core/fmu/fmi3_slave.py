@@ -194,6 +194,13 @@ class Fmi3Slave:
         values = (ctypes.c_char_p * len(texts))(*(text.encode() for text in texts))
         return self._status("SetString", (ctypes.c_uint * 1)(reference), 1, values, len(texts))
 
+    def get_texts(self, reference: int, count: int) -> tuple[int, list[str]]:
+        """Return status and texts of a variable of the kind String."""
+        values = (ctypes.c_char_p * count)()
+        passed = ((ctypes.c_uint * 1)(reference), 1, values, count)
+        status = self._status("GetString", *passed)
+        return status, [(value or b"").decode("utf-8", "replace") for value in values]
+
     # ------------------------------------------------------------------ life cycle
 
     def configure(self, sizes: Sequence[tuple[ValueReferences, Values, str]]) -> int:

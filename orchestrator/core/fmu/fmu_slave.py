@@ -629,6 +629,17 @@ class FmuSlave:
         """Set one variable of the kind String."""
         return self._status(self._fmu.setString, [reference], [text])
 
+    def set_texts(self, reference: int, texts: list[str]) -> int:
+        """Set one variable of the kind String."""
+        return self._status(self._fmu.setString, [reference], texts)
+
+    def get_texts(self, reference: int, count: int) -> tuple[int, list[str]]:
+        """Return status and text of one variable of the kind String."""
+        values = (ctypes.c_char_p * count)()
+        passed = ((ctypes.c_uint * 1)(reference), 1, values)
+        status = self._status(self._fmu.fmi2GetString, self._fmu.component, *passed)
+        return status, [(value or b"").decode("utf-8", "replace") for value in values]
+
     def setup_experiment(self, start: float, stop: float, tolerance: float | None = None) -> int:
         """Tell start and end of the run (s), and the relative tolerance of the FMU's solver."""
         return self._status(self._fmu.setupExperiment, tolerance, start, stop)

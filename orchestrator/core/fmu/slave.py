@@ -185,14 +185,21 @@ class Slave(Protocol):
         """Give back everything the slave holds. Nothing may be called afterwards."""
 
 
-class SlaveOfFmi3(Slave, Protocol):
+class SlaveWithTexts(Slave, Protocol):
+    """An instance that has variables of the kind String."""
+
+    def get_texts(self, reference: int, count: int) -> tuple[int, list[str]]:
+        """Return status and texts of a variable; ``count`` of them, where it is an array."""
+
+    def set_texts(self, reference: int, texts: list[str]) -> int:
+        """Set one variable of the kind String; of an array, all elements."""
+
+
+class SlaveOfFmi3(SlaveWithTexts, Protocol):
     """An instance with the calls that FMI 3.0 alone has."""
 
     def configure(self, sizes: Sequence[tuple[ValueReferences, Values, str]]) -> int:
         """Set structural parameters, references, values and type of each, before all else."""
-
-    def set_texts(self, reference: int, texts: Sequence[str]) -> int:
-        """Set all elements of an array of the kind String."""
 
 
 class Source(Protocol):

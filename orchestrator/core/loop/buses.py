@@ -11,6 +11,7 @@ from ..system.schedule import Action, Operation
 from .blocks import Block, make_blocks
 from .snapshots import Snapshots
 from .tables import CHANNEL, LINEAR, WATCHED, IntegerTable, Records
+from .texts import Texts
 
 
 class Buses:
@@ -34,6 +35,8 @@ class Buses:
         Work of each force of a bond.
     watched : array of WATCHED
         Extremes and integral of each watched output.
+    texts : Texts
+        Those that are passed on or recorded.
     linear : array of LINEAR
         Inputs that get other values than their sources have, by rising place.
     """
@@ -49,6 +52,7 @@ class Buses:
         self.linear = _linear(plan)
         self.snapshots = Snapshots(plan)
         self.journal = np.full(2, -1, np.int64) if journal is None else journal
+        self.texts = Texts(plan, self.journal)
 
     @cached_property
     def needs(self) -> dict[str, set[int]]:
@@ -93,7 +97,7 @@ class Buses:
             at = ways["place"] - block.begin
             values[at] = ways["factor"] * values[at] + ways["offset"]
             status = worst(status, slave.set(block.references, values, block.type))
-        return status
+        return worst(status, self.texts.give(slave))
 
     def linear_of(self, block: Block) -> slice:
         """Return which rows of the table of linear inputs belong to a block of inputs."""
@@ -107,7 +111,7 @@ class Buses:
         for block in self.getters.get(slave.name, []):
             values = self.outputs[block.places]
             status = worst(status, slave.get(block.references, values, block.type))
-        return status
+        return worst(status, self.texts.take(slave))
 
     def clear(self) -> None:
         """Forget all values that came from outputs."""

@@ -78,6 +78,8 @@ class Parts:
             "rows": self.recorder.rows_passed,
             "frames": self.recorder.frames_passed,
             "times": self.master.times,
+            "texts": dict(self.buses.texts.newest),
+            "changes": {name: list(all_) for name, all_ in self.buses.texts.changes.items()},
             "said": {
                 name: [[status, text, count] for (status, text), count in said.items()]
                 for name, said in self.hearing.said.items()
@@ -116,6 +118,11 @@ class Parts:
         self.accounts.recall(checkpoint.tables)
         self.recorder.rows_passed = checkpoint.rows
         self.recorder.frames_passed = checkpoint.frames
+        self.buses.texts.newest = dict(checkpoint.facts["texts"])
+        self.buses.texts.changes = {
+            name: [(float(at), str(text)) for at, text in changes]
+            for name, changes in checkpoint.facts["changes"].items()
+        }
         self.hearing.earlier = {
             name: Counter({(int(status), str(text)): int(n) for status, text, n in said})
             for name, said in checkpoint.facts["said"].items()

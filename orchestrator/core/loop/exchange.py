@@ -24,6 +24,7 @@ from .tables import (
     Tables,
     head,
 )
+from .texts import TextCalls
 
 
 class Fault(NamedTuple):
@@ -56,7 +57,8 @@ class ExchangeLoop:
             name: Callbacks(slave) for name, slave in slaves.items() if slave.addresses is None
         }
         self._waiting = buses.snapshots.waiting
-        self._tables = _tables(buses, self._addresses(slaves))
+        self._texts = TextCalls(buses.texts, slaves)
+        self._tables = _tables(buses, self._addresses(slaves), self._texts)
         self._head = head(self._tables)
         self._loop = advance()
 
@@ -140,10 +142,10 @@ class ExchangeLoop:
         return own | {name: made.addresses for name, made in self._callbacks.items()}
 
 
-def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
+def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) -> Tables:
     plan = buses.plan
     snapshots = buses.snapshots
-    operations, moves = _calls(buses, addresses)
+    operations, moves = _calls(buses, addresses, texts)
     buffer = np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int64)
     return Tables(
         start=plan.timing.start,
@@ -176,7 +178,9 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses]) -> Tables:
     )
 
 
-def _calls(buses: Buses, addresses: Mapping[str, Addresses]) -> tuple[Records, Records]:
+def _calls(
+    buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls
+) -> tuple[Records, Records]:
     """Return the tables of operations and of moves.
 
     The arrays of references that the moves point to belong to the buses.
@@ -187,6 +191,7 @@ def _calls(buses: Buses, addresses: Mapping[str, Addresses]) -> tuple[Records, R
         called = addresses[operation.component]
         first = len(moves)
         moves += _moves(operation, buses, called)
+        moves += map(_text_move, texts.addresses(operation.component, operation.action))
         steps = (operation.begin, operation.length)
         functions = (called.instance, called.do_step, called.may_return_early)
         operations.append((operation.action, *functions, *steps, first, len(moves)))
@@ -212,6 +217,11 @@ def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[
         )
         for block in blocks.get(operation.component, [])
     ]
+
+
+def _text_move(address: int) -> tuple[float, ...]:
+    """Return the row of a call that moves texts, and no number."""
+    return (address, *[0] * (len(MOVE.names or ()) - 1))
 
 
 def _move(block: Block, linear: slice) -> tuple[float, ...]:

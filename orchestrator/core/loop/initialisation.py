@@ -248,6 +248,7 @@ def _settle(buses: Buses, slaves: Mapping[str, Slave], entering: Entering) -> st
     outputs = buses.outputs
     turns = sorted(slaves.values(), key=lambda slave: len(buses.needs[slave.name]))
     before = np.full_like(outputs, np.nan)
+    texts_before: dict[str, str] = {}
     taken: set[int] = set()
     said: dict[str, int] = {}
     for _ in range(_ROUNDS):
@@ -258,10 +259,11 @@ def _settle(buses: Buses, slaves: Mapping[str, Slave], entering: Entering) -> st
         if refusals:
             raise InputRefused(_causes(refusals))
         changed = np.flatnonzero((outputs != before) & ~(np.isnan(outputs) & np.isnan(before)))
-        if not changed.size:
+        if not changed.size and buses.texts.newest == texts_before:
             return ""
         before[:] = outputs
-    return buses.plan.outputs[changed[0]].name
+        texts_before = dict(buses.texts.newest)
+    return buses.plan.outputs[changed[0]].name if changed.size else "a text"
 
 
 def _pass_on(buses: Buses, slave: Slave, taken: set[int], said: dict[str, int]) -> list[_Refusal]:

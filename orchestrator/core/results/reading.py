@@ -89,6 +89,15 @@ class StoredRun:
         return list(self.provenance.get("warnings", []))
 
     @property
+    def texts(self) -> dict[str, list[tuple[float, str]]]:
+        """Recorded variables that are text: times (s) and what they said from then on, by name.
+
+        Known when the run has ended.
+        """
+        found = self.provenance.get("texts", {})
+        return {name: [(at, text) for at, text in changes] for name, changes in found.items()}
+
+    @property
     def time(self) -> NDArray[np.float64]:
         """Simulated time of the rows (s)."""
         return self.series["time"]

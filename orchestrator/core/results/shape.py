@@ -6,7 +6,7 @@ Only what readers rely on is described; other entries are passed over.
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Strict, Tag, ValidationError
 
 _Name = Annotated[str, Field(max_length=10_000)]
 _Positive = Annotated[float, Field(gt=0.0, lt=1e30)]
@@ -109,6 +109,10 @@ class _Width(_Shape):
     metrics: dict[_Name, float] = {}
 
 
+_Text = Annotated[tuple[float, str], Strict(False)]
+"""A time (s) and the text from then on."""
+
+
 class _Run(_Shape):
     status: _Name
     name: _Name = ""
@@ -120,6 +124,7 @@ class _Run(_Shape):
     references: _References = _References()
     load_cell: _Positive | None = None
     band: dict[_Name, _Width] = {}
+    texts: dict[_Name, list[_Text]] = {}
 
 
 def check(provenance: Mapping[str, Any]) -> None:

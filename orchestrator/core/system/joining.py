@@ -96,7 +96,7 @@ class Joiner:
         source, target = names if kinds[0] == "output" else reversed(names)
         flows = {member.kind for _, member in (one, other)}
         is_turned = len(flows) == 1 and flows != {"signal"}
-        return Connection(source=source, target=target, factor=-1.0 if is_turned else 1.0)
+        return Connection(source=source, target=target, factor=-1.0 if is_turned else None)
 
     def _causality(self, component: str, name: str) -> str:
         """Return the causality of a variable or array, in words where there is none."""

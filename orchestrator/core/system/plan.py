@@ -114,6 +114,10 @@ class Plan:
         Outputs that give a kinetic energy.
     warnings : tuple of str
         For the user.
+    texts : tuple of (End, End)
+        Inputs and outputs of the kind String that are connected.
+    recorded_texts : tuple of End
+        Variables of the kind String that are recorded.
     linear : mapping of int to (float, float)
         Factor and offset of the inputs, by place, that get other values than their sources have.
     """
@@ -136,13 +140,20 @@ class Plan:
     kinetic: tuple[End, ...]
     warnings: tuple[str, ...] = ()
     linear: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    texts: tuple[tuple[End, End], ...] = ()
+    recorded_texts: tuple[End, ...] = ()
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:
-        """Yield place and port of each input that is fed, and the output that feeds it."""
+        """Yield place and port of each input that is fed, and the output that feeds it.
+
+        The place of a text, which lies on no bus, is -1.
+        """
         for place, (target, source) in enumerate(zip(self.inputs, self.source, strict=True)):
             if source < len(self.outputs):
                 yield place, target, self.outputs[source]
+        for target, feeding in self.texts:
+            yield -1, target, feeding
 
     def tolerance(self, component: str) -> float | None:
         """Return the relative tolerance that the solver of a component is told.

@@ -16,7 +16,7 @@ from rockshed.components.common.roles import Role
 from ..errors import InputRefused, Problem, counted
 from ..fmu.description import SIZE, Description, Port, UnitDefinition
 from ..fmu.fmu_slave import UnusableError, read_description
-from ..fmu.slave import REAL, Source
+from ..fmu.slave import NUMBERS, REAL, STRING, Source
 from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select, split_name
@@ -68,13 +68,15 @@ class _Bond(NamedTuple):
 
 
 class _Parts(NamedTuple):
-    """The parts of a system by ports."""
+    """The parts of a system by ports; texts apart from numbers."""
 
     links: _Links
+    texts: _Links
     starts: dict[str, Starts]
     bonds: list[_Bond]
     watched: list[End]
     recorded: list[End]
+    recorded_texts: list[End]
     reference: float | End | None
 
 
@@ -113,11 +115,13 @@ class _Planner:
         self._check_arrays(links, starts)
         bonds = [self._bond(name, bond, links) for name, bond in self.system.bonds.items()]
         return _Parts(
-            links,
+            [link for link in links if link[0].port.is_number],
+            [link for link in links if not link[0].port.is_number],
             starts,
             [bond for bond in bonds if bond],
             self._selected("watch", self.system.watch),
             self._selected("record", self.system.record),
+            self._texts_selected(self.system.record),
             self._reference(),
         )
 
@@ -157,6 +161,8 @@ class _Planner:
             balances=tuple(self._of_role(order, Role.RESIDUAL)),
             kinetic=tuple(self._of_role(order, Role.KINETIC)),
             warnings=tuple(self.warnings),
+            texts=tuple((target, source) for source, target in parts.texts),
+            recorded_texts=tuple(parts.recorded_texts),
         )
 
     def _split(self, name: str) -> tuple[str, str]:
@@ -172,7 +178,7 @@ class _Planner:
             try:
                 self.descriptions[name] = self._description(name, source.model_description())
                 self.warnings += [f"{name}: {text}" for text in self.descriptions[name].warnings]
-                self.warnings += _of_texts(name, self.descriptions[name])
+                self.warnings += _not_recorded(name, self.descriptions[name])
             except InputRefused as refusal:
                 self.problems += [
                     Problem(name, f"{p.where}: {p.what}", p.remedy) for p in refusal.problems
@@ -325,11 +331,12 @@ class _Planner:
             pattern = self._present_pattern(given)
             names = [pattern] if pattern in ends and key == "record" else select(pattern, outputs)
             names = names or [name for name in self._elements(pattern) if name in outputs]
-            if self._is_text(pattern):
-                what = f"{pattern!r} is text, and only numbers are kept"
+            if key == "watch" and self._texts_selected([given]):
+                what = f"{pattern!r} is text, which has no extremes"
                 self._refuse(key, what, "leave it out")
             elif (
                 not names
+                and not self._texts_selected([given])
                 and len(self.descriptions) == len(self.system.components)
                 and pattern != "*"
             ):
@@ -344,10 +351,20 @@ class _Planner:
         array = known.arrays.get(variable) if known else None
         return [f"{component}.{element}" for element in array.names] if array else []
 
-    def _is_text(self, name: str) -> bool:
-        component, variable = self._split(name)
-        known = self.descriptions.get(component)
-        return known is not None and variable in known.ports and not known.ports[variable].is_number
+    def _texts_selected(self, patterns: Iterable[str]) -> list[End]:
+        """Return the texts that patterns select, as they select numbers."""
+        texts = {
+            f"{name}.{port.name}": End(name, port)
+            for name, known in self.descriptions.items()
+            for port in known.ports.values()
+            if port.kind == STRING and not port.is_alias
+        }
+        outputs = [name for name, end in texts.items() if end.port.causality == "output"]
+        chosen: dict[str, End] = {}
+        for pattern in map(self._present_pattern, patterns):
+            names = [pattern] if pattern in texts else select(pattern, outputs)
+            chosen |= {name: texts[name] for name in names}
+        return list(chosen.values())
 
     def _present_pattern(self, pattern: str) -> str:
         component, name = self._split(pattern)
@@ -411,9 +428,8 @@ class _Planner:
             return []
         pairs = list(zip(sources, targets, strict=True))
         self._check_pairs(where, pairs, connection.is_linear)
-        if connection.is_linear:
-            way = (connection.factor, connection.offset)
-            self.linear |= {target.name: way for target in targets}
+        if connection.way != (1.0, 0.0):
+            self.linear |= {target.name: connection.way for target in targets}
         return pairs
 
     def _check_pairs(self, where: str, pairs: _Links, is_linear: bool) -> None:
@@ -423,11 +439,12 @@ class _Planner:
         at.
         """
         for source, target in pairs:
-            if source.port.kind != target.port.kind or not source.port.is_number:
+            kind = source.port.kind
+            if kind != target.port.kind or kind not in (*NUMBERS, STRING):
                 self._refuse(
                     where,
                     f"{source.name} is {source.port.type} and {target.name} is {target.port.type}",
-                    "connect ports of one type, Real, Integer or Boolean",
+                    "connect ports of one type, Real, Integer, Boolean or String",
                 )
                 return
             if source.port.items and target.port.items not in ({}, source.port.items):
@@ -450,9 +467,14 @@ class _Planner:
                 )
                 return
             if agree is None:
-                self.warnings.append(
-                    f"{where}: units {source.port.unit_name} and {target.port.unit_name} are not "
-                    "defined in the model descriptions and are taken to be the same"
+                ports = (source, target)
+                unknown = next(e for e in ports if e.port.unit and e.port.unit.base is None)
+                other = target if unknown is source else source
+                self._refuse(
+                    where,
+                    f"the unit {unknown.port.unit_name} of {unknown.name} is not defined in its "
+                    f"model description, and {other.name} is in {unit_text(other.port.unit)}",
+                    "give the connection a factor, 1 if they are the same",
                 )
                 return
 
@@ -620,13 +642,17 @@ class _Planner:
                     yield End(component, port)
 
 
-def _of_texts(component: str, description: Description) -> list[str]:
-    """Say which outputs of a component are left out of the results, because they are text."""
-    texts = [port.name for port in description.named("output") if not port.is_number]
-    if not texts:
+def _not_recorded(component: str, description: Description) -> list[str]:
+    """Say which outputs of a component are left out of the results: neither numbers nor text."""
+    kept = (*NUMBERS, STRING)
+    others = [port for port in description.named("output") if port.kind not in kept]
+    if not others:
         return []
-    verb = "is text and is" if len(texts) == 1 else "are text and are"
-    return [f"{component}: {_few(texts)} {verb} not recorded"]
+    kinds = " and ".join(sorted({port.kind for port in others}))
+    verb = "is" if len(others) == 1 else "are"
+    return [
+        f"{component}: {_few(port.name for port in others)} {verb} {kinds}, which is not recorded"
+    ]
 
 
 def _described(end: End) -> str:

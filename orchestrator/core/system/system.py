@@ -139,16 +139,17 @@ class Connection(_Data):
     source, target : str
         Output and input, or two terminals.
     factor, offset : float
-        The input gets ``factor`` times the output plus ``offset``. Where they are not 1 and 0,
-        both are real, and their units are not compared: the numbers stand for what is between them.
+        The input gets ``factor`` times the output plus ``offset``. Where one of them is given, both
+        ports are real, and their units are not compared: the numbers stand for what is between
+        them, and a factor of 1 says that they are the same.
     terminals : bool
         Whether two terminals are connected, in both directions.
     """
 
     source: str
     target: str
-    factor: Finite = 1.0
-    offset: Finite = 0.0
+    factor: Finite | None = None
+    offset: Finite | None = None
     terminals: bool = False
 
     def __str__(self) -> str:
@@ -156,8 +157,13 @@ class Connection(_Data):
 
     @property
     def is_linear(self) -> bool:
-        """Whether the value changes on its way."""
-        return (self.factor, self.offset) != (1.0, 0.0)
+        """Whether it says how the value changes on its way."""
+        return self.factor is not None or self.offset is not None
+
+    @property
+    def way(self) -> tuple[float, float]:
+        """Factor and offset of the value; 1 and 0 where it stays as it is."""
+        return 1.0 if self.factor is None else self.factor, self.offset or 0.0
 
     @model_validator(mode="before")
     @classmethod
