@@ -144,6 +144,9 @@ def _studied(target: str, asked: Mapping[str, Any], screen: Screen) -> StudyResu
     except (StudyFailed, ClusterFailed) as failure:
         screen.fail(str(failure))
         raise typer.Exit(RUN_FAILED) from None
+    except OSError as error:  # a full disk, for instance
+        screen.fail(f"{error}; runs that are kept are not run again by the same command")
+        raise typer.Exit(RUN_FAILED) from None
     except KeyboardInterrupt:
         screen.warn("interrupted; runs that have ended are kept: the same command goes on")
         raise typer.Exit(INTERRUPTED) from None

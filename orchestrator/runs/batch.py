@@ -226,14 +226,14 @@ def orders_of(tasks: Sequence[Task], note: Note = silent) -> list[_Order]:
     """
     fmus_of = each_once()
     orders = []
-    problems: list[Problem] = []
+    refused: list[tuple[str, Problem]] = []
     for task in {task.key: task for task in tasks}.values():
         try:
             orders.append(_order(task, note, fmus_of))
         except InputRefused as refusal:
-            problems += _labelled(task.label, refusal.problems)
-    if problems:
-        raise InputRefused(_fewer(problems))
+            refused += [(task.label, problem) for problem in refusal.problems]
+    if refused:
+        raise InputRefused(_fewer(_labelled(refused)))
     return orders
 
 
@@ -241,10 +241,17 @@ _MOST_PROBLEMS = 12
 """Problems of a batch that are told; a bad value is in many of its runs."""
 
 
-def _labelled(label: str, problems: Sequence[Problem]) -> list[Problem]:
-    """Return problems with the name of their run."""
-    before = f"{label}: " if label else ""
-    return [Problem(f"{before}{p.where}", p.what, p.remedy) for p in problems]
+def _labelled(refused: Sequence[tuple[str, Problem]]) -> list[Problem]:
+    """Return problems with the names of their runs; one that several have is told once."""
+    labels: dict[Problem, list[str]] = {}
+    for label, problem in refused:
+        labels.setdefault(problem, []).append(label)
+    found = []
+    for problem, runs in labels.items():
+        others = f" and {len(runs) - 1} other runs" if len(runs) > 1 else ""
+        before = f"{runs[0]}{others}: " if runs[0] else ""
+        found.append(Problem(f"{before}{problem.where}", problem.what, problem.remedy))
+    return found
 
 
 def _fewer(problems: Sequence[Problem]) -> list[Problem]:
@@ -295,10 +302,11 @@ def carry_out(
         note(f"{len(outcomes)} of {len(orders)} runs have ended before, and are not run again")
     waiting = [order for order in orders if order.key not in outcomes]
     by_key = {order.key: order for order in waiting}
+    tell = _once(note)
     try:
         for outcome in _carry_out(waiting, opening, check_first):
             outcomes[outcome.key] = outcome
-            _keep(kept, by_key[outcome.key], outcome)
+            _keep(kept, by_key[outcome.key], outcome, tell)
             counted(len(outcomes), len(orders))
     except KeyboardInterrupt:
         note("interrupted: what was computed is reported")
@@ -345,14 +353,29 @@ def run_here(task: Task, note: Note = silent, kept: KeptRuns | None = None) -> O
     outcome = _ended([order], kept).get(order.key)
     if outcome is None:
         outcome = run_one(order)
-        _keep(kept, order, outcome)
+        _keep(kept, order, outcome, note)
     return outcome
 
 
-def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome) -> None:
-    """Keep the outcome of a run that is complete."""
+def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome, note: Note) -> None:
+    """Keep the outcome of a run that is complete; say so if that cannot be done."""
     if kept and outcome.status == COMPLETE:
-        kept.keep(order.system, order.allow_unstable, outcome, order.about)
+        try:
+            kept.keep(order.system, order.allow_unstable, outcome, order.about)
+        except OSError as error:
+            note(f"runs that have ended cannot be kept in {kept.folder}: {error.strerror}")
+
+
+def _once(note: Note) -> Note:
+    """Return a function that passes each text on once."""
+    said: set[str] = set()
+
+    def tell(text: str) -> None:
+        if text not in said:
+            said.add(text)
+            note(text)
+
+    return tell
 
 
 def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
@@ -413,14 +436,14 @@ def _lost(key: str) -> Outcome:
 def _refuse(orders: Sequence[_Order], executor: Crew) -> None:
     """Refuse runs whose values the FMUs refuse by their descriptions."""
     found = dict(executor.each(check_one, orders))
-    problems = [
-        problem
+    refused = [
+        (order.label, problem)
         for number, order in enumerate(orders)
         if not isinstance(found[number], Lost)
-        for problem in _labelled(order.label, found[number])
+        for problem in found[number]
     ]
-    if problems:
-        raise InputRefused(_fewer(problems))
+    if refused:
+        raise InputRefused(_fewer(_labelled(refused)))
 
 
 # --- in a process ---

@@ -18,6 +18,8 @@ from .executors import number_of_workers
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster, Security
 
+GONE = "the scheduler or its last worker is gone"
+"""Reason for which what is computed by the workers of a scheduler does not go on."""
 LOCAL = "local"
 """Name of the scheduler that is started with its workers, and ends with the work."""
 CONNECT_TIMEOUT = 5.0
@@ -79,10 +81,21 @@ def connected(
         Scheduler and workers cannot be started.
     """
     _check(scheduler, workers, certificates)
-    # messages of Dask that matter are raised in our own words
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    _silence()
     with _local(workers) if scheduler == LOCAL else _running(scheduler, certificates) as client:
         yield client
+
+
+def _silence() -> None:
+    """Let Dask say nothing: what matters is raised in our own words.
+
+    It gives some of its loggers levels of their own when it is imported.
+    """
+    import distributed  # noqa: F401
+
+    for name in list(logging.root.manager.loggerDict):
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
 
 
 def _check(scheduler: str, workers: int | None, certificates: Certificates | None) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from .cluster import Certificates, ClusterFailed, connected
+from .cluster import GONE, Certificates, ClusterFailed, connected
 from .executors import Crew, Lost, Work
 from .kept import program_stamp
 
@@ -119,5 +119,5 @@ def _failing() -> Iterator[None]:
     except (_OtherVersion, ImportError) as error:
         raise ClusterFailed(f"a worker failed: {error}") from error
     except (CancelledError, OSError, TimeoutError) as error:
-        text = "the scheduler or its last worker is gone; what has ended is kept: run it again"
+        text = f"{GONE}; what has ended is kept: run it again"
         raise ClusterFailed(text) from error

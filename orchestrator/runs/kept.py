@@ -88,12 +88,17 @@ class KeptRuns:
     def keep(
         self, system: SystemSpec, allow_unstable: bool, outcome: Outcome, about: object = None
     ) -> None:
-        """Keep the outcome of a run of this system."""
+        """Keep the outcome of a run of this system.
+
+        Raises
+        ------
+        OSError
+            It cannot be written, and will be run again.
+        """
         file = self._file(system, allow_unstable, about)
         if file is not None:
-            with suppress(OSError):  # then it is run again
-                self.folder.mkdir(parents=True, exist_ok=True)
-                _write(file, outcome)
+            self.folder.mkdir(parents=True, exist_ok=True)
+            _write(file, outcome)
 
     def clear(self) -> None:
         """Remove all outcomes, and the folder if it holds nothing else."""

@@ -19,6 +19,7 @@ import rockshed
 from rockshed.analyses.rockfall import cluster
 from rockshed.campaigns import campaign
 from rockshed.campaigns.campaign import campaign_of
+from rockshed.campaigns.kept import KeptTrials
 from rockshed.commands.app import app
 from rockshed.runs import cluster as connection
 from rockshed.runs.cluster import connected
@@ -109,6 +110,53 @@ def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch
     killer = Killer(client)
     assert_same(cluster._run(client, given, killer), campaign.run(given, 1))
     assert not psutil.pid_exists(killer.killed)
+
+
+def test_trials_outlive_a_scheduler_and_are_not_computed_again(
+    client, made, records, monkeypatch, tmp_path
+):
+    kept = KeptTrials(tmp_path / "trials.npz")
+    given, left = cluster._result, iter(range(3))
+    monkeypatch.setattr(cluster, "_block_size", lambda campaign, workers: 1000)
+
+    def until_it_dies(block):
+        if next(left, None) is None:
+            raise campaign.CampaignFailed(connection.GONE)
+        return given(block)
+
+    monkeypatch.setattr(cluster, "_result", until_it_dies)
+    words = "the scheduler or its last worker is gone; 3000 of 5000 trials are kept: run it again"
+    with pytest.raises(campaign.CampaignFailed, match=words):
+        cluster._run(client, made, lambda count, total: None, kept)
+    monkeypatch.setattr(cluster, "_result", given)
+    told = []
+    found = cluster._run(client, made, lambda count, total: told.append(count), kept)
+    assert_same(found, records)
+    assert told == [4000, 5000]
+    assert not kept.file.exists()
+
+
+def test_kept_trials_of_another_campaign_or_that_are_damaged_are_computed_again(
+    made, records, tmp_path
+):
+    kept = KeptTrials(tmp_path / "trials.npz")
+    done = np.arange(5000) < 700
+    assert kept.keep(made, records, done)
+    for other, number in (
+        (made, 700),
+        (dataclasses.replace(made, trials=200), 200),
+        (dataclasses.replace(made, seed=2), 0),
+        (dataclasses.replace(made, right=made.right - 1.0), 0),
+    ):
+        empty = campaign.empty_records(other, other.trials)
+        found = kept.find(other, empty)
+        assert found.sum() == number
+        np.testing.assert_array_equal(empty.outcomes[found], records.outcomes[:number])
+    kept.file.write_bytes(kept.file.read_bytes()[:-100])
+    assert not kept.find(made, campaign.empty_records(made, 5000)).any()
+    assert not kept.keep(made, records, done)  # it may be the user's
+    kept.clear()
+    assert kept.file.exists()
 
 
 @pytest.mark.parametrize(

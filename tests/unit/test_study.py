@@ -1,13 +1,17 @@
 """Studies: what varies, the points of designs, statistics of runs, and results that are read again."""
 
+import errno
 import math
+from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
+from typer.testing import CliRunner
 
 import rockshed
 from rockshed.analyses.saved import saved_result
@@ -24,9 +28,12 @@ from rockshed.analyses.study.statistics import (
     sobol_table,
     spreads,
 )
+from rockshed.commands.app import app
 from rockshed.commands.vary import varied_of
 from rockshed.core.errors import InputRefused
 from rockshed.metrics.percentiles import needed
+from rockshed.runs import kept
+from rockshed.runs.batch import check_one
 from rockshed.runs.outcome import Outcome
 
 NAMES = {"force": MetricName("force", "N")}
@@ -354,6 +361,63 @@ def test_a_study_without_a_single_result_says_why(monkeypatch, tmp_path):
         rockshed.study("lab-impact", {"rock.velocity0.y": [-4, -8]}, folder=tmp_path / "study")
     assert [run.status for run in lost.value.result.records.runs] == ["failed"] * 2
     assert (tmp_path / "study" / "runs.csv").is_file()
+
+
+def test_a_study_without_a_result_ends_with_1_and_the_commonest_cause(monkeypatch, tmp_path):
+    texts = ["sand: diverged at t = 0.3 s", "no process", "sand: diverged at t = 1.25e-2 s"]
+
+    def failed(orders, *rest, **others):
+        return {o.key: Outcome(o.key, "failed", t) for o, t in zip(orders, texts, strict=True)}
+
+    monkeypatch.setattr(study_run, "carry_out", failed)
+    words = ["study", "lab-impact", "--vary", "rock.velocity0.y=-4,-6,-8"]
+    done = CliRunner().invoke(app, [*words, "--output-dir", str(tmp_path / "study")])
+    assert done.exit_code == 1
+    told = "none of the 3 runs has a result: sand: diverged at t = 0.3 s (2 of them); no process (1"
+    assert told in " ".join(done.stderr.split())
+
+
+def test_what_is_wrong_in_all_runs_is_told_once():
+    project = Path(rockshed.__file__).parent / "examples" / "trial-shed.toml"
+    speeds = rockshed.Interval(20.0, 24.0, levels=3)
+    with pytest.raises(InputRefused) as refused:
+        rockshed.study(project, {"rock.velocity": speeds})
+    (problem,) = refused.value.problems
+    start = "in design 1 (rock.velocity = 20 m/s) and 2 other runs: rock.velocity"
+    assert problem.where.startswith(start)
+    assert "two ways to say one thing" in problem.what
+
+
+@contextmanager
+def at_once(workers):
+    """A crew that finds nothing to refuse, and the same force in every run."""
+
+    def each(work, orders):
+        for number, order in enumerate(orders):
+            outcome = Outcome(order.key, "complete", metrics={"force": 1.0}, units={"force": "N"})
+            yield number, [] if work is check_one else outcome
+
+    yield SimpleNamespace(facts={}, each=each)
+
+
+def test_a_study_on_a_full_disk_says_so_and_what_goes_on(monkeypatch, tmp_path):
+    def full(file, *rest):
+        raise OSError(errno.ENOSPC, "No space left on device", str(file))
+
+    monkeypatch.setattr(study_run, "processes", at_once)
+    monkeypatch.setattr(kept, "_write", full)
+    monkeypatch.setattr(StudyResult, "save", lambda result, folder, **rest: full(folder))
+    folder = tmp_path / "study"
+    words = ["--output-dir", str(folder)]
+    done = CliRunner().invoke(
+        app, ["study", "lab-impact", "--vary", "sand.modulus=2e6,3e6", *words]
+    )
+    assert done.exit_code == 1
+    said = "".join(done.stderr.split())
+    note = f"runs that have ended cannot be kept in {folder / '.finished-runs'}: No space left"
+    assert said.count("".join(note.split())) == 1
+    assert "Nospaceleftondevice" in said
+    assert said.endswith("runsthatarekeptarenotrunagainbythesamecommand")
 
 
 @pytest.mark.parametrize(

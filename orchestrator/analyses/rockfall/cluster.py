@@ -9,6 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rockshed.components.catalogue import component
 from rockshed.components.common.cache import source_stamp
 
@@ -21,7 +24,8 @@ from ...campaigns.campaign import (
     empty_records,
     fill,
 )
-from ...runs.cluster import Certificates, ClusterFailed, connected
+from ...campaigns.kept import KeptTrials
+from ...runs.cluster import GONE, Certificates, ClusterFailed, connected
 from ..frame import Count
 
 if TYPE_CHECKING:
@@ -42,7 +46,10 @@ _COMPONENT = "SlopeRockfall"
 
 @contextmanager
 def dask_workers(
-    scheduler: str, workers: int | None, certificates: Certificates | None = None
+    scheduler: str,
+    workers: int | None,
+    certificates: Certificates | None = None,
+    kept: KeptTrials | None = None,
 ) -> Iterator[Executor]:
     """Open an executor of the workers of a Dask scheduler.
 
@@ -54,6 +61,8 @@ def dask_workers(
         Number of processes of the local scheduler, by default one for each core.
     certificates : Certificates, optional
         For a scheduler at an address ``tls://HOST:PORT``.
+    kept : KeptTrials, optional
+        Trials that have been computed before, and where they are kept if the scheduler dies.
 
     Yields
     ------
@@ -70,7 +79,7 @@ def dask_workers(
     try:
         with connected(scheduler, workers, certificates) as client:
             facts = {"workers": sum(client.nthreads().values()), "scheduler": scheduler}
-            yield Executor(lambda campaign, count: _run(client, campaign, count), facts)
+            yield Executor(lambda campaign, count: _run(client, campaign, count, kept), facts)
     except ClusterFailed as failure:
         raise CampaignFailed(str(failure)) from failure
 
@@ -78,27 +87,53 @@ def dask_workers(
 # --- the campaign ---
 
 
-def _run(client: "Client", campaign: Campaign, count: Count) -> TrialRecords:
-    """Compute all trials of a campaign on the workers of a client."""
+def _run(
+    client: "Client", campaign: Campaign, count: Count, kept: KeptTrials | None = None
+) -> TrialRecords:
+    """Compute all trials of a campaign on the workers of a client, but those that are kept.
+
+    Raises
+    ------
+    CampaignFailed
+        It cannot go on; what has ended is kept.
+    """
+    records = empty_records(campaign, campaign.trials)
+    done = kept.find(campaign, records) if kept else np.zeros(campaign.trials, bool)
+    try:
+        for first, number in _computed(client, campaign, records, done):
+            done[first : first + number] = True
+            count(int(done.sum()), campaign.trials)
+    except CampaignFailed as failure:
+        if kept is None or not done.any() or not kept.keep(campaign, records, done):
+            raise
+        text = f"{failure}; {done.sum()} of {campaign.trials} trials are kept: run it again"
+        raise CampaignFailed(text) from failure
+    if kept is not None:
+        kept.clear()
+    return records
+
+
+def _computed(
+    client: "Client", campaign: Campaign, records: TrialRecords, done: NDArray[np.bool_]
+) -> Iterator[tuple[int, int]]:
+    """Compute the trials that are not done; yield first trial and number of each block."""
     from distributed import as_completed
 
-    records = empty_records(campaign, campaign.trials)
     # a task that returns the campaign, and no scattered data: where all workers that have it die,
     # it is made again
     common = client.submit(_itself, campaign, pure=False)
     size = _block_size(campaign, sum(client.nthreads().values()))
     stamp = source_stamp(component(_COMPONENT).folder)
-    first = {}
+    begun = {}
     for start in range(0, campaign.trials, size):
         number = min(size, campaign.trials - start)
-        block = client.submit(_block, common, start, number, stamp, pure=False, retries=RETRIES)
-        first[block] = start
-    finished = 0
-    for block in as_completed(list(first)):
-        finished += fill(records, first.pop(block), _result(block))
+        if not done[start : start + number].all():
+            block = client.submit(_block, common, start, number, stamp, pure=False, retries=RETRIES)
+            begun[block] = start
+    for block in as_completed(list(begun)):
+        start = begun.pop(block)
+        yield start, fill(records, start, _result(block))
         block.release()
-        count(finished, campaign.trials)
-    return records
 
 
 def _block_size(campaign: Campaign, workers: int) -> int:
@@ -124,12 +159,16 @@ def _result(block: Any) -> TrialRecords:
     Raises
     ------
     CampaignFailed
-        No worker could compute it.
+        No worker could compute it, or the scheduler is gone.
     """
+    from concurrent.futures import CancelledError
+
     from distributed import KilledWorker
 
     try:
         records: TrialRecords = block.result()
+    except (CancelledError, OSError, TimeoutError) as error:
+        raise CampaignFailed(GONE) from error
     except KilledWorker as error:
         text = "workers died again and again while they computed the same block"
         raise CampaignFailed(text) from error

@@ -10,6 +10,7 @@ from rockshed.components.catalogue import component
 
 from ...animations.formats import animation_format
 from ...campaigns.campaign import Campaign, Executor, campaign_of, threads
+from ...campaigns.kept import KeptTrials
 from ...campaigns.replay import check
 from ...core.errors import InputRefused, Problem
 from ...runs.executors import number_of_workers
@@ -104,7 +105,8 @@ def rockfall(
         place = opened.enter_context(RockfallResult.opened(folder)) if folder else None
         show("trials", 0, campaign.trials)
         tell_first_compilation([component("SlopeRockfall")])
-        with _executor(scheduler, workers, certificates) as executor:
+        kept = KeptTrials(_beside(Path(folder))) if folder and scheduler else None
+        with _executor(scheduler, workers, certificates, kept) as executor:
             began = time.perf_counter()
             records = executor.run(campaign, counter(show, "trials"))
             wall_time = time.perf_counter() - began
@@ -129,7 +131,10 @@ def _path_count(campaign: Campaign, trajectories: int | str) -> int:
 
 
 def _executor(
-    scheduler: str | None, workers: int | None, certificates: Certificates | None
+    scheduler: str | None,
+    workers: int | None,
+    certificates: Certificates | None,
+    kept: KeptTrials | None,
 ) -> AbstractContextManager[Executor]:
     """Open threads of this process, or the workers of a Dask scheduler."""
     if scheduler is None:
@@ -137,4 +142,9 @@ def _executor(
             text = "are for a running scheduler"
             raise InputRefused([Problem("certificates", text, "name it with scheduler=...")])
         return threads(number_of_workers(workers))
-    return dask_workers(scheduler, workers, certificates)
+    return dask_workers(scheduler, workers, certificates, kept)
+
+
+def _beside(folder: Path) -> Path:
+    """Return the file beside the results that keeps trials if a scheduler dies."""
+    return folder.absolute().with_name(f".{folder.absolute().name}-finished-trials.npz")

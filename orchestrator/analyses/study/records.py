@@ -1,5 +1,6 @@
 """StudyRecords of the runs of a study."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +14,7 @@ from ..frame import FloatArray
 from .designs import BASE, FIRST, SECOND
 from .factors import Factor
 
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
 _OF_THE_MACHINE = ("wall_time",)
 """Beginnings of the identifiers of metrics that tell of the computer, and not of the system."""
 
@@ -127,6 +129,20 @@ def values_of(runs: Sequence[StudyRun], metric: str) -> FloatArray:
         Identifier.
     """
     return np.array([run.metrics[metric] for run in runs if metric in run.metrics])
+
+
+def common_reasons(runs: Sequence[StudyRun]) -> list[tuple[str, int]]:
+    """Return the reasons for which runs have no result, and the number of each; commonest first.
+
+    Reasons that differ in their numbers alone are one, which is told as the first run has it.
+    """
+    found: dict[str, list[str]] = {}
+    for run in runs:
+        if not run.is_complete:
+            reason = run.error or run.status
+            found.setdefault(_NUMBER.sub("#", reason), []).append(reason)
+    counted = [(reasons[0], len(reasons)) for reasons in found.values()]
+    return sorted(counted, key=lambda entry: -entry[1])
 
 
 def plain_runs(records: StudyRecords) -> list[dict[str, Any]]:

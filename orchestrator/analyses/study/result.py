@@ -14,7 +14,7 @@ from ...tables import Table
 from ..frame import Result, shared_folder
 from .designs import SAMPLED, SOBOL
 from .files import NAMES, run_table, write_files
-from .records import StudyRecords, values_of
+from .records import StudyRecords, common_reasons, values_of
 from .statistics import FEWEST_FOR_SOBOL, mean_of, percentiles
 from .tables import all_tables, notes
 
@@ -142,10 +142,10 @@ class StudyResult(Result):
         failed = [run for run in self.records.runs if not run.is_complete]
         if not failed:
             return []
-        reason = Counter(run.error for run in failed).most_common(1)[0][0]
+        reason, number = common_reasons(failed)[0]
         return [
             f"{len(failed)} of {len(self.records.runs)} runs have no result and are left out of "
-            f"all means and percentiles, {reason!r} among them"
+            f"all means and percentiles; {number} of them: {reason}"
         ]
 
     def _about_packings(self) -> list[str]:

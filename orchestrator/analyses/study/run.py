@@ -1,7 +1,6 @@
 """Carry out a study: prepare all of its runs, then run them, then tell."""
 
 import time
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
@@ -28,11 +27,19 @@ from ..frame import StageProgress, counter, no_progress
 from .designs import GRID, MOST_POINTS, RANDOM, SAMPLED, SOBOL, DesignPoint, design_problems, points
 from .factors import Factor, Interval, Levels, RandomValue, Varied, in_si
 from .headline import headline_metrics
-from .records import MetricName, StudyRecords, StudyRun, metrics_by_identifier
+from .records import (
+    MetricName,
+    StudyRecords,
+    StudyRun,
+    common_reasons,
+    metrics_by_identifier,
+)
 from .result import StudyResult
 from .statistics import SHARES
 from .tables import level_text
 
+_MOST_REASONS = 3
+"""Reasons that are told of a study without a result."""
 EXTREME = 1e-3
 """Percentile nearest to 0 and to 100 (in percent); no study has enough samples for it."""
 StudyTarget = str | Path | Mapping[str, Any] | System
@@ -50,8 +57,8 @@ class StudyFailed(Exception):  # noqa: N818 (as RunFailed)
 
     def __init__(self, result: StudyResult) -> None:
         self.result = result
-        reasons = Counter(run.error or run.status for run in result.records.runs)
-        told = "; ".join(f"{text} ({number} runs)" for text, number in reasons.most_common(3))
+        reasons = common_reasons(result.records.runs)
+        told = "; ".join(f"{text} ({count} of them)" for text, count in reasons[:_MOST_REASONS])
         super().__init__(f"none of the {len(result.records.runs)} runs has a result: {told}")
 
 
@@ -339,7 +346,7 @@ def _task(
     return Task(
         replace(request, values={**request.values, **seeded, **point.values}),
         columns=None,
-        label=f"design {number} ({told})" if told else f"design {number}",
+        label=f"in design {number} ({told})" if told else f"in design {number}",
     )
 
 
