@@ -83,7 +83,7 @@ class KeptTrials:
         return False
 
     def clear(self) -> None:
-        """Remove the file."""
+        """Remove the file, if its content is of this class."""
         if self._is_own():
             self.file.unlink(missing_ok=True)
 

@@ -21,6 +21,7 @@ from rockshed.campaigns import campaign
 from rockshed.campaigns.campaign import campaign_of
 from rockshed.campaigns.kept import KeptTrials
 from rockshed.commands.app import app
+from rockshed.components.slope_rockfall.records import PASSAGE, ROCK
 from rockshed.runs import cluster as connection
 from rockshed.runs.cluster import connected
 from rockshed.sites.rockfall.preparation import prepare
@@ -102,6 +103,38 @@ def test_any_number_of_workers_gives_the_same_bits(client, made, records, monkey
         cluster._run(client, few, lambda count, total: None),
         campaign.TrialRecords(records.passages[:200], records.peaks[:200], records.outcomes[:200]),
     )
+
+
+VARIED = {
+    "rock": {
+        "mass": {"distribution": "lognormal", "mean": 800.0, "deviation": 350.0, "to": 2000.0},
+        "density": 2500.0,
+        "shape": "ellipse",
+        "elongation": {"distribution": "triangular", "from": 1.0, "mode": 1.2, "to": 2.0},
+    },
+    "start": {
+        "along": [0.5, 9.0],
+        "velocity": [{"distribution": "uniform", "from": 0.0, "to": 1.0}, 0.0],
+    },
+    "limit_speed": {"mean": 12.0, "deviation": 2.0},
+    "profile": {"points": [[0, 40, "rock"], [10, 30, "rock"], [10, 20, "floor"], [60, 19]]},
+    "material": {"floor": {"like": "soil", "undulation": 0.1}},
+    "line": [{"name": "road", "x": 20.0}],
+}
+"""Blocks of many masses and shapes, from anywhere on the upper slope."""
+
+
+def test_varied_rocks_have_the_same_bits_on_any_number_of_threads_and_workers(client, monkeypatch):
+    monkeypatch.setattr(cluster, "_block_size", lambda campaign, workers: 170)
+    given = campaign_of(prepare(VARIED, trials=700))
+    expected = campaign.run(given, 1)
+    assert len(np.unique(given.rocks.sample(0, 700)[:, ROCK.mass])) == 700
+    assert expected.passages[:, 0, PASSAGE.count].any()
+    assert_same(campaign.run(given, 2), expected)
+    for workers in (1, 2):
+        client.cluster.scale(workers)
+        client.wait_for_workers(workers)
+        assert_same(cluster._run(client, given, lambda count, total: None), expected)
 
 
 def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch):

@@ -18,7 +18,7 @@ from rockshed.analyses.saved import saved_result
 from rockshed.analyses.study import run as study_run
 from rockshed.analyses.study.designs import DesignPoint, design_problems, points
 from rockshed.analyses.study.factors import Factor, Interval, Levels, RandomValue, in_si
-from rockshed.analyses.study.records import MetricName, StudyRecords, StudyRun
+from rockshed.analyses.study.records import MetricName, StudyRecords, StudyRun, by_size
 from rockshed.analyses.study.result import StudyResult
 from rockshed.analyses.study.statistics import (
     exceedance,
@@ -375,6 +375,26 @@ def test_a_study_without_a_result_ends_with_1_and_the_commonest_cause(monkeypatc
     assert done.exit_code == 1
     told = "none of the 3 runs has a result: sand: diverged at t = 0.3 s (2 of them); no process (1"
     assert told in " ".join(done.stderr.split())
+
+
+def test_a_peak_whose_sign_is_chance_is_told_by_its_size():
+    names = {
+        "peak_shear": MetricName("peak shear", "N"),
+        "peak_moment": MetricName("peak M", "N.m"),
+    }
+    names["height"] = MetricName("height", "m")
+    values = [(3.0, -5.0, -1.0), (-4.0, -6.0, 1.0)]
+    runs = [
+        StudyRun(i, "", None, {}, "complete", metrics=dict(zip(names, row, strict=True)))
+        for i, row in enumerate(values, 1)
+    ]
+    made = by_size(StudyRecords("random", [], runs, names))
+    assert [list(run.metrics.values()) for run in made.runs] == [[3, -5, -1], [4, -6, 1]]
+    assert [name.words for name in made.names.values()] == [
+        "size of the peak shear",
+        "peak M",
+        "height",
+    ]
 
 
 def test_what_is_wrong_in_all_runs_is_told_once():

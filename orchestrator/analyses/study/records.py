@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,8 @@ from .designs import BASE, FIRST, SECOND
 from .factors import Factor
 
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
+_PEAK = "peak_"
+"""Beginning of the identifiers of values that are largest by size, and keep their sign."""
 _OF_THE_MACHINE = ("wall_time",)
 """Beginnings of the identifiers of metrics that tell of the computer, and not of the system."""
 
@@ -116,6 +118,30 @@ class StudyRecords:
         for run in self.runs:
             found.setdefault(run.design, []).append(run)
         yield from found.items()
+
+
+def by_size(records: StudyRecords) -> StudyRecords:
+    """Return records in which a peak whose sign differs from run to run is a size.
+
+    At which end of a beam the largest shear force stands, and so its sign, is chance: a mean of
+    both signs means nothing.
+    """
+    turning = {
+        name
+        for name in records.names
+        if name.startswith(_PEAK)
+        and (values := values_of(records.complete, name)).size
+        and values.min() < 0.0 < values.max()
+    }
+    names = {
+        name: MetricName(f"size of the {known.words}", known.unit) if name in turning else known
+        for name, known in records.names.items()
+    }
+    runs = [
+        replace(run, metrics={k: abs(v) if k in turning else v for k, v in run.metrics.items()})
+        for run in records.runs
+    ]
+    return replace(records, runs=runs, names=names)
 
 
 def values_of(runs: Sequence[StudyRun], metric: str) -> FloatArray:

@@ -31,6 +31,7 @@ from .records import (
     MetricName,
     StudyRecords,
     StudyRun,
+    by_size,
     common_reasons,
     metrics_by_identifier,
 )
@@ -436,7 +437,7 @@ def _records(plan: _Plan, outcomes: Mapping[str, Outcome]) -> StudyRecords:
                 found,
             )
         )
-    return StudyRecords(plan.design, plan.factors, runs, names)
+    return by_size(StudyRecords(plan.design, plan.factors, runs, names))
 
 
 def _told(metrics: Sequence[str], records: StudyRecords) -> list[str]:
