@@ -7,8 +7,8 @@ import typer
 
 from ..analyses.saved import saved_result
 from ..core.errors import InputRefused, Problem
-from ..core.results.own_files import add_files
-from ..core.results.run_folder import running_folder
+from ..core.results.own_files import FILES, add_files, read_data
+from ..core.results.run_folder import RUN, running_folder
 from ..runs.overlay import Overlay, overlay
 from ..runs.run import Run, read_run
 from .analysis import options_named, stages
@@ -113,7 +113,12 @@ def _draw_again(folder: Path, output_dir: Path | None, screen: Screen) -> list[P
     if result is not None:
         with stages(screen) as progress:
             place = output_dir or folder / result.picture_folder
-            return result.write_pictures(place, progress)
+            files = result.write_pictures(place, progress)
+        # the campaign of a shed lies in the folder of a run, which has the list of all its files
+        for owner in (folder, folder.parent):
+            if FILES in read_data(owner / RUN):
+                add_files(owner, files)
+        return files
     found = _read(folder, screen)
     return draw(found, output_dir or found.folder / "figures", screen)
 

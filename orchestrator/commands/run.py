@@ -12,7 +12,7 @@ from ..core.supervisor import announce
 from ..core.system.clock import seconds_in
 from ..metrics.width_band import width_band_table
 from ..runs.building import is_cold
-from ..runs.chosen import is_project_file
+from ..runs.chosen import has_slope, is_project_file
 from ..runs.continuing import stopped_at
 from ..runs.request import AUTO, Request
 from ..runs.run import Run
@@ -211,6 +211,8 @@ def _simulate(
 ) -> Run:
     """Carry out a run; one that fails or is interrupted gives what was computed until then."""
     with stdout_for_results(), screen.progress("preparing") as progress:
+        if has_slope(request.target) and is_cold(["SlopeRockfall"]):
+            progress.describe(COLD_START)
         with options_named(OPTIONS, request.target, _given(request)):
             system = System.prepared(request, screen.note, problems)
         facts = system.job.facts

@@ -64,6 +64,7 @@ def warnings(run: StoredRun) -> list[str]:
         *(text for structure in structures(run) for text in _other_weight(run, structure)),
         *(text for cushion in cushions(run) for text in _restless(run, cushion)),
         *(text for cushion in cushions(run) for text in _bottomed_out(run, cushion, found)),
+        *(text for cushion in cushions(run) for text in _against_a_wall(run, cushion)),
     ]
     return list(dict.fromkeys(texts))
 
@@ -292,3 +293,26 @@ def _bottomed_out(run: StoredRun, cushion: str, found: list[Metric]) -> Iterator
         f"the rock bottoms out: it {where} the base, and a sand disc is "
         f"{2.0 * float(radius) / mm:g} mm thick; the cushion is too thin for this impact"
     )
+
+
+def _against_a_wall(run: StoredRun, cushion: str) -> Iterator[str]:
+    """Warn of a body that meets a side wall in the cushion: its force is the wall's too."""
+    left, width = (parameter(run, cushion, role) for role in (Role.BOX_LEFT, Role.BOX_WIDTH))
+    places = recorded(run, Role.STRIKING_PLACE)
+    depth, force = (column(run, cushion, role) for role in (Role.PENETRATION, Role.ON_BODY))
+    if left is None or width is None or len(places) != 1 or depth is None or force is None:
+        return
+    radius = parameter(run, places[0].component, Role.BODY_RADIUS)
+    if radius is None or driven(run):
+        return
+    beside = np.abs(run.series[places[0].column] - (left + 0.5 * width))
+    meets = (beside > 0.5 * width - radius) & (beside < 0.5 * width)
+    rows = np.flatnonzero(meets & (run.series[depth] > 0.0) & (run.series[force] != 0.0))
+    if rows.size:
+        when = f"{float(run.series['time'][rows[0]]) / ms:.4g} ms"
+        yield (
+            f"the rock meets a side wall of the {cushion} at {when}, "
+            f"{float(run.series[depth][rows[0]]) / mm:.3g} mm deep: walls are rigid, and from then "
+            "on the force on the rock is theirs too; take a rock that strikes farther from the "
+            "end, or widen the cushion"
+        )

@@ -18,7 +18,7 @@ _ROOM = 0.12
 """Room around what is shown / its size."""
 _AROUND = 1.2
 """Length shown beside the cushion / its width, in the near view."""
-_HIGHEST = 0.6
+_HIGHEST = 0.4
 """Height above the cushion that is shown in the near view / its length, at most."""
 _HEIGHTS = (1.5, 6.5)
 """Heights (inch) of a panel."""

@@ -88,6 +88,17 @@ def is_project_file(target: str) -> bool:
         return False
 
 
+def has_slope(target: str) -> bool:
+    """Tell whether a target is the file of a project whose rock comes from a slope.
+
+    Parameters
+    ----------
+    target : str
+        Path of a TOML file.
+    """
+    return is_project_file(target) and "slope" in read_toml(Path(target))[0]
+
+
 def _of_project(
     request: Request, project: Path | Mapping[str, Any], problems: list[Problem]
 ) -> Chosen:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import rockshed
 from rockshed.analyses.saved import saved_result
@@ -9,8 +10,10 @@ from rockshed.campaigns.keeping import ROOF
 from rockshed.campaigns.replay import set_rock_of
 from rockshed.cases.below_slope import LEAD_TIME
 from rockshed.cases.shed import CAMPAIGN, prepared
+from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.kernel import on_grid
 from rockshed.components.slope_rockfall.records import ARRIVAL
+from rockshed.core.results.own_files import own_files
 from rockshed.metrics.energy import impact_energy, system_residual
 from rockshed.metrics.slope import slope_table
 from rockshed.pictures import pictures_of
@@ -89,6 +92,16 @@ def test_the_campaign_is_kept_as_one_that_was_run_by_itself(run, project):
     assert (run.folder / CAMPAIGN / ROOF).is_file()
     drawings = kept.pictures_module().drawings
     assert drawings(kept).keys() == drawings(alone).keys()
+
+
+def test_pictures_of_the_campaign_belong_to_the_run_around_it(run):
+    """A later run in the same folder replaces them with the rest."""
+    done = CliRunner().invoke(app, ["plot", str(run.folder / CAMPAIGN), "--quiet"])
+    assert done.exit_code == 0
+    pictures = sorted((run.folder / CAMPAIGN / "figures").iterdir())
+    assert pictures
+    owned = own_files(run.folder)
+    assert {file.relative_to(run.folder).as_posix() for file in pictures} <= owned
 
 
 def test_campaign_and_choice_are_told_and_drawn(run, project, tmp_path):

@@ -32,6 +32,25 @@ def test_a_rock_that_comes_from_beside_the_box_is_not_doubted():
     assert meaningless(boxed(**columns)) == []
 
 
+def against_walls(**columns):
+    pressed = {"sand.penetration": 0.02 * WAY, "sand.rock.force.y": 1e3 + 0.0 * WAY}
+    run = boxed(**{**pressed, **columns})
+    run.provenance["components"]["rock"]["parameters"]["radius"] = {"value": 0.05}
+    return [text for text in warnings(run) if "meets a side wall" in text]
+
+
+def test_a_rock_that_meets_a_wall_in_the_sand_is_told_with_its_depth():
+    moves = 0.2 + 0.18 * WAY  # its edge is at the wall, x = 0.4 m, after 15 / 18 of the run
+    (said,) = against_walls(**{"rock.position.x": moves})
+    assert "meets a side wall of the sand at 16.7 ms, 16.7 mm deep" in said
+
+
+def test_a_rock_above_the_sand_or_away_from_its_walls_meets_none():
+    assert against_walls(**{"rock.position.x": 0.2 + 0.14 * WAY}) == []
+    flies = {"rock.position.x": 0.2 + 0.18 * WAY, "sand.penetration": 0.0 * WAY}
+    assert against_walls(**flies) == []
+
+
 def test_a_beam_that_an_impact_leaves_as_it_was_is_told():
     (said,) = meaningless(made_up(**{"beam.midspan.deflection": np.full(401, 2e-3)}))
     assert "the beam is never loaded: its deflection stays 2 mm from the start to the end" in said
