@@ -128,7 +128,7 @@ def test_a_study_varies_the_choice(project):
         options={"stop_time": 0.02},
         workers=1,
     )
-    energies = [run.metrics["impact_energy_E0"] for run in found.records.runs]
+    energies = [run.metrics["impact_energy"] for run in found.records.runs]
     assert energies[0] < energies[1]
 
 
