@@ -194,12 +194,12 @@ def resume(
     refuse_others(stopped.run, sources, (stopped.base, stopped.witness))
     plan = replace(plan, warnings=_warnings_before(stopped.run))
     every = checkpoint_exchanges(plan, float(provenance["checkpoints"]["every"]))
-    course = Course(plan, sources, every, change_of(provenance), progress)
+    course = Continuation(plan, sources, every, change_of(provenance), progress)
     return _gone_on(stopped, course, _continued(stopped, plan))
 
 
 @dataclass(frozen=True)
-class Course:
+class Continuation:
     """How a run goes on.
 
     Attributes
@@ -221,7 +221,7 @@ class Course:
     progress: Progress | None = None
 
 
-def _gone_on(stopped: Stopped, course: Course, facts: dict[str, Any]) -> StoredRun:
+def _gone_on(stopped: Stopped, course: Continuation, facts: dict[str, Any]) -> StoredRun:
     """Let a run go on into the folder of its results, or into another one."""
     changing = plan_change(course.plan, course.change) if course.change is not None else None
     with Interruption() as interruption, RunFolder(stopped.folder) as results:
@@ -309,7 +309,7 @@ def branch(
     facts = _branch_facts(parent, change)
     if checkpoint_every is not None:
         facts["checkpoints"] = new_record(checkpoint_every, plan.warnings)
-    return _gone_on(stem, Course(plan, sources, every, change, progress), facts)
+    return _gone_on(stem, Continuation(plan, sources, every, change, progress), facts)
 
 
 def _warnings_before(run: StoredRun) -> tuple[str, ...]:
