@@ -14,7 +14,9 @@ from ..core.fmu.slave import Source
 from ..core.loop.changes import ValueChange
 from ..core.loop.master import Progress
 from ..core.results.checkpoints import read_settled
+from ..core.results.own_files import read_data
 from ..core.results.reading import StoredRun
+from ..core.results.run_folder import RUN
 from ..core.run import simulate as simulate_spec
 from ..core.run import sources_of
 from ..core.system.plan import Plan
@@ -23,6 +25,7 @@ from ..core.system.system import Value, with_values
 from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import Job
+from .kept import FINISHED
 from .request import Request, plain
 from .run import Run, read_run
 from .simulation import checked, kept, measured, warnings_of
@@ -79,6 +82,7 @@ def resume(
     >>> again.status
     'complete'
     """
+    _refuse_batch(Path(folder))
     stopped = find_stopped(Path(folder))
     if stopped is None:
         return checked(read_run(folder), strict)
@@ -88,6 +92,26 @@ def resume(
         failure.run = measured(stopped.folder)
         raise
     return checked(measured(stopped.folder), strict)
+
+
+def _refuse_batch(folder: Path) -> None:
+    """Refuse a folder of many runs, and say how those go on.
+
+    Raises
+    ------
+    InputRefused
+        A study, a calibration, a campaign, ... was or is in it.
+    """
+    kind = read_data(folder / RUN).get("kind")
+    if (folder / FINISHED).is_dir():
+        what = "holds runs of a study, calibration or reproduction that was ended"
+        remedy = "start the same command again: it goes on from these runs"
+    elif kind:
+        what = f"holds the results of {kind}, which has ended"
+        remedy = "nothing is left to do; the same command would carry it out anew"
+    else:
+        return
+    raise InputRefused([Problem(str(folder), what, remedy)])
 
 
 def stopped_at(folder: Path) -> Stopped | None:

@@ -213,6 +213,16 @@ def test_a_run_of_other_versions_is_not_verified(fall, tmp_path):
     ]
 
 
+def test_folders_of_many_runs_say_how_they_go_on(tmp_path):
+    (tmp_path / "ended" / ".finished-runs").mkdir(parents=True)
+    with pytest.raises(InputRefused, match="start the same command again: it goes on from these"):
+        rockshed.resume(tmp_path / "ended")
+    (tmp_path / "whole").mkdir()
+    (tmp_path / "whole" / "run.json").write_text('{"kind": "study", "status": "complete"}')
+    with pytest.raises(InputRefused, match="results of study, which has ended; nothing is left"):
+        rockshed.resume(tmp_path / "whole")
+
+
 def test_the_commands_show_variant_and_verification(fall, tmp_path):
     runner = CliRunner()
     words = ["--set", "rock.force.x=50", "--at", "50ms", "--output-dir", str(tmp_path / "v")]
@@ -227,3 +237,21 @@ def test_the_commands_show_variant_and_verification(fall, tmp_path):
     told = runner.invoke(app, ["resume", str(tmp_path / "v"), "--no-figures"])
     assert told.exit_code == 0
     assert "nothing is left to do" in told.output
+
+
+@pytest.mark.slow
+def test_a_variant_of_a_strangers_fmu_is_its_run_in_one_go(foreign, tmp_path):
+    """Plain pythonfmu, whose state has the registered variables and nothing else."""
+    from rockshed.core.fmu.fmu_slave import FmuFile
+
+    def strangers():
+        return {"a": FmuFile(foreign), "b": FmuFile(foreign)}
+
+    links = ["a.force -> b.speed", "a.next_level -> b.level"]
+    one, _ = wired(strangers(), links, output_interval=0.1, stop_time=2.0)
+    whole = simulate(one, tmp_path / "run", sources=strangers(), checkpoint_every=0.3)
+    change = ValueChange(1.3, {"a.speed": 2.0})
+    variant = continuing.branch(whole, change, tmp_path / "variant", strangers())
+    expected = simulate(one, tmp_path / "expected", sources=strangers(), change=change)
+    assert first_difference(expected, variant) is None
+    assert first_difference(whole, variant) is not None

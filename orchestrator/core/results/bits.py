@@ -38,7 +38,7 @@ class Difference:
 
 
 def first_difference(run: StoredRun, again: StoredRun) -> Difference | None:
-    """Compare rows, recorded states and metrics of two runs.
+    """Compare rows, recorded states and texts, and metrics of two runs.
 
     Parameters
     ----------
@@ -49,9 +49,14 @@ def first_difference(run: StoredRun, again: StoredRun) -> Difference | None:
     -------
     Difference or None
         The earliest difference between the rows; where there is none, the first one between the
-        states, then the metrics. None where every bit is the same.
+        states, then recorded texts, then the metrics. None where every bit is the same.
     """
-    return _of_rows(run, again) or next(_of_states(run, again), None) or _of_metrics(run, again)
+    return (
+        _of_rows(run, again)
+        or next(_of_states(run, again), None)
+        or next(_of_texts(run, again), None)
+        or _of_metrics(run, again)
+    )
 
 
 def _of_rows(run: StoredRun, again: StoredRun) -> Difference | None:
@@ -84,6 +89,15 @@ def _of_states(run: StoredRun, again: StoredRun) -> Iterator[Difference]:
                 sizes = [f"{len(each[1])} bytes" if each else "none" for each in (one, other)]
                 what = f"state of {component}"
                 yield Difference(what, time, sizes[0], f"{sizes[1]} with other content")
+
+
+def _of_texts(run: StoredRun, again: StoredRun) -> Iterator[Difference]:
+    for name in {**run.texts, **again.texts}:
+        both = zip_longest(run.texts.get(name, ()), again.texts.get(name, ()))
+        for one, other in both:
+            if one != other:
+                time = (one or other)[0]
+                yield Difference(name, time, one and repr(one[1]), other and repr(other[1]))
 
 
 def _of_metrics(run: StoredRun, again: StoredRun) -> Difference | None:
