@@ -10,7 +10,7 @@ from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import UnitDefinition
 from ..core.system.system import Value
 from .conversion import UNCHANGED, Way
-from .documents import SSD, SSM, SSV, read_document
+from .documents import SSC, SSD, SSM, SSV, read_document
 from .package import OutsideError, Package
 from .structure import ConnectorKey, Element, FmuElement, StructureReader, SystemElement, read_units
 from .wiring import Wire
@@ -64,6 +64,8 @@ class Bindings:
         Knows the name of the description, and collects faults.
     entrances : mapping of ConnectorKey to list of Wire
         Ways from connectors of systems to inputs and parameters of components.
+    variable_of : callable
+        Returns the name of the variable of a component that a name means; None if there is none.
     values : dict of ConnectorKey to Bound
         By full name of the component and name of the variable.
     """
@@ -71,7 +73,7 @@ class Bindings:
     package: Package
     reader: StructureReader
     entrances: Mapping[ConnectorKey, list[Wire]]
-    is_variable: Callable[[str, str], bool]
+    variable_of: Callable[[str, str], str | None]
     values: dict[ConnectorKey, Bound] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     _through: dict[ConnectorKey, Bound] = field(default_factory=dict)
@@ -90,10 +92,10 @@ class Bindings:
     def _apply(self, element: Element, name: str, bound: Bound) -> bool:
         """Give a value to all variables that a name means; tell whether there is any."""
         if isinstance(element, FmuElement):
-            if not self.is_variable(element.name, name):
-                return False
-            self.values[element.name, name] = bound
-            return True
+            variable = self.variable_of(element.name, name)
+            if variable is not None:
+                self.values[element.name, variable] = bound
+            return variable is not None
         if not isinstance(element, SystemElement):
             return False
         is_known = name in element.connectors
@@ -181,7 +183,7 @@ class Bindings:
                 what = f"is in {unit}, which the set of values does not define"
                 self.reader.problems.append(Problem(place, what, "define it under Units"))
                 continue
-            is_array = any(etree.QName(child).localname == "Dimension" for child in parameter)
+            is_array = parameter.find(f"{{{SSC}}}Dimension") is not None
             for element, value in _values(name, kind, told, is_array):
                 yield element, Bound(value, units.get(unit or ""), place)
 

@@ -9,9 +9,9 @@ from typing import Any
 from lxml import etree
 
 from ..core.errors import InputRefused, Problem
-from ..core.fmu.description import Description
+from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
-from ..core.fmu.slave import BOOLEAN, INTEGER, REAL, STRING
+from ..core.fmu.slave import BINARY, BOOLEAN, CLOCK, INTEGER, REAL, STRING
 from ..core.system.names import expand, nearest, split_name
 from ..core.system.system import RESERVED, SystemSpec, Value, system_from
 from ..core.system.values import written
@@ -30,6 +30,8 @@ _KINDS = {
     **dict.fromkeys(("UInt32", "Int64", "UInt64", "Enumeration"), INTEGER),
     "Boolean": BOOLEAN,
     "String": STRING,
+    "Binary": BINARY,
+    "Clock": CLOCK,
 }
 """Families of FMI calls by the type of a connector."""
 _NO_LETTER = re.compile(r"[^A-Za-z0-9_]")
@@ -137,7 +139,7 @@ class _Import:
         for element in system.every():
             self._check_connectors(element)
         wires = Wiring(system, self._units_of, self.problems).wires()
-        bindings = Bindings(self.package, reader, targets_of(wires), self._is_variable)
+        bindings = Bindings(self.package, reader, targets_of(wires), self._variable_of)
         bindings.read(system)
         self.warnings += bindings.warnings
         hints = own_hints(system_xml, self.where)
@@ -171,9 +173,15 @@ class _Import:
         except UnusableError as error:
             self._refuse(place, f"{component.source} {error}", error.remedy)
 
-    def _is_variable(self, component: str, name: str) -> bool:
+    def _variable_of(self, component: str, name: str) -> str | None:
+        """Return the name of a variable; elements of arrays are counted row by row in an SSP."""
         known = self.descriptions.get(component)
-        return known is None or name in known.ports
+        if known is None or name in known.ports:
+            return name
+        array, _, number = name.rpartition("[")
+        elements = known.arrays[array].names if array in known.arrays else ()
+        place = int(number[:-1]) if number[:-1].isdigit() else 0
+        return elements[place - 1] if 0 < place <= len(elements) else None
 
     def _check_connectors(self, element: Element) -> None:
         """Refuse connectors that the FMU does not have, or has otherwise."""
@@ -186,7 +194,7 @@ class _Import:
                 self._check_connector(element, connector, known)
 
     def _check_connector(self, element: Element, told: Connector, known: Description) -> None:
-        port = known.ports.get(told.name) or known.ports.get(f"{told.name}[1]")
+        port = _port_of(known, told.name)
         if port is None:
             what = f"connector {told.name} is no variable of the FMU"
             self._refuse(element.place, what, nearest(told.name, known.ports))
@@ -207,7 +215,7 @@ class _Import:
         known = self.descriptions.get(element.name)
         if not isinstance(element, FmuElement) or known is None:
             return Units(told, told)
-        port = known.ports.get(connector.name) or known.ports.get(f"{connector.name}[1]")
+        port = _port_of(known, connector.name)
         own = None if port is None else port.unit
         try:
             between(own, told)
@@ -318,9 +326,8 @@ class _Import:
         for wire in wires:
             if not wire.from_component:
                 continue
-            all_ = "[*]" if wire.is_array else ""
             source, target = (
-                f"{self.names[name]}.{port}{all_}" for name, port in (wire.source, wire.target)
+                f"{self.names[name]}.{port}" for name, port in (wire.source, wire.target)
             )
             entry = {**more.get((source, target), {}), "source": source, "target": target}
             if wire.way != UNCHANGED:
@@ -374,3 +381,10 @@ class _Import:
         full = next((n for n, clean in self.names.items() if clean == owner), "")
         known = self.descriptions.get(full)
         return [] if known is None else [(owner, key) for key in expand(name, known.ports)]
+
+
+def _port_of(known: Description, name: str) -> Port | None:
+    """Return the port of a connector; of an array, its first element."""
+    if name in known.ports or name not in known.arrays:
+        return known.ports.get(name)
+    return known.ports[known.arrays[name].names[0]]

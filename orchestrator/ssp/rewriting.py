@@ -11,6 +11,7 @@ from ..core.fmu.description import Port
 from ..core.system.plan import Plan
 from .documents import SSD, SSM, SSV, as_bytes, parsed, schema_problems
 from .hints import annotation, hints_element
+from .links import whole_arrays
 from .reading import Imported
 from .writing import hints_of, parameter_set, write_archive
 
@@ -90,7 +91,7 @@ def _change(root: etree._Element, imported: Imported, plan: Plan, changes: list[
     system = root.find(f"{{{SSD}}}System")
     if changes:
         group = _group(system, "ParameterBindings", _BEFORE_BINDINGS)
-        group.append(_binding(imported.names, changes, root.get("version", "")))
+        group.append(_binding(imported.names, changes, plan, root.get("version", "")))
     if imported.options:
         _set_times(root, imported, plan)
         own = annotation(system, TOOL)
@@ -102,14 +103,19 @@ def _change(root: etree._Element, imported: Imported, plan: Plan, changes: list[
         annotations.append(hints_element(hints_of(plan.system)))
 
 
-def _binding(names: Mapping[str, str], changes: list[Change], ssp_version: str) -> etree._Element:
+def _binding(
+    names: Mapping[str, str], changes: list[Change], plan: Plan, ssp_version: str
+) -> etree._Element:
     """Return a binding of the outermost system, whose values go before all others."""
     binding = etree.Element(f"{{{SSD}}}ParameterBinding")
     values = etree.SubElement(binding, f"{{{SSD}}}ParameterValues")
     made = parameter_set(TOOL, (), ssp_version)
-    for component, port, value in changes:
-        own = parameter_set(TOOL, [(port, value)], ssp_version, f"{names[component]}.")
-        made[0].append(own[0][0])
+    for component in dict.fromkeys(component for component, _, _ in changes):
+        arrays = {port.array for owner, port, _ in changes if owner == component}
+        starts = [start for start in plan.starts[component] if start[0].array in arrays]
+        whole = whole_arrays(plan.descriptions[component], starts)
+        own = parameter_set(TOOL, whole, ssp_version, f"{names[component]}.")
+        made[0].extend(own[0])
     values.append(made)
     return binding
 

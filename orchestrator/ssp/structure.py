@@ -29,15 +29,12 @@ class Connector:
         Real, Integer, ...; empty where none is told.
     unit : str
         Name of its unit; empty where none is told.
-    is_array : bool
-        It has dimensions.
     """
 
     name: str
     kind: str
     type: str = ""
     unit: str = ""
-    is_array: bool = False
 
 
 @dataclass(frozen=True)
@@ -249,8 +246,7 @@ def _connector(name: str, xml: etree._Element) -> Connector:
     if not of_type:
         return Connector(name, kind)
     first, told = of_type[0]
-    is_array = any(tag.localname == "Dimension" for tag in names)
-    return Connector(name, kind, told, first.get("unit", ""), is_array)
+    return Connector(name, kind, told, first.get("unit", ""))
 
 
 def read_units(root: etree._Element, namespace: str = SSD) -> dict[str, UnitDefinition]:

@@ -42,8 +42,6 @@ class Wire:
         What becomes of the number.
     from_component : bool
         The source is that of a component.
-    is_array : bool
-        Whole arrays are connected.
     place : str
         Of the last connection, for messages.
     """
@@ -52,7 +50,6 @@ class Wire:
     target: ConnectorKey
     way: Way
     from_component: bool
-    is_array: bool
     place: str
 
 
@@ -200,9 +197,8 @@ class Wiring:
             way = way.then(step).then(Way(feed.link.factor, feed.link.offset))
             unit = told or unit
         way = way.then(between(unit, own))
-        is_array = connector.is_array or self.connectors[target][1].is_array
         from_component = isinstance(element, FmuElement)
-        return Wire(source, target, way, from_component, is_array, chain[0].link.place)
+        return Wire(source, target, way, from_component, chain[0].link.place)
 
     def _reached(self, target: ConnectorKey, chain: list[_Feed]) -> Iterator[ConnectorKey]:
         """Yield the connectors that a value comes to, behind its source."""

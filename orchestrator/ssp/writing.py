@@ -2,7 +2,7 @@
 
 import shutil
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import gcd
 from pathlib import Path
 from typing import Any
@@ -10,14 +10,16 @@ from typing import Any
 from lxml import etree
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
-from ..core.fmu.description import Port, UnitDefinition
+from ..core.fmu.description import Description, Port, UnitDefinition
 from ..core.fmu.slave import BOOLEAN, INTEGER, REAL, STRING
-from ..core.system.plan import End, Plan
+from ..core.fmu.types import TYPES, TYPES_2
+from ..core.system.plan import Plan
 from ..core.system.system import Connection, SystemSpec
 from ..files import whole_file
 from ..versions import version_of
 from .documents import SSC, SSD, SSV, VERSIONS, as_bytes, schema_problems
 from .hints import OMS, OMS_TYPE, OSP, OSP_TYPE, hints_element
+from .links import Joint, linked, whole_arrays
 from .package import MAIN
 
 RESOURCES = "resources"
@@ -155,11 +157,17 @@ def description(
     inner = etree.SubElement(root, f"{{{SSD}}}System", name=system.name)
     if system.description:
         inner.set("description", system.description)
+    links = linked(plan, ssp_version)
     elements = etree.SubElement(inner, f"{{{SSD}}}Elements")
     for name in plan.system.components:
-        elements.append(_component(plan, name, names[name], ssp_version, is_multi_rate))
-    if plan.inputs:
-        inner.append(_connections(plan))
+        made = _component(plan, name, names[name], links, ssp_version)
+        if is_multi_rate:
+            step = repr(plan.system.step(name))
+            hint = _annotation(OSP_TYPE, f"{{{OSP}}}StepSizeHint", value=step)
+            made.append(_group("Annotations", [hint]))
+        elements.append(made)
+    if links:
+        inner.append(_connections(links))
     inner.append(_annotations(plan))
     units = _units(plan)
     if units is not None:
@@ -175,7 +183,7 @@ def description(
 
 
 def _component(
-    plan: Plan, name: str, file: str, ssp_version: str, is_multi_rate: bool
+    plan: Plan, name: str, file: str, links: Sequence[Joint], ssp_version: str
 ) -> etree._Element:
     made = etree.Element(
         f"{{{SSD}}}Component",
@@ -183,35 +191,36 @@ def _component(
         type="application/x-fmu-sharedlibrary",
         source=f"{RESOURCES}/{file}",
     )
-    connectors = etree.Element(f"{{{SSD}}}Connectors")
-    for end in _ends_of(plan, name):
-        connectors.append(_connector(end))
-    if len(connectors):
-        made.append(connectors)
+    if connectors := _connectors(links, name, plan.descriptions[name]):
+        made.append(_group("Connectors", connectors))
     if plan.starts[name]:
-        made.append(_bindings(plan.starts[name], ssp_version))
-    if is_multi_rate:
-        hint = _annotation(OSP_TYPE, f"{{{OSP}}}StepSizeHint", value=repr(plan.system.step(name)))
-        made.append(_group("Annotations", [hint]))
+        starts = whole_arrays(plan.descriptions[name], plan.starts[name])
+        made.append(_bindings(starts, ssp_version))
     return made
 
 
-def _ends_of(plan: Plan, component: str) -> list[End]:
+def _connectors(links: Iterable[Joint], component: str, known: Description) -> list[etree._Element]:
     """Return the connected ports of a component, in the order of its description."""
-    feeding = {source.name for _, _, source in plan.fed}
-    ends = [target for _, target, _ in plan.fed]
-    ends += [end for end in plan.outputs if end.name in feeding]
-    order = {name: turn for turn, name in enumerate(plan.descriptions[component].ports)}
-    own = [end for end in ends if end.component == component]
-    return sorted(own, key=lambda end: order[end.port.name])
+    ends = [end for link in links for end in (link.source, link.target)]
+    own = {end.port.array: end.port for end in ends if end.component == component}
+    order = {port.array: turn for turn, port in enumerate(known.ports.values())}
+    return [_connector(own[name]) for name in sorted(own, key=lambda name: order[name])]
 
 
-def _connector(end: End) -> etree._Element:
-    made = etree.Element(f"{{{SSD}}}Connector", name=end.port.name, kind=end.port.causality)
-    told = etree.SubElement(made, f"{{{SSC}}}{_TYPES[end.port.kind]}")
-    if end.port.kind == REAL and _is_defined(end.port.unit):
-        told.set("unit", end.port.unit_name)
+def _connector(port: Port) -> etree._Element:
+    made = etree.Element(f"{{{SSD}}}Connector", name=port.array, kind=port.causality)
+    told = etree.SubElement(made, f"{{{SSC}}}{_type_of(port)}")
+    if port.kind == REAL and _is_defined(port.unit):
+        told.set("unit", port.unit_name)
+    for size in port.shape:
+        etree.SubElement(made, f"{{{SSC}}}Dimension", size=str(size))
     return made
+
+
+def _type_of(port: Port) -> str:
+    """Return the type of a port in the words of SSP; those of FMI 3.0 are those of SSP 2.0."""
+    is_of_2 = port.type in TYPES_2 or port.type not in TYPES
+    return _TYPES[port.kind] if is_of_2 else TYPES[port.type].call
 
 
 def _bindings(starts: Iterable[tuple[Port, float | str]], ssp_version: str) -> etree._Element:
@@ -240,10 +249,27 @@ def parameter_set(
     """
     made = etree.Element(f"{{{SSV}}}ParameterSet", version=ssp_version, name=name)
     parameters = etree.SubElement(made, f"{{{SSV}}}Parameters")
+    arrays: dict[str, etree._Element] = {}
     for port, value in values:
-        told = etree.SubElement(parameters, f"{{{SSV}}}Parameter", name=prefix + port.name)
-        etree.SubElement(told, f"{{{SSV}}}{_TYPES[port.kind]}", value=_text(port, value))
+        if port.shape and port.array in arrays:
+            _append(arrays[port.array], _text(port, value))
+            continue
+        told = etree.SubElement(parameters, f"{{{SSV}}}Parameter", name=prefix + port.array)
+        held = etree.SubElement(told, f"{{{SSV}}}{_type_of(port)}", value=_text(port, value))
+        arrays[port.array] = held
+        for size in port.shape:
+            etree.SubElement(told, f"{{{SSC}}}Dimension", size=str(size))
     return made
+
+
+def _append(held: etree._Element, text: str) -> None:
+    """Add the value of the next element of an array."""
+    if etree.QName(held).localname != "String":
+        held.set("value", f"{held.get('value')} {text}")
+        return
+    if "value" in held.attrib:  # several texts stand in elements of their own
+        etree.SubElement(held, f"{{{SSV}}}Value", value=held.attrib.pop("value"))
+    etree.SubElement(held, f"{{{SSV}}}Value", value=text)
 
 
 def _text(port: Port, value: float | str) -> str:
@@ -257,22 +283,22 @@ def _text(port: Port, value: float | str) -> str:
 # ---------------------------------------------------------------------- the system
 
 
-def _connections(plan: Plan) -> etree._Element:
+def _connections(links: Iterable[Joint]) -> etree._Element:
     made = []
-    for place, end, source in plan.fed:
-        link = etree.Element(
+    for link in links:
+        told = etree.Element(
             f"{{{SSD}}}Connection",
-            startElement=source.component,
-            startConnector=source.port.name,
-            endElement=end.component,
-            endConnector=end.port.name,
+            startElement=link.source.component,
+            startConnector=link.source.port.array,
+            endElement=link.target.component,
+            endConnector=link.target.port.array,
         )
-        if place in plan.linear:
-            factor, offset = plan.linear[place]
-            link.set("suppressUnitConversion", "true")
-            told = {"factor": repr(factor), "offset": repr(offset)}
-            etree.SubElement(link, f"{{{SSC}}}LinearTransformation", told)
-        made.append(link)
+        if link.way is not None:
+            factor, offset = link.way
+            told.set("suppressUnitConversion", "true")
+            numbers = {"factor": repr(factor), "offset": repr(offset)}
+            etree.SubElement(told, f"{{{SSC}}}LinearTransformation", numbers)
+        made.append(told)
     return _group("Connections", made)
 
 

@@ -14,6 +14,7 @@ from lxml import etree
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.system.planning import make_plan
+from rockshed.core.system.system import with_values
 from rockshed.runs.system import System
 from rockshed.ssp.documents import SSC, SSD, as_bytes, parsed, same_xml
 from rockshed.ssp.package import MAIN, Package, open_package
@@ -477,6 +478,8 @@ def test_what_is_not_known_is_kept_where_an_ssp_is_written_again(tmp_path):
         name: (package.folder / name).read_bytes() for name in package.names()
     }  # every byte
     port = plan.descriptions["my_mass"].ports["mass"]
+    heavier = with_values(found.system, {"my_mass.mass": 3.0})
+    plan = make_plan(heavier, {"my_mass": mocks()["mass.fmu"]})
     rewrite_ssp(found, plan, [("my_mass", port, 3.0)], tmp_path / "other.ssp", "2.0")
     with zipfile.ZipFile(tmp_path / "other.ssp") as archive:
         other = parsed(archive.read(MAIN))
@@ -541,6 +544,45 @@ def test_a_system_runs_from_its_ssp_with_the_same_bits(two_rocks, tmp_path, caps
     assert np.ptp(expected["upper.a.position.y"]) > 0.01
     for name, values in expected.items():
         assert values.tobytes() == found[name].tobytes(), name
+
+
+ARRAYS = """<fmiModelDescription fmiVersion="3.0" modelName="Rows" instantiationToken="rows">
+<CoSimulation modelIdentifier="Rows"/><ModelVariables>
+<Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>
+<Float64 name="u" valueReference="1" causality="input" start="0 0"><Dimension start="2"/></Float64>
+<Float64 name="y" valueReference="2" causality="output"><Dimension start="2"/></Float64>
+<Float64 name="m" valueReference="3" causality="parameter" variability="fixed" start="1 2 3 4 5 6">
+<Dimension start="3"/><Dimension start="2"/></Float64>
+</ModelVariables><ModelStructure><Output valueReference="2"/></ModelStructure></fmiModelDescription>"""
+
+
+class Rows(Mock):
+    """An FMU of FMI 3.0 with rows and a matrix."""
+
+    def model_description(self):
+        return ARRAYS.encode()
+
+
+def test_arrays_of_fmi_3_are_single_connectors_and_values_of_ssp_2():
+    sources = {"a": Rows([]), "b": Rows([])}
+    values = {"b": {"parameters": {"m[2,1]": 7.5}}}
+    spec, _ = wired(sources, ["a.y -> b.u"], components=values)
+    plan, files = make_plan(spec, sources), {"a": "a.fmu", "b": "b.fmu"}
+    first = description(plan, files, "2.0")
+    (connection,) = first.iter(f"{{{SSD}}}Connection")
+    assert (connection.get("startConnector"), connection.get("endConnector")) == ("y", "u")
+    (told,) = first.iter("{*}Parameter")
+    assert told[0].get("value") == "1.0 2.0 7.5 4.0 5.0 6.0"
+    assert [entry.get("size") for entry in told.iter(f"{{{SSC}}}Dimension")] == ["3", "2"]
+    package = _InMemory(Path("x.ssp"), Path("/nowhere"), as_bytes(first))
+    found = read_structure(package, {}, lambda _: ARRAYS.encode()).system
+    assert found.components["b"].parameters["m[2,1]"] == 7.5
+    assert [str(c) for c in found.connections] == ["a.y -> b.u"]
+    assert same_xml(as_bytes(first), as_bytes(description(make_plan(found, sources), files, "2.0")))
+    assert "of FMI 3.0, which SSP 1.0 does not know" in problems(description, plan, files, "1.0")
+    part, _ = wired(sources, ["a.y[1] -> b.u[1]"])
+    told = problems(description, make_plan(part, sources), files, "2.0")
+    assert "connects elements of an array of FMI 3.0" in told
 
 
 def test_values_and_times_of_an_ssp_may_be_other_ones_and_go_into_the_next(two_rocks, tmp_path):
