@@ -42,6 +42,10 @@ def saved_result(folder: str | Path) -> Result | None:
         from .study.reading import read_study
 
         return read_study(folder, content)
+    if kind == "rockfall-calibration":
+        from .back_analysis.reading import read_back_analysis
+
+        return read_back_analysis(folder, content)
     return _blows(folder, content) if kind == "pile" else None
 
 

@@ -1,5 +1,6 @@
 """Back-analysis: parameters that made the end points lie within what is inferred from them."""
 
+import shutil
 import tomllib
 
 import numpy as np
@@ -10,6 +11,7 @@ from typer.testing import CliRunner
 import rockshed
 from rockshed.analyses.back_analysis.likelihood import held_out
 from rockshed.analyses.back_analysis.parameters import Parameter
+from rockshed.analyses.saved import saved_result
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.records import OUTCOME
 from rockshed.core.errors import InputRefused
@@ -93,6 +95,24 @@ def test_samples_and_materials_are_saved_and_the_materials_can_be_used(found):
     assert materials["soil"]["undulation"] == pytest.approx(found.inferred.best[1])
     made = rockshed.rockfall({**site(), "material": materials}, trials=50)
     assert made.records.outcomes.shape == (50, len(OUTCOME))
+
+
+def test_a_back_analysis_is_drawn_and_reported_again_from_its_folder(found, tmp_path):
+    folder = tmp_path / "moved"
+    shutil.copytree(found.folder, folder)
+    stored = saved_result(folder)
+    assert [table.rows for table in stored.tables()] == [table.rows for table in found.tables()]
+    assert stored.notes == found.notes
+    for name, entry in found.metrics.items():
+        assert stored.metrics[name].value == pytest.approx(entry.value, rel=1e-9)
+    done = CliRunner().invoke(app, ["plot", str(folder)])
+    assert done.exit_code == 0, done.output
+    assert {"ends.png", "parameters.png"} <= {file.name for file in folder.rglob("*.png")}
+    (page,) = rockshed.report(folder)
+    assert "cross-validation" in page.read_text().lower()
+    (folder / "ends.parquet").write_bytes(b"PAR1")
+    with pytest.raises(InputRefused, match="cannot be read"):
+        saved_result(folder)
 
 
 def test_the_same_samples_come_from_any_number_of_threads(measured):

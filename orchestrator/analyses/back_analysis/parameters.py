@@ -51,6 +51,12 @@ class Parameter:
             return self.low * (self.high / self.low) ** place
         return self.low + (self.high - self.low) * place
 
+    def place(self, value: Any) -> Any:
+        """Return the place from 0 to 1 of the range that a value has."""
+        if self.is_logarithmic:
+            return np.log(value / self.low) / np.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
 
 def default_parameters(slope: PreparedSlope) -> list[Parameter]:
     """Return the parameters of all materials that end points tell most about.

@@ -13,16 +13,18 @@ from ...core.results.columns import result_column, result_table
 from ...core.results.metric import Metric
 from ...core.results.run_folder import RUN, SUMMARY
 from ...files import write_json
+from ...metrics.percentiles import borne
 from ...sites.rockfall.preparation import PreparedSlope
 from ...tables import Table, digits
 from ...versions import versions
 from ..frame import FloatArray, Result
+from .files import SAMPLES, inferred_facts, write_details
 from .forecast import CONFIDENCE, SHARES, Forecast
 from .inferred import Inferred
 from .likelihood import ANYTHING, held_out
 from .parameters import parts_of, unit_of
 
-SAMPLES, MATERIALS = "posterior.parquet", "calibrated.toml"
+MATERIALS = "calibrated.toml"
 FOLDS = 5
 """Parts into which the end points are divided for the cross-validation."""
 _FEWEST_EFFECTIVE = 100
@@ -107,15 +109,24 @@ class BackAnalysisResult(Result):
             yield Metric(f"{name}", middle, unit)
             yield Metric(f"{name}.low", low, unit)
             yield Metric(f"{name}.high", high, unit)
-        measured = np.percentile(self.inferred.end_points, [100.0 * s for s in SHARES])
-        for share, value in zip(SHARES, measured, strict=True):
-            yield Metric(f"measured.x.p{100 * share:.0f}", float(value), "m")
+        for share, value in self._measured.items():
+            yield Metric(f"measured.x.p{100 * share:.0f}", value, "m")
         for prefix, made in (("fit", self.fitted), ("forecast", self.forecast)):
             for share, ends in made.percentiles if made else ():
                 for suffix, value in zip(("", ".low", ".high"), ends, strict=True):
+                    if not np.isfinite(value):  # beyond the profile
+                        continue
                     yield Metric(f"{prefix}.x.p{100 * share:.0f}{suffix}", value, "m")
         yield Metric("cross_validation.inner_80_percent", self.covered)
         yield Metric("samples.effective", self.inferred.posterior.effective)
+
+    @property
+    def _measured(self) -> dict[float, float]:
+        """Percentiles of the measured end points (m), as far as their number bears them."""
+        ends = self.inferred.end_points
+        return {
+            share: float(np.percentile(ends, 100.0 * share)) for share in borne(SHARES, len(ends))
+        }
 
     @property
     def summary(self) -> str:
@@ -188,10 +199,14 @@ class BackAnalysisResult(Result):
         if len(made) == 2 and made[0].name == made[1].name:
             columns[-1] = f"{made[1].name}, forecast"
         table = Table(columns, right=columns[1:], title="end points")
-        measured = np.percentile(self.inferred.end_points, [100.0 * s for s in SHARES])
-        for i, share in enumerate(SHARES):
+        measured = self._measured
+        for share in SHARES:
             cells = [_with_interval(entry.percentile(share)) for entry in made]
-            table.add(f"{100 * share:.0f} %", digits(float(measured[i])), *cells)
+            own = digits(measured[share]) if share in measured else "-"
+            table.add(f"{100 * share:.0f} %", own, *cells)
+        if len(measured) < len(SHARES):
+            count = len(self.inferred.end_points)
+            table.notes.append(f"-: {count} measured end points do not bear this percentile")
         return table
 
     def to_arrow(self) -> Any:
@@ -219,6 +234,7 @@ class BackAnalysisResult(Result):
         materials = {"material": self._materials()}
         (folder / MATERIALS).write_text(tomli_w.dumps(materials), encoding="utf-8")
         write_json(folder / SUMMARY, [metric.as_entry() for metric in self.metric_list()])
+        details = write_details(folder, self.inferred, self.fitted, self.forecast)
         file = self.slope.source.file
         content = {
             "status": "complete",
@@ -227,14 +243,19 @@ class BackAnalysisResult(Result):
             "ended": datetime.now(UTC).isoformat(timespec="seconds"),
             "site_file": str(file) if file else None,
             "site": self.slope.site.model_dump(mode="json", by_alias=True),
+            "nodes": [
+                {"x": node.x, "y": node.y, "material": node.material} for node in self.slope.nodes
+            ],
             "warnings": self.warnings,
             "notes": self.notes,
-            "sought": {entry.name: [entry.low, entry.high] for entry in self.inferred.parameters},
+            "wall_time": self.wall_time,
+            "forecast": self.forecast.name if self.forecast else None,
+            **inferred_facts(self.inferred),
             "platform": platform.platform(),
             "versions": versions("numpy", "numba", "scipy", "emcee"),
         }
         write_json(folder / RUN, content)
-        return [folder / name for name in (SAMPLES, MATERIALS, SUMMARY, RUN)]
+        return [*(folder / name for name in (SAMPLES, MATERIALS, SUMMARY, RUN)), *details]
 
     def _materials(self) -> dict[str, dict[str, Any]]:
         """Return the materials with the values of the likeliest sample, as a site has them."""

@@ -14,7 +14,7 @@ from ...campaigns.files import ALONG, AT_END, AT_PASSAGE, ENVELOPES, NUMBERS, TR
 from ...campaigns.passages import ENDS
 from ...core.results.reading import undamaged
 from ...metrics.percentiles import SHARES
-from ...sites.rockfall.preparation import prepare
+from ...sites.rockfall.preparation import PreparedSlope, prepare
 from ..frame import FloatArray
 from .result import RockfallResult
 
@@ -42,6 +42,32 @@ def read_campaign(folder: Path, content: Mapping[str, Any]) -> RockfallResult:
     InputRefused
         The files are damaged, or do not belong together.
     """
+    slope = stored_slope(folder, content)
+    campaign = campaign_of(slope)
+    with undamaged(folder / TRIALS):
+        records = _records(campaign, _columns(folder / TRIALS))
+    with undamaged(folder / ENVELOPES):
+        along = _envelopes(campaign, _columns(folder / ENVELOPES))
+    executor = {"workers": content.get("workers")}
+    wall_time = float(content.get("wall_time", 0.0))
+    return RockfallResult(slope, campaign, records, wall_time, executor, along)
+
+
+def stored_slope(folder: Path, content: Mapping[str, Any]) -> PreparedSlope:
+    """Return the slope of saved results, with the nodes that were made of its profile.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the results.
+    content : mapping
+        Of ``run.json`` there, with name, site and nodes.
+
+    Raises
+    ------
+    InputRefused
+        It has no such slope.
+    """
     with undamaged(folder):
         nodes = content["nodes"]
         site = {
@@ -54,15 +80,7 @@ def read_campaign(folder: Path, content: Mapping[str, Any]) -> RockfallResult:
                 "end": content["site"]["profile"]["end"],
             },
         }
-    slope = prepare(site)
-    campaign = campaign_of(slope)
-    with undamaged(folder / TRIALS):
-        records = _records(campaign, _columns(folder / TRIALS))
-    with undamaged(folder / ENVELOPES):
-        along = _envelopes(campaign, _columns(folder / ENVELOPES))
-    executor = {"workers": content.get("workers")}
-    wall_time = float(content.get("wall_time", 0.0))
-    return RockfallResult(slope, campaign, records, wall_time, executor, along)
+    return prepare(site)
 
 
 def _columns(path: Path) -> Any:
