@@ -115,7 +115,7 @@ def _verdict(job: ProbeJob, ending: dict[str, Any]) -> Seen | None:
         if told is None:
             return None
         return Seen(Verdict(told["verdict"]), told["what"], told["remedy"])
-    printed = " ".join(_text(place / OUTPUT).split())[-_LONGEST_OUTPUT:]
+    printed = " ".join(_end_of(place / OUTPUT).split())[-_LONGEST_OUTPUT:]
     said = f"; it printed: {printed}" if printed else ""
     if error := _text(place / "error"):
         what = f"the probe could not go on after {where}: {error}{said}"
@@ -134,6 +134,15 @@ def _ended(code: int) -> str:
     with suppress(ValueError):
         return f"crashed ({signal.Signals(-code).name})"
     return f"crashed (signal {-code})"
+
+
+def _end_of(file: Path) -> str:
+    """Return the last letters that a process printed."""
+    with suppress(OSError), file.open("rb") as printed:
+        size = printed.seek(0, os.SEEK_END)
+        printed.seek(max(0, size - 8 * _LONGEST_OUTPUT))
+        return printed.read().decode("utf-8", "replace")
+    return ""
 
 
 def _text(file: Path) -> str:

@@ -94,8 +94,14 @@ def _unexpected(error: Exception) -> Seen:
     return failed(str(error), "let the FMU do what FMI asks for here")
 
 
+_LARGEST_FILE = 1 << 28
+"""Bytes of a file that a process may write: what it prints must not fill the disk."""
+
+
 def _in_child(job: ProbeJob) -> None:
     """Become the process of a job: own group, own output, own working folder."""
+    import resource  # Windows has none, and no fork either
+
     place = Path(job.place)
     os.setsid()
     end_with_parent()
@@ -104,6 +110,7 @@ def _in_child(job: ProbeJob) -> None:
     nothing = os.open(os.devnull, os.O_RDONLY)
     for number, target in ((out, 1), (out, 2), (nothing, 0)):
         os.dup2(number, target)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (_LARGEST_FILE, _LARGEST_FILE))
     os.chdir(place / WORK)
     if job.stage:  # another process than the first one also in the places of its memory
         os.execv(sys.executable, [sys.executable, "-P", "-m", __spec__.name, job.text()])

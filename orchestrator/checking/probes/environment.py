@@ -16,6 +16,8 @@ from ..subject.subject import Subject
 from ..subject.variables import listed
 from ..verdicts import Seen, not_applicable, passed, warned
 
+_MOST_READ = 1 << 16
+"""Bytes of it that are read."""
 _SHOWN = 60
 """Characters of what is printed that are shown."""
 
@@ -36,10 +38,13 @@ def printing(subject: Subject) -> Seen:
     """Look whether anything is printed in a life without logging."""
     sys.stdout.flush()
     sys.stderr.flush()
-    before = os.fstat(1).st_size
+    file = Path("..", "output").resolve()
+    before = file.stat().st_size
     _life(subject)
     _flush()
-    output = Path("..", "output").read_bytes()[before:]
+    with file.open("rb") as printed:
+        printed.seek(before)
+        output = printed.read(_MOST_READ)
     if output.strip():
         text = " ".join(output.decode("utf-8", "replace").split())[:_SHOWN]
         return warned(
