@@ -198,7 +198,11 @@ LAYOUT = Layout(
             initial_dependencies=("drop_height", "efficiency", "gravity"),
         ),
         out("cushion.compression", "compression of the cushion", "m", initial_dependencies=()),
-        out("touching", "1 while the hammer presses on the head, else 0", initial_dependencies=()),
+        out(
+            "touching",
+            "1 while the hammer presses on the head, else 0",
+            initial_dependencies=("drop_height", "efficiency", "gap", "gravity"),
+        ),
         out(
             "separation",
             "time at which the ram last left the head; -1 before",

@@ -325,7 +325,11 @@ LAYOUT = Layout(
             "m/s",
             initial_dependencies=("ram.mass", "ram.velocity"),
         ),
-        out("ram.touching", "1 if the ram lies on the head, else 0", initial_dependencies=()),
+        out(
+            "ram.touching",
+            "1 if the ram lies on the head, else 0",
+            initial_dependencies=("ram.mass",),
+        ),
         out(
             "ram.separation",
             "time at which the ram last left the head; -1 before",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from .probes import (
     archive,
     conduct,
+    dependencies,
     description,
     environment,
     library,
@@ -108,7 +109,8 @@ PROBES = (
     _probe("values/not-finite", "NaN and infinity", values.not_finite_inputs),
     _probe("values/range", "values beyond the declared range", values.out_of_range),
     _probe("values/length", "a wrong number of values is refused", values.length, version=3),
-    _probe("values/dependencies", "declared dependencies", values.dependencies),
+    _probe("values/dependencies", "declared dependencies of outputs", dependencies.of_outputs),
+    _probe("values/initial", "declared dependencies at the start", dependencies.of_unknowns),
     _probe("stepping/odd", "steps of odd lengths", stepping.odd),
     _probe("stepping/tiny", "tiny steps", stepping.tiny),
     _probe("stepping/large", "a large step", stepping.large),

@@ -336,6 +336,11 @@ SEEDS = (
         (XML, '<BaseUnit kg="1" m="1" s="-2"/>', '<BaseUnit kg="1" m="1" s="-2" factor="1000"/>'),
     ),
     seed(
+        "a dependency at the start that is not declared",
+        "values/initial",
+        (XML, '<Unknown index="17" dependencies="7"/>', '<Unknown index="17" dependencies=""/>'),
+    ),
+    seed(
         "an output that ModelStructure has not",
         "description/structure",
         (XML, '<Unknown index="1', '<Unknown index="2'),

@@ -7,7 +7,7 @@ import time
 from itertools import pairwise
 from pathlib import Path
 
-from ..subject.motions import Course, course, first_difference, perturbed
+from ..subject.motions import OutputCourse, course, first_difference, perturbed
 from ..subject.subject import Subject
 from ..subject.variables import listed, not_finite
 from ..verdicts import Seen, failed, not_applicable, passed, warned
@@ -43,7 +43,7 @@ def simulation(subject: Subject) -> Seen:
     return passed(f"{made} steps of {subject.step:g} s{ends}, all values finite")
 
 
-def _simulated(subject: Subject) -> Course:
+def _simulated(subject: Subject) -> OutputCourse:
     """Return the course of a whole life."""
     instance = subject.begun()
     rows = course(subject, instance, variables=subject.readable)

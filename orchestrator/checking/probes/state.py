@@ -3,7 +3,7 @@
 import json
 
 from ..subject.calls import Called
-from ..subject.motions import Course, course, first_difference, perturbed
+from ..subject.motions import OutputCourse, course, first_difference, perturbed
 from ..subject.subject import Subject
 from ..verdicts import Seen, failed, not_applicable, passed, warned
 
@@ -34,7 +34,7 @@ def _on_its_way(subject: Subject, name: str = "instance") -> Called:
     return instance
 
 
-def _everything(subject: Subject, instance: Called, time: float) -> Course:
+def _everything(subject: Subject, instance: Called, time: float) -> OutputCourse:
     """Return the course of all variables from a time on."""
     instance.time = time
     return course(subject, instance, _AFTER, subject.readable)
@@ -98,7 +98,7 @@ def kept(subject: Subject) -> Seen:
     return passed("a state stays what it was while steps and other states follow")
 
 
-def _handed_over(subject: Subject) -> tuple[bytes, Course]:
+def _handed_over(subject: Subject) -> tuple[bytes, OutputCourse]:
     """Return a serialized state and the course from it on."""
     instance = _on_its_way(subject)
     state = instance.state()
@@ -109,7 +109,7 @@ def _handed_over(subject: Subject) -> tuple[bytes, Course]:
     return content, rows
 
 
-def _taken_over(subject: Subject, content: bytes) -> Course:
+def _taken_over(subject: Subject, content: bytes) -> OutputCourse:
     """Return the course of a new instance from a serialized state on."""
     instance = subject.begun("another")
     state = instance.deserialize(content)

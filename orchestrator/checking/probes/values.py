@@ -2,21 +2,18 @@
 
 import math
 import struct
-import time
 from collections.abc import Sequence
 
 from ...core.errors import counted
-from ..subject.calls import Called, CallRefused
+from ..subject.calls import Called
 from ..subject.subject import Subject
-from ..subject.variables import Declared, Numbers, differing, exactly, listed, not_finite
+from ..subject.variables import Declared, Numbers, exactly, listed, not_finite
 from ..verdicts import Seen, failed, not_applicable, passed, warned
 
 _BEYOND_ALL = 10_000
 """Distance of a reference that no variable has from the largest one."""
 _MOST_INPUTS = 5
 """Inputs that get values that are no numbers, and variables that are set beyond their range."""
-_LONGEST = 5.0
-"""Time (s) for the search of dependencies."""
 _FIRM = ("parameter", "input")
 """Causalities of variables that keep their start value until they are set."""
 _OTHER_TYPES = {2: ("Real", "Integer", "Boolean"), 3: ("Float64", "Int32", "Boolean")}
@@ -312,50 +309,3 @@ def length(subject: Subject) -> Seen:
             "compare nValues with the elements",
         )
     return passed("a wrong number of values is refused")
-
-
-def dependencies(subject: Subject) -> Seen:
-    """Change one input after the other, and look which outputs follow at once."""
-    declared = {
-        unknown.variable.name: None
-        if unknown.dependencies is None
-        else {its.name for its in unknown.dependencies}
-        for unknown in subject.model.outputs
-    }
-    watched = [v for v in subject.readable if declared.get(v.name) is not None]
-    if not watched:
-        return not_applicable("no output declares dependencies: each may depend on everything")
-    instance = subject.begun()
-    instance.step(subject.step)
-    begin = time.monotonic()
-    looked = 0
-    for variable in subject.inputs():
-        if time.monotonic() - begin > _LONGEST:
-            break
-        moved = _moved_by(instance, variable, watched)
-        looked += moved is not None
-        hidden = [name for name in moved or () if variable.name not in (declared[name] or ())]
-        if hidden:
-            return failed(
-                f"{listed(hidden)} follows {variable.name} at once, and does not declare it",
-                "declare the dependency: tools order their calls by it, and find loops",
-            )
-    return passed(f"{counted(looked, 'input')} changed, and no output follows undeclared")
-
-
-def _moved_by(
-    instance: Called, variable: Declared, watched: Sequence[Declared]
-) -> list[str] | None:
-    """Return the outputs that a change of an input moves; None where it cannot be changed."""
-    values = variable.other_start()
-    if values is None or variable.kind == "Binary":
-        return None
-    (own,) = instance.get([variable]).values()
-    before = exactly(instance.get(watched))
-    try:
-        instance.set(variable, values)
-        after = exactly(instance.get(watched))
-        instance.set(variable, own)
-    except CallRefused:
-        return None
-    return differing(before, after)

@@ -6,7 +6,7 @@ from .calls import Called, CallRefused
 from .subject import Subject
 from .variables import Declared, Numbers, exactly
 
-Course = list[dict[str, tuple[str, ...]]]
+OutputCourse = list[dict[str, tuple[str, ...]]]
 """Values of variables, exact to the bit, after each step."""
 
 
@@ -15,7 +15,7 @@ def course(
     instance: Called,
     steps: int | None = None,
     variables: Sequence[Declared] | None = None,
-) -> Course:
+) -> OutputCourse:
     """Make steps and return the outputs before the first and after each.
 
     Parameters
@@ -44,7 +44,7 @@ def course(
     return rows
 
 
-def first_difference(one: Course, other: Course) -> str:
+def first_difference(one: OutputCourse, other: OutputCourse) -> str:
     """Return where two courses differ first, in words; empty where they are equal."""
     for number, (row, its) in enumerate(zip(one, other, strict=False)):
         for name, values in row.items():
