@@ -245,6 +245,14 @@ def test_texts_travel_between_both_versions_of_fmi(thing, tmp_path):
     assert run.texts["b.told"][-1] == (0.1, "ROCK 0")
 
 
+def test_a_step_that_returns_early_without_end_fails(binary, tmp_path, monkeypatch):
+    """It has more events in a step than anyone waits for."""
+    xml = XML.replace("name='period'", "name='period_'")
+    fmu = pack(binary, tmp_path / "X.fmu", xml)
+    with pytest.raises(RunFailed, match="the step returned early there again and again"):
+        simulate(things(fmu, (), {"period_": 1e-300}), tmp_path / "run")
+
+
 def test_an_fmu_ends_the_run_in_the_middle_of_a_step(thing, tmp_path):
     run = simulate(things(thing, (), {"end": 0.25}), tmp_path / "run")
     assert run.time[-1] == 0.25

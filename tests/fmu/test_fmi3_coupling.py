@@ -5,6 +5,10 @@ import zipfile
 import pytest
 from lxml import etree
 
+from rockshed.cases.sonoda1993 import lab_system
+from rockshed.cases.sonoda1993 import tests as laboratory_tests
+from rockshed.core.run import simulate
+from rockshed.core.system.system import Connection
 from rockshed.fmus.description.fmi3 import TERMINALS
 
 from .host import Host
@@ -89,3 +93,46 @@ def test_the_impact_through_terminals_has_the_bits_of_fmi_2(native_fmus, fmi3_fm
     expected = run(two, by_elements)
     assert expected["sand"]["rock.force.y"] > 1000.0
     assert run(three, by_arrays) == expected
+
+
+# ------------------------------------------------------------------ in a run of the orchestrator
+
+
+@pytest.fixture(scope="module")
+def impact(native_fmus, fmi3_fmus, tmp_path_factory):
+    """Run the laboratory impact with some FMUs of FMI 3.0, and with other connections."""
+    folder = tmp_path_factory.mktemp("impact")
+
+    def simulated(three=(), **changes):
+        kinds = {key: fmi3_fmus if key in three else native_fmus for key in MODELS}
+        files = {key: str(kinds[key][model]) for key, model in MODELS.items()}
+        system = lab_system(files, laboratory_tests()[4])
+        fields = {"stop_time": 0.001, "output_interval": 1e-4, "state_interval": 1e-3, **changes}
+        return simulate(system.model_copy(update=fields), folder / "run")
+
+    return simulated
+
+
+@pytest.fixture(scope="module")
+def of_fmi_2(impact):
+    return impact()
+
+
+def same_bits(one, other):
+    assert list(one.series) == list(other.series)
+    different = [n for n in one.series if one.series[n].tobytes() != other.series[n].tobytes()]
+    assert different == []
+    assert list(one.states("sand")) == list(other.states("sand"))
+
+
+@pytest.mark.parametrize("three", [("rock", "sand", "beam"), ("sand",), ("rock", "beam")])
+def test_a_run_has_the_bits_of_fmi_2_with_any_of_its_fmus_for_fmi_3(impact, of_fmi_2, three):
+    assert of_fmi_2.series["sand.rock.force.y"].max() > 500.0
+    same_bits(impact(three), of_fmi_2)
+
+
+@pytest.mark.parametrize("three", [(), ("rock", "sand", "beam"), ("sand",)])
+def test_terminals_stand_for_all_connections_of_the_impact(impact, of_fmi_2, three):
+    whole = ("sand.rock <-> rock.rock", "beam.beam <-> sand.beam")
+    connections = [Connection.model_validate(text) for text in whole]
+    same_bits(impact(three, connections=connections), of_fmi_2)

@@ -5,6 +5,9 @@ from itertools import pairwise
 import pytest
 from fmpy import simulate_fmu
 
+from rockshed.core.run import simulate
+from rockshed.core.system.system import system_from
+
 from .host3 import Host3
 
 BOX = {
@@ -151,3 +154,24 @@ def test_fmpy_records_the_events(fmi3_fmus):
     assert len(stopping) > len(plain) == 6
     at = dict(zip(stopping["time"], stopping[["position.x", "position.y"]].tolist()))
     assert [at[time] for time in plain["time"]] == plain[["position.x", "position.y"]].tolist()
+
+
+def test_early_returns_of_a_rock_on_its_slope_change_no_bit(native_fmus, fmi3_fmus, tmp_path):
+    """Every impact lies inside of a step of half a second."""
+    two, three = (
+        simulate(
+            system_from(
+                {
+                    "name": "slope",
+                    "exchange_step": 0.5,
+                    "stop_time": 10.0,
+                    "components": {"rock": {"fmu": str(fmus["SlopeRockfall"])}},
+                }
+            ),
+            tmp_path / name,
+        )
+        for name, fmus in (("two", native_fmus), ("three", fmi3_fmus))
+    )
+    assert all(two.series[n].tobytes() == three.series[n].tobytes() for n in two.series)
+    impacts = two.series["rock.impacts"][-1]
+    assert three.provenance["early_returns"]["rock"] >= impacts > 3

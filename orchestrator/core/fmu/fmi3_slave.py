@@ -243,7 +243,7 @@ class Fmi3Slave:
                 return DISCARD
             if status > WARNING or not early.value or is_reached(reached.value, end):
                 return worst
-            if reached.value <= time:
+            if not reached.value >= time:  # at the time of an event, a step may come no further
                 break
             time = reached.value
             step = end - time

@@ -341,7 +341,7 @@ def _step_in_parts(tables, number, time, step):  # type: ignore[no-untyped-def]
         at = tables.reached[0]
         if tables.told[0] >> 16 & 255 == 0 or at >= end - ROUNDING * abs(end):
             return worst
-        if not at > time:
+        if not at >= time:  # at the time of an event, a step may come no further
             return STUCK
         tables.returned[number] += 1
         time = at
