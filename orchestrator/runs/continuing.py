@@ -229,11 +229,20 @@ def _from_start(
     )
 
 
+def _request_of(run: StoredRun, told: Any) -> Request:
+    try:
+        return Request(**told)
+    except TypeError as error:
+        where = f"{run.folder / RUN}: request"
+        what = "is none of this version of the program"
+        raise InputRefused([Problem(where, what, continuing.AGAIN)]) from error
+
+
 def _job_with(run: StoredRun, values: Mapping[str, Value], note: Note) -> Job:
     """Make the system of a run with other values; that of a case is made again, as they follow."""
     told = run.provenance.get("request")
     if told is not None:
-        request = Request(**told)
+        request = _request_of(run, told)
         return System.prepared(replace(request, values={**request.values, **values}), note).job
     spec = with_values(system_of(run), values)
     known = run.provenance.get("differences", {})

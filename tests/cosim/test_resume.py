@@ -25,6 +25,7 @@ from rockshed.core.results.checkpoints import (
     read_checkpoint,
 )
 from rockshed.core.run import simulate
+from rockshed.core.system.planning import make_plan
 from tests.cosim.mocks import Mock, mass, out, spring, wired
 
 LINKS = [
@@ -277,6 +278,44 @@ def test_a_state_of_another_system_is_refused(tmp_path):
     (folder / "run.json").write_text(json.dumps(told))
     with pytest.raises(InputRefused, match="is the state of another system"):
         resumed(folder)
+
+
+ENTRIES = ("checkpoints", "versions", "components", "system", "resumed", "started", "status")
+JUNK = st.sampled_from([None, [], {}, "x", -1, 1e300, True, [None], {"run": "x"}])
+
+
+@settings(max_examples=20, deadline=None)
+@given(data=st.data())
+def test_a_damaged_description_of_a_run_is_refused_in_words(stopped, data):
+    folder, told = stopped
+    entry = data.draw(st.sampled_from(ENTRIES))
+    changed = json.loads(told)
+    inner = changed[entry] if isinstance(changed.get(entry), dict) else {}
+    if inner and data.draw(st.booleans()):
+        inner[data.draw(st.sampled_from(sorted(inner)))] = data.draw(JUNK)
+    else:
+        changed[entry] = data.draw(JUNK)
+    (folder / "run.json").write_text(json.dumps(changed))
+    content = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    problems = []
+    try:
+        found = find_stopped(folder)
+        if found is not None:
+            plan = make_plan(continuing.system_of(found.run), system()[1])
+            continuing.refuse_others(found.run, system()[1], (found.base, found.witness))
+            assert plan.order
+    except InputRefused as refusal:
+        problems = refusal.problems
+    assert all(problem.where and problem.what for problem in problems)
+    assert content == {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def stopped(tmp_path_factory):
+    """Folder of a run that was ended, and its description."""
+    folder = ended(tmp_path_factory.mktemp("stopped") / "run", 1.3, 0.3)
+    told = json.loads((folder / "run.json").read_text())
+    return folder, json.dumps({**told, "resumed": []})
 
 
 # ---------------------------------------------------------------- processes that are killed

@@ -109,6 +109,14 @@ class Parts:
         InputRefused
             It is no state of this system, or components do not take theirs.
         """
+        try:
+            self._put_back(checkpoint)
+        except (LookupError, TypeError, ValueError, AttributeError) as error:
+            what = f"is no state of a run: {type(error).__name__}: {error}"
+            raise InputRefused([Problem("checkpoint", what, _REMEDY)]) from error
+
+    def _put_back(self, checkpoint: Checkpoint) -> None:
+        """Go to a state; its hash is right, but anybody may have written that."""
         self._refuse_other(checkpoint)
         problems = [text for name in self.slaves if (text := self._restored(name, checkpoint))]
         if problems:

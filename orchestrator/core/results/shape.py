@@ -113,6 +113,17 @@ _Text = Annotated[tuple[float, str], Strict(False)]
 """A time (s) and the text from then on."""
 
 
+class _Checkpoints(_Shape):
+    every: _Positive
+    run: _Name
+    warnings: list[_Name]
+
+
+class _Branch(_Shape):
+    at: float
+    values: dict[str, int | float | str | bool]
+
+
 class _Run(_Shape):
     status: _Name
     name: _Name = ""
@@ -125,6 +136,10 @@ class _Run(_Shape):
     load_cell: _Positive | None = None
     band: dict[_Name, _Width] = {}
     texts: dict[_Name, list[_Text]] = {}
+    versions: dict[str, Any] = {}
+    checkpoints: _Checkpoints | None = None
+    branch: _Branch | None = None
+    resumed: list[Any] = []
 
 
 def check(provenance: Mapping[str, Any]) -> None:
