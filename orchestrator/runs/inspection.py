@@ -18,6 +18,7 @@ from ..core.fmu.fmu_slave import (
     read_description,
 )
 from ..core.fmu.slave import REAL
+from ..core.fmu.terminals import terminals_of_bonds
 from ..core.run import sources_of
 from ..core.system.plan import Plan
 from ..core.system.planning import make_plan
@@ -82,7 +83,7 @@ def describe_fmu(path: Path) -> Overview:
     root = ElementTree.fromstring(xml)
     size = f"{path.stat().st_size / 1024:.0f} KiB"
     facts = _facts(description, root, {"file": f"{path}  {size}"})
-    terminals = _terminals(file.content(TERMINALS_FILE))
+    terminals = _terminals(file.content(TERMINALS_FILE)) or _bonds(description)
     remarks = [f"warning: {text}" for text in description.warnings]
     return Overview([facts, *_variables(description), *terminals, *remarks])
 
@@ -167,6 +168,16 @@ def _terminals(xml: bytes | None) -> list[str | Table]:
         ]
         table.add(terminal.get("name", ""), ", ".join(members), terminal.get("description", ""))
     return [table] if found else []
+
+
+def _bonds(description: Description) -> list[str | Table]:
+    """Return the mechanical bonds of an FMU, which are connected as terminals are."""
+    words = {bond["name"]: bond["description"] for bond in description.bonds}
+    table = Table(("terminals", "members", ""))
+    for name, terminal in terminals_of_bonds(description).items():
+        members = ", ".join(member.variable for member in terminal.members.values())
+        table.add(name, members, words[name])
+    return [table] if words else []
 
 
 def _sections(root: ElementTree.Element) -> dict[str, str]:
