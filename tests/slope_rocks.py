@@ -113,7 +113,13 @@ def run_trials(
     return passages, peaks, outcomes
 
 
-@njit
+# Kernels count no references to arrays (_nrt=False). A function that counted them would give back
+# those that a kernel returns, which nobody took: it frees memory that is in use, and the process
+# crashes somewhere, later.
+_uncounted = njit(error_model="numpy", _nrt=False)
+
+
+@_uncounted
 def clearance(nodes, x, y, radius):
     """Distance (m) between a rock at (x, y) and the polygon; negative inside."""
     nearest = 1e30
@@ -127,7 +133,7 @@ def clearance(nodes, x, y, radius):
     return nearest - radius
 
 
-@njit
+@_uncounted
 def deepest(nodes, radius, count, first, left, right, most_events, w, x, k, body):
     """Replay trials; smallest clearance (m) at 8 instants of every stretch, number of NaN, number of events, and that of trials
     with more than ``most_events``.
