@@ -20,7 +20,7 @@ PAGES = (
 )
 QUOTED = re.compile(r"`([^`\n]+)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
-OF_OTHERS = {"--version", "--dist", "--path", "--stepSize", "--stopTime"}
+OF_OTHERS = {"--version", "--dist", "--max-worker-restart", "--path", "--stepSize", "--stopTime"}
 """Options of the program itself, of pytest and of the command line of ecos."""
 
 
