@@ -87,13 +87,13 @@ def rockfall(
     ...     "profile": {"points": [[0, 40, "rock"], [30, 10, "soil"], [60, 5]]},
     ...     "line": [{"name": "road", "x": 40.0}],
     ... }
-    >>> result = rockshed.rockfall(slope, trials=50)
+    >>> result = rockshed.rockfall(slope, trials=100)
     >>> result.metrics["trials"].value
-    50
+    100
     >>> result.metrics["line_road_energy_p95"].unit
     'J'
     >>> result.to_arrow().num_rows
-    50
+    100
     """
     show = progress or no_progress
     form = animation_format(animation) if replay else "gif"
