@@ -43,6 +43,7 @@ CONTENTS = {
         "systems",
         "ssp",
         "fmi",
+        "scenarios",
         "results",
         "checkpoints",
         "studies",

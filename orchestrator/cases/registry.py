@@ -266,7 +266,7 @@ def references(chosen: Case, differing: Mapping[str, Value]) -> References:
     references : References
         What is known, and why something is not compared.
     """
-    keys = SystemSpec.model_fields
+    keys = {*SystemSpec.model_fields} - {"scenario"}  # how a case is run; a scenario disturbs it
     return chosen.references({name: value for name, value in differing.items() if name not in keys})
 
 

@@ -21,6 +21,7 @@ from .loop.journal import Journal
 from .loop.ledger import Accounts
 from .loop.master import Interruption, Keeper, Master, Progress
 from .loop.recording import Hearing, Recorder
+from .loop.scenario import Course
 from .results.checkpoints import Checkpoint, new_record, write_settled
 from .results.memory import MemoryResults
 from .results.metric import Metric
@@ -252,6 +253,7 @@ class Session:
     keepers: list[Keeper] = field(default_factory=list)
     checkpointing: Checkpointing | None = None
     changing: Changing | None = None
+    course: Course | None = None
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
     finished: bool = False
@@ -280,6 +282,9 @@ class Session:
         self.journal = Journal(self.results.running, plan.order)
         self.slaves = self.instances.make(plan, self.sources, self._enter)
         buses = Buses(plan, self.journal.entries)
+        if plan.scenario:
+            self.course = Course(buses, self.slaves)
+            self.keepers.insert(0, self.course)
         initial = self.instances.initialise(self.slaves, buses, allow_unstable, self._enter)
         self.warnings = [*plan.warnings, *initial]
         self.initialised = True
@@ -370,6 +375,7 @@ class Session:
             "cpu_time": {"exchanges": self.master.cpu_time},
             "early_returns": dict(self.master.returned),
             "texts": self.texts.changes,
+            **({"scenario_events": self.course.events} if self.course else {}),
         }
 
     def _wall_time(self) -> dict[str, float]:
@@ -388,7 +394,8 @@ class Session:
         if self.master.ended_by:
             ended = [f"{self.master.ended_by} has ended the run at t = {self.master.reached:.9g} s"]
         said = self.hearing.warnings(self.master.warned)
-        return self.warnings + self.accounts.warnings + ended + self.texts.cut + said
+        missed = self.course.warnings if self.course else []
+        return self.warnings + self.accounts.warnings + missed + ended + self.texts.cut + said
 
     def _metrics(self) -> list[Metric]:
         simulated = self.plan.timing.lasts(self.master.exchanges * self.plan.timing.exchange)

@@ -8,22 +8,20 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import numpy as np
-
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
 from ..core.system.names import nearest, select
+from ..core.system.signals import Signals, signals_of
 from ..core.system.system import RESERVED, Value, system_from
 from .job import Job
-from .signals import TIME, Signals, SignalSource, read_signals
+from .signals import SignalSource, read_signals
 from .system import System
 
 INPUT = "input"
 """Component whose outputs are the columns of the table."""
 _STEPS = 500
 """Steps into which an experiment is divided whose step is told nowhere."""
-_CONTINUOUS = ("Real", "Float64", "Float32")
 
 
 @dataclass(frozen=True)
@@ -169,19 +167,8 @@ def _read(path: Path) -> _Fmu:
     except UnusableError as error:
         raise InputRefused([Problem(str(path), str(error), error.remedy)]) from error
     root = ElementTree.fromstring(xml)
-    held = frozenset(
-        port.name
-        for port in description.named("input")
-        if port.kind not in _CONTINUOUS or _is_discrete(root, port.name)
-    )
+    held = frozenset(port.name for port in description.named("input") if port.is_held)
     return _Fmu(path, description, held, dict(_experiment(root)))
-
-
-def _is_discrete(root: ElementTree.Element, name: str) -> bool:
-    """Tell whether a real variable, or the array whose element it is, is declared as discrete."""
-    declared = {v.get("name"): v.get("variability") for v in root.iterfind("ModelVariables/*")}
-    own = declared.get(name, declared.get(name.rpartition("[")[0]))
-    return own == "discrete"
 
 
 def _experiment(root: ElementTree.Element) -> Iterator[tuple[str, float]]:
@@ -199,24 +186,7 @@ def _experiment(root: ElementTree.Element) -> Iterator[tuple[str, float]]:
 def _signals(inputs: str | Path | Mapping[str, Sequence[float]]) -> Signals:
     if isinstance(inputs, str | Path):
         return read_signals(Path(inputs))
-    columns = {name: np.asarray(values, dtype=np.float64) for name, values in inputs.items()}
-    time = columns.pop(TIME, None)
-    if time is None or not time.size:
-        raise InputRefused([Problem("inputs", "has no times", "give a column named time (s)")])
-    problems = [
-        Problem(
-            f"inputs {name}", f"has {values.size} values for {time.size} times", "give one each"
-        )
-        for name, values in columns.items()
-        if values.shape != time.shape
-    ]
-    if not np.isfinite([time, *columns.values()] if not problems else [0.0]).all():
-        problems.append(Problem("inputs", "has values that are no finite numbers", "correct them"))
-    if np.any(np.diff(time) < 0.0):
-        problems.append(Problem("inputs time", "goes backwards", "sort the values by time"))
-    if problems:
-        raise InputRefused(problems)
-    return Signals(time, columns)
+    return signals_of(inputs, "inputs")
 
 
 # ---------------------------------------------------------------- what is asked

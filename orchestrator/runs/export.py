@@ -116,6 +116,9 @@ def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
         raise InputRefused([Problem("ssp", f"{version!r} is unknown", choice)])
     if file.exists():  # before FMUs are made
         raise InputRefused([Problem(str(file), "is there already, and stays", "name a new file")])
+    if job.system.scenario:
+        remedy = "write a system file (a folder), or take the scenario out"
+        raise InputRefused([Problem("scenario", "has no place in an SSP", remedy)])
     plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
     if job.ssp is not None:
         rewrite_ssp(job.ssp, plan, _changes(job.ssp.system, plan), file, version)

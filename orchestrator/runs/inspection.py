@@ -266,7 +266,28 @@ def describe_system(job: Job) -> Overview:
     if system.bonds:
         bonds = (f"{name} ({bond.giver} -> {bond.taker})" for name, bond in system.bonds.items())
         parts.append(f"power bonds: {', '.join(bonds)}")
+    if plan.scenario:
+        parts.append(_scenario(plan))
     return Overview([*parts, *(f"warning: {text}" for text in undriven(plan))])
+
+
+def _scenario(plan: Plan) -> Table:
+    """Return what happens to the system from outside, in the order in which it is given."""
+    timing = plan.timing
+    table = Table(("scenario", "port", "from"))
+    for end in plan.scenario.driven:
+        table.add("column of inputs", end.name, f"{timing.seconds(0):g} s")
+    for switch in plan.scenario.switches:
+        at = (
+            switch.condition.text
+            if switch.condition
+            else f"{timing.seconds(switch.exchange or 0):g} s"
+        )
+        table.add(f"= {switch.value:g}", switch.end.name, at)
+    for fault in plan.scenario.faults:
+        span = f"{timing.seconds(fault.begin):g} s to {timing.seconds(fault.stop):g} s"
+        table.add(fault.kind, fault.end.name, span)
+    return table
 
 
 def _values(plan: Plan) -> Table:

@@ -41,6 +41,7 @@ from ..ssp.package import is_ssp
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .chosen import choose
 from .request import AUTO, Request
+from .scenario import SCENARIO, placed, refuse_misfit, with_inputs_read, without_file
 
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
@@ -130,11 +131,15 @@ def prepare(
     known += _load_cell_problems(request, system)
     if known:
         raise InputRefused(known + plan_problems(system, job.sources))
+    if chosen.case is None and system.scenario and not is_ssp(request.target):
+        refuse_misfit(plan_problems(system, job.sources), Path(request.target))
     if chosen.case is not None:
         system = _with_derived(job.system, system, request, chosen.case, job.facts["sizes"])
         warnings = [*chosen.case.warnings, *warnings]
     asked = replace(asked, values={**chosen.fields, **asked.values})
     differing = {**chosen.fields, **job.facts["differences"]}
+    if SCENARIO in differing:
+        differing[SCENARIO] = str(system.scenario)
     facts: dict[str, Any] = {
         **chosen.facts,
         **job.facts,
@@ -284,12 +289,13 @@ def _loaded(file: Path) -> SystemSpec:
         The form is wrong; with what the FMUs have against the connections that are in order.
     """
     try:
-        return load_system(file)
+        return with_inputs_read(load_system(file), file.parent)
     except InputRefused as refusal:
         more: list[Problem] = []
         with suppress(InputRefused):  # more than connections is wrong
-            more = plan_problems(load_system(file, leave_out_faulty=True), {})
-        raise InputRefused([*refusal.problems, *more]) from None
+            known = load_system(file, leave_out_faulty=True)
+            more = plan_problems(without_file(known), {})
+        raise InputRefused(placed([*refusal.problems, *more], file)) from None
 
 
 def _from_case(

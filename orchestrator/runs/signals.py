@@ -2,66 +2,20 @@
 
 import struct
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Port, UnitDefinition
 from ..core.fmu.slave import OK, REAL, Addresses, ValueReferences, Values
 from ..core.input_text import shown
+from ..core.system.signals import TIME, Signals
 from ..input_files.csv_table import CsvRow, CsvTable, read_csv
 
-TIME = "time"
-"""Title of the column of times."""
 _TRUTH = {"true": 1.0, "false": 0.0}
 _FORM = "write `time` and names of inputs in the first line, and a number for each below"
-
-
-@dataclass(frozen=True)
-class Signals:
-    """Values over time.
-
-    Attributes
-    ----------
-    time : ndarray of float64, shape (n,)
-        Times (s), ascending. The same time twice is a jump: the later row holds from then on.
-    columns : mapping of str to ndarray of float64, shape (n,)
-        Values by the name of the input, in its unit; of booleans 0 and 1.
-    """
-
-    time: NDArray[np.float64]
-    columns: Mapping[str, NDArray[np.float64]]
-
-    def at(self, time: float, name: str, held: bool) -> float:
-        """Return a value at a time.
-
-        Parameters
-        ----------
-        time : float
-            Time (s). Before the first row and after the last one the values are theirs.
-        name : str
-            Of the input.
-        held : bool
-            Whether the value of a row holds until the next one; otherwise values are interpolated
-            linearly between two rows.
-
-        Returns
-        -------
-        float
-            The value.
-        """
-        values = self.columns[name]
-        now = time + 8.0 * np.spacing(abs(time))  # a time that is computed may lie before a row
-        row = int(np.searchsorted(self.time, now, side="right")) - 1
-        if row < 0 or held or row == len(self.time) - 1:
-            return float(values[max(row, 0)])
-        begin, end = self.time[row], self.time[row + 1]
-        left = min(max((end - time) / (end - begin), 0.0), 1.0)
-        return float(left * values[row] + (1.0 - left) * values[row + 1])
 
 
 # ---------------------------------------------------------------- the file

@@ -28,6 +28,7 @@ from .export import export_ssp, export_system
 from .inspection import Overview, describe_system
 from .job import Job, plan_problems, prepare
 from .request import Request, plain
+from .scenario import SCENARIO, read_inputs
 from .subsystem import Subsystem, component_of, whole_sizes
 from .target import SYSTEM
 
@@ -386,6 +387,60 @@ class System:
         shared = {**self._data()["shared"], name: {"value": value, "targets": takers}}
         return self._detached({"shared": shared})
 
+    def scenario(
+        self,
+        inputs: str | Path | Mapping[str, Sequence[float]] | None = None,
+        *,
+        values: Sequence[Mapping[str, Any]] = (),
+        faults: Sequence[Mapping[str, Any]] = (),
+    ) -> "System":
+        """Return the system with what happens to it from outside during a run.
+
+        It replaces an earlier scenario. All of it acts at exchanges.
+
+        Parameters
+        ----------
+        inputs : str, Path or mapping, optional
+            A CSV file with the column ``time`` (s) and one for each input ``component.input`` that
+            nothing feeds, in its unit; or these columns. Continuous inputs are interpolated
+            linearly between two rows, others are held.
+        values : sequence of mapping
+            Values that change: ``port`` (such an input, or a tunable parameter), ``value``, and
+            ``at`` (s, time of an exchange) or ``when`` (``"rock.position.y < 1.0"``, from the first
+            exchange on at which it is true).
+        faults : sequence of mapping
+            What connections deliver: ``port`` (the input), ``kind`` (``frozen``, ``noise`` or
+            ``cut``), ``from`` and ``to`` (s, times of exchanges), of noise ``deviation`` (in the
+            unit of the input) and ``seed``.
+
+        Returns
+        -------
+        System
+            With this scenario.
+
+        Raises
+        ------
+        InputRefused
+            The form is wrong; what does not fit the FMUs is found by :meth:`validate` or the run.
+
+        Examples
+        --------
+        >>> import rockshed
+        >>> fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.1)
+        >>> fall = fall.add("rock", "FallingRock", {"mass": 2.0, "velocity0.y": 0.0})
+        >>> push = {"port": "rock.force.y", "value": 19.6133, "at": 0.05}  # N, its weight
+        >>> run = rockshed.simulate(fall.scenario(values=[push]))
+        >>> round(float(run["rock.velocity.y"][-1]), 4)
+        -0.4903
+        """
+        table: Any = inputs
+        if isinstance(inputs, str | Path):
+            table = read_inputs(Path(inputs))
+        elif inputs is not None:
+            table = {name: [float(v) for v in column] for name, column in inputs.items()}
+        listed = {"set": [plain(entry) for entry in values], "fault": [plain(f) for f in faults]}
+        return self.with_options(scenario={"inputs": table, **listed})
+
     def _detached(self, entries: Mapping[str, Any]) -> "System":
         """Return the system with other entries, no longer compared with what others found."""
         facts = dict(self.job.facts)
@@ -396,7 +451,8 @@ class System:
     def _with(self, spec: SystemSpec, differing: Mapping[str, Any]) -> "System":
         """Return the system with this content; provenance names what differs."""
         known = self.job.facts.get("differences", {})
-        facts = {**self.job.facts, "differences": {**known, **differing}}
+        told = {**differing, SCENARIO: str(spec.scenario)} if SCENARIO in differing else differing
+        facts = {**self.job.facts, "differences": {**known, **told}}
         return System(replace(self.job, system=spec, facts=facts), self.request)
 
     def _checked(self, entries: Mapping[str, Any]) -> SystemSpec:

@@ -232,3 +232,11 @@ def test_girders_begin_with_the_model_of_the_sand_that_fits_them():
     asked = of_sand(rockshed.case("girders-10", model="calibrated", in_process=True))
     assert "packing" not in asked
     assert rockshed.case("lab-impact", in_process=True).job.facts.get("model") is None
+
+
+def test_a_case_with_a_scenario_is_not_compared_with_what_others_found_in_the_undisturbed_one():
+    fault = {"port": "rock.force.y", "kind": "cut", "from": 0.01}
+    disturbed = lab().scenario({"time": [0.0], "rock.torque": [0.0]}, faults=[fault])
+    assert disturbed.job.facts["differences"] == {"scenario": "1 input column, 1 fault"}
+    assert "scenario" in disturbed.job.facts["references"]["remarks"][0]
+    assert disturbed.spec.scenario.fault[0].begin == 0.01

@@ -88,6 +88,8 @@ class Port:
         Whether it is another name of a variable.
     is_tunable : bool
         Whether a parameter may be set between two steps (FMI: ``variability`` is tunable).
+    is_discrete : bool
+        Whether it changes at events alone (FMI: ``variability`` is discrete).
     """
 
     name: str
@@ -108,6 +110,12 @@ class Port:
     is_constant: bool = False
     is_alias: bool = False
     is_tunable: bool = False
+    is_discrete: bool = False
+
+    @property
+    def is_held(self) -> bool:
+        """Tell whether a value holds until the next one; else it may be interpolated."""
+        return self.kind != "Real" or self.is_discrete
 
     @property
     def can_be_set(self) -> bool:

@@ -451,6 +451,7 @@ class _Ports:
             has_own_start=_has_own_start(variable),
             is_constant=variable.variability == "constant",
             is_tunable=variable.variability == "tunable",
+            is_discrete=variable.variability == "discrete",
             is_alias=variable.alias is not None,
         )
 

@@ -38,7 +38,10 @@ class Buses:
     texts : Texts
         Those that are passed on or recorded.
     linear : array of LINEAR
-        Inputs that get other values than their sources have, by rising place.
+        Inputs that get other values than their sources have, by rising place; a scenario changes
+        them.
+    fired : array of int
+        Number of exchanges after which each condition of the scenario was true; -1 before.
     """
 
     def __init__(self, plan: Plan, journal: IntegerTable | None = None) -> None:
@@ -50,6 +53,7 @@ class Buses:
         self.channels = _channels(plan)
         self.watched = _watched(plan)
         self.linear = _linear(plan)
+        self.fired = np.full(len(plan.scenario.conditions), -1, np.int64)
         self.snapshots = Snapshots(plan)
         self.journal = np.full(2, -1, np.int64) if journal is None else journal
         self.texts = Texts(plan, self.journal)
@@ -167,7 +171,11 @@ def _channels(plan: Plan) -> Records:
 
 
 def _linear(plan: Plan) -> Records:
-    rows = [(place, *plan.linear[place]) for place in sorted(plan.linear)]
+    ways = {
+        place: plan.scenario.at_start.get(plan.inputs[place].name, way)
+        for place, way in plan.linear.items()
+    }
+    rows = [(place, *ways[place]) for place in sorted(ways)]
     return np.array(rows, LINEAR)
 
 

@@ -70,18 +70,36 @@ class Changing:
         """
         if exchange == self.exchange:
             for end, value in self.settings:
-                self._set(end, value)
+                set_between_steps(self.slaves[end.component], end, value, self.at)
 
-    def _set(self, end: End, value: float | str) -> None:
-        slave = self.slaves[end.component]
-        if isinstance(value, str):
-            status = slave.set_text(end.port.reference, value)
-        else:
-            reference = np.array([end.port.reference], np.uint32)
-            status = slave.set(reference, np.array([value]), end.port.type)
-        if not 0 <= status <= WARNING:
-            what = f"{end.port.name} = {value} is refused ({status_name(status)})"
-            raise RunFailed(end.component, self.at, f"{what}: {last_words(slave)}")
+
+def set_between_steps(slave: Slave, end: End, value: float | str, at: float) -> None:
+    """Set a variable of a slave between two of its steps.
+
+    Parameters
+    ----------
+    slave : Slave
+        Of the component.
+    end : End
+        The variable.
+    value : float or str
+        As the port takes it.
+    at : float
+        Time (s) reached.
+
+    Raises
+    ------
+    RunFailed
+        The slave refuses the value.
+    """
+    if isinstance(value, str):
+        status = slave.set_text(end.port.reference, value)
+    else:
+        reference = np.array([end.port.reference], np.uint32)
+        status = slave.set(reference, np.array([value]), end.port.type)
+    if not 0 <= status <= WARNING:
+        what = f"{end.port.name} = {value} is refused ({status_name(status)})"
+        raise RunFailed(end.component, at, f"{what}: {last_words(slave)}")
 
 
 def plan_change(plan: Plan, change: ValueChange) -> Changing:
@@ -164,7 +182,7 @@ def _why_fixed(plan: Plan, end: End) -> str:
         return "is an element of an array of FMI 3.0, which is set as a whole"
     if port.causality == "input":
         fed = end.name in {target.name for target in plan.inputs}
-        return "is an input that a connection feeds" if fed else ""
+        return "is an input that a connection or the scenario feeds" if fed else ""
     if port.causality != "parameter":
         return f"is no parameter and no input, but {port.causality or 'local'}"
     return "" if port.is_tunable else "is a fixed parameter: FMI sets it before the start alone"

@@ -60,6 +60,8 @@ class Parts:
             "outputs": buses.outputs,
             "channels": buses.channels,
             "watched": buses.watched,
+            "linear": buses.linear,
+            "fired": buses.fired,
             "warned": self.master.warned_table,
             "returned": self.master.returned_table,
         }

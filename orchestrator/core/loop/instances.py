@@ -299,7 +299,8 @@ def _origin(name: str, source: Source) -> object:
 def _system_key(plan: Plan) -> str:
     """Return a digest of what is connected with what."""
     ends = (tuple(end.name for end in listed) for listed in (plan.inputs, plan.outputs))
-    return _digest(plan.order, *ends, plan.source.tobytes())
+    ways = (sorted(plan.linear.items()), sorted(plan.scenario.at_start.items()))
+    return _digest(plan.order, *ends, plan.source.tobytes(), *ways)
 
 
 def _digest(*content: Any) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..fmu.description import Description, Port
 from .schedule import Schedule
+from .signals import Signals
 from .system import SystemSpec
 from .timing import Timing
 
@@ -75,6 +76,92 @@ class BondPlaces:
     sign: float = 1.0
 
 
+class Condition(NamedTuple):
+    """A comparison of an output with a number: ``rock.position.y < 1.0``."""
+
+    end: End
+    sign: str
+    number: float
+    text: str
+
+    def holds(self, value: float) -> bool:
+        """Tell whether it is true of a value of the output."""
+        return {
+            "<": value < self.number,
+            "<=": value <= self.number,
+            ">": value > self.number,
+            ">=": value >= self.number,
+        }[self.sign]
+
+
+class Switch(NamedTuple):
+    """A value that a port takes during a run, after so many exchanges or on a condition."""
+
+    end: End
+    value: float
+    exchange: int | None
+    condition: Condition | None
+
+
+class PlannedFault(NamedTuple):
+    """What a connection delivers to an input from an exchange on until before another one.
+
+    instead: value (unit of the input) of a connection that is cut. deviation, seed: of noise.
+    """
+
+    end: End
+    kind: str
+    begin: int
+    stop: int
+    instead: float
+    deviation: float
+    seed: int
+
+
+NO_SIGNALS = Signals(np.empty(0), {})
+"""A table of no inputs."""
+
+
+@dataclass(frozen=True)
+class PlannedScenario:
+    """A scenario by ports and exchanges.
+
+    Attributes
+    ----------
+    signals : Signals
+        Inputs over time.
+    driven : tuple of End
+        Inputs that follow a column of their name.
+    switches : tuple of Switch
+        Values that change.
+    faults : tuple of PlannedFault
+        Of connections.
+    at_start : mapping of str to (float, float)
+        Factor and offset of inputs by name that differ from those of their connections already in
+        the initialisation.
+    """
+
+    signals: Signals = NO_SIGNALS
+    driven: tuple[End, ...] = ()
+    switches: tuple[Switch, ...] = ()
+    faults: tuple[PlannedFault, ...] = ()
+    at_start: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.driven or self.switches or self.faults)
+
+    @property
+    def inputs(self) -> dict[str, End]:
+        """Inputs that it acts on."""
+        ends = [*self.driven, *(s.end for s in self.switches), *(f.end for f in self.faults)]
+        return {end.name: end for end in ends if end.port.causality == "input"}
+
+    @property
+    def conditions(self) -> list[Switch]:
+        """Values that wait for a condition."""
+        return [switch for switch in self.switches if switch.condition is not None]
+
+
 @dataclass(frozen=True)
 class Plan:
     """A system ready to run.
@@ -119,7 +206,10 @@ class Plan:
     recorded_texts : tuple of End
         Variables of the kind String that are recorded.
     linear : mapping of int to (float, float)
-        Factor and offset of the inputs, by place, that get other values than their sources have.
+        Factor and offset of the inputs, by place, that get other values than their sources have,
+        at the start.
+    scenario : PlannedScenario
+        What changes during the run; all its inputs are in ``linear``.
     """
 
     system: SystemSpec
@@ -142,6 +232,7 @@ class Plan:
     linear: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     texts: tuple[tuple[End, End], ...] = ()
     recorded_texts: tuple[End, ...] = ()
+    scenario: PlannedScenario = PlannedScenario()
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:

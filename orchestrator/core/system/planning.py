@@ -20,8 +20,9 @@ from ..fmu.slave import NUMBERS, REAL, STRING, Source
 from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select, split_name
-from .plan import BondPlaces, End, Plan, Starts, with_whole_arrays
+from .plan import BondPlaces, End, Plan, PlannedScenario, Starts, with_whole_arrays
 from .renaming import present_name, renaming_warning
+from .scenario import ScenarioReader
 from .schedule import make_schedule
 from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
@@ -78,6 +79,7 @@ class _Parts(NamedTuple):
     recorded: list[End]
     recorded_texts: list[End]
     reference: float | End | None
+    scenario: PlannedScenario
 
 
 @dataclass
@@ -99,7 +101,7 @@ class _Planner:
         self._describe()
         order = self._order()
         timing = make_timing(self.system, self.problems)
-        parts = self._parts()
+        parts = self._parts(timing)
         self._check_states()
         if timing is not None and min(timing.output_every, timing.state_every) > 0:
             columns = 1 + len(parts.recorded) + 3 * len(parts.bonds)
@@ -109,7 +111,7 @@ class _Planner:
             raise InputRefused(self.problems)
         return self._resolved(order, timing, parts)
 
-    def _parts(self) -> _Parts:
+    def _parts(self, timing: Timing | None) -> _Parts:
         links = self._links()
         starts = self._starts({target.name for _, target in links})
         self._check_arrays(links, starts)
@@ -123,15 +125,29 @@ class _Planner:
             self._selected("record", self.system.record),
             self._texts_selected(self.system.record),
             self._reference(),
+            self._scenario(links, starts, timing),
         )
+
+    def _scenario(
+        self, links: _Links, starts: Mapping[str, Starts], timing: Timing | None
+    ) -> PlannedScenario:
+        def find(where: str, name: str) -> list[End]:
+            return self._ends(where, *self._split(name))
+
+        fed = {target.name: target for _, target in links}
+        given = {f"{name}.{port.name}" for name, listed in starts.items() for port, _ in listed}
+        reader = ScenarioReader(find, fed, given, timing, self.problems)
+        return reader.read(self.system.scenario)
 
     def _resolved(self, order: tuple[str, ...], timing: Timing, parts: _Parts) -> Plan:
         """Replace ports by places on the buses."""
         at_bonds = [end for bond in parts.bonds for end in bond.force + bond.position]
         sources = [source for source, _ in parts.links]
-        targets = [target for _, target in parts.links]
+        acted_on = parts.scenario.inputs
+        targets = [*(target for _, target in parts.links), *acted_on.values()]
         inputs = _sorted(order, with_whole_arrays(self.descriptions, targets))
-        exchanged = [*sources, *parts.watched, *at_bonds]
+        asked = [s.condition.end for s in parts.scenario.switches if s.condition is not None]
+        exchanged = [*sources, *parts.watched, *at_bonds, *asked]
         outputs = _sorted(order, with_whole_arrays(self.descriptions, exchanged))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
@@ -151,7 +167,7 @@ class _Planner:
             held=np.array([_held(end, parts.starts) for end in unfed], np.float64),
             linear={
                 place_of_input[name]: way
-                for name, way in self.linear.items()
+                for name, way in {**dict.fromkeys(acted_on, (1.0, 0.0)), **self.linear}.items()
                 if name in place_of_input
             },
             bonds=tuple(_bond_places(bond, place, place_of_input) for bond in parts.bonds),
@@ -163,6 +179,7 @@ class _Planner:
             warnings=tuple(self.warnings),
             texts=tuple((target, source) for source, target in parts.texts),
             recorded_texts=tuple(parts.recorded_texts),
+            scenario=parts.scenario,
         )
 
     def _split(self, name: str) -> tuple[str, str]:

@@ -1,0 +1,177 @@
+"""Scenarios during a run: what an input gets in the place of its source's value.
+
+Everything is done between two exchanges: factor and offset of an input are changed
+(:attr:`~.buses.Buses.linear`), with which every input gets the value of its source.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from zlib import crc32
+
+import numpy as np
+
+from ..fmu.slave import Slave
+from ..system.plan import Plan, PlannedFault, Switch
+from .buses import Buses
+from .changes import set_between_steps
+
+
+class Course:
+    """Lets a scenario take its course; a keeper of the master.
+
+    Nothing is remembered outside the buses, which go into checkpoints.
+
+    Parameters
+    ----------
+    buses : Buses
+        Whose linear inputs it changes.
+    slaves : mapping of str to Slave
+        By component.
+    """
+
+    def __init__(self, buses: Buses, slaves: Mapping[str, Slave]) -> None:
+        self._buses = buses
+        self._slaves = slaves
+        self._plan: Plan = buses.plan
+        self._scenario = buses.plan.scenario
+        places = {end.name: place for place, end in enumerate(self._plan.inputs)}
+        rows = {int(place): row for row, place in enumerate(buses.linear["place"])}
+        self._places = {name: places[name] for name in self._scenario.inputs}
+        self._rows = {name: rows[place] for name, place in self._places.items()}
+        self._shown = {end.name: place for place, end in enumerate(self._plan.outputs)}
+
+    # ------------------------------------------------------------------ when
+
+    def next(self, exchange: int) -> int:
+        """Return the number of exchanges, more than these, after which something is due."""
+        scenario = self._scenario
+        noisy = any(f.kind == "noise" and f.begin <= exchange < f.stop for f in scenario.faults)
+        if scenario.driven or noisy or np.any(self._buses.fired < 0):
+            return exchange + 1
+        later = [moment for moment in self._moments() if moment > exchange]
+        return min(later, default=self._plan.timing.exchanges)
+
+    def _moments(self) -> Iterator[int]:
+        yield from (s.exchange for s in self._scenario.switches if s.exchange is not None)
+        for fault in self._scenario.faults:
+            yield from (fault.begin, fault.stop)
+
+    # ------------------------------------------------------------------ what
+
+    def look(self, exchange: int) -> None:
+        """Do what is due after this number of exchanges.
+
+        Raises
+        ------
+        RunFailed
+            A component refuses a value.
+        """
+        time = self._plan.timing.seconds(exchange)
+        for end in self._scenario.driven:
+            value = self._scenario.signals.at(time, end.name, end.port.is_held)
+            self._deliver(end.name, 0.0, value)
+        for switch in self._scenario.switches:
+            if switch.exchange == exchange:
+                self._set(switch, time)
+        self._ask(exchange, time)
+        faults = self._scenario.faults
+        for fault in faults:
+            if fault.stop == exchange:  # another one of this input may begin
+                self._deliver(fault.end.name, *self._way(fault.end.name))
+        for fault in faults:
+            if fault.begin <= exchange < fault.stop:
+                self._disturb(fault, exchange)
+
+    def _ask(self, exchange: int, time: float) -> None:
+        """Set the values whose conditions have become true."""
+        for number, switch in enumerate(self._scenario.conditions):
+            condition = switch.condition
+            if condition is None or self._buses.fired[number] >= 0:
+                continue
+            if condition.holds(float(self._buses.outputs[self._shown[condition.end.name]])):
+                self._buses.fired[number] = exchange
+                self._set(switch, time)
+
+    def _set(self, switch: Switch, time: float) -> None:
+        if switch.end.name in self._rows:
+            self._deliver(switch.end.name, 0.0, switch.value)
+        else:
+            slave = self._slaves[switch.end.component]
+            set_between_steps(slave, switch.end, switch.value, time)
+
+    def _disturb(self, fault: PlannedFault, exchange: int) -> None:
+        name = fault.end.name
+        factor, offset = self._way(name)
+        if fault.kind == "noise":
+            self._deliver(name, factor, offset + fault.deviation * noise(fault, exchange))
+        elif fault.kind == "cut":
+            self._deliver(name, 0.0, fault.instead)
+        elif fault.begin == exchange:
+            source = float(self._buses.outputs[self._plan.source[self._places[name]]])
+            self._deliver(name, 0.0, factor * source + offset)
+
+    def _way(self, name: str) -> tuple[float, float]:
+        """Return factor and offset of the connection itself."""
+        return self._plan.linear[self._places[name]]
+
+    def _deliver(self, name: str, factor: float, offset: float) -> None:
+        """Let an input get factor times its source plus offset from the next exchange on."""
+        row = self._buses.linear[self._rows[name]]
+        row["factor"] = factor
+        row["offset"] = offset
+
+    # ------------------------------------------------------------------ told
+
+    @property
+    def events(self) -> list[dict[str, object]]:
+        """Values that were set on a condition, with the time (s) of each."""
+        return [
+            {
+                "port": switch.end.name,
+                "value": switch.value,
+                "when": switch.condition.text if switch.condition else "",
+                "at": self._plan.timing.seconds(int(exchange)),
+            }
+            for switch, exchange in zip(self._scenario.conditions, self._buses.fired)
+            if exchange >= 0
+        ]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Conditions that have never been true."""
+        return [
+            f"scenario: {switch.condition.text} was never true, and {switch.end.name} was not set"
+            for switch, exchange in zip(self._scenario.conditions, self._buses.fired)
+            if exchange < 0 and switch.condition
+        ]
+
+
+def noise(fault: PlannedFault, exchange: int) -> float:
+    """Return a number of the standard normal distribution.
+
+    It follows from the seed, the name of the input and the exchange alone: a run that goes on, and
+    one with another fault beside this one, have the same numbers. Philox counts [1]_, and two of
+    its numbers make one that is normally distributed [2]_.
+
+    Parameters
+    ----------
+    fault : PlannedFault
+        Whose seed and input count.
+    exchange : int
+        Number of exchanges before.
+
+    Returns
+    -------
+    float
+        Mean 0, standard deviation 1.
+
+    References
+    ----------
+    .. [1] Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC 2011.
+    .. [2] Box and Muller, A note on the generation of random normal deviates, 1958.
+    """
+    key = np.array([fault.seed, crc32(fault.end.name.encode())], np.uint64)
+    first, second = np.random.Philox(key=key, counter=exchange).random_raw(2)
+    uniform = ((int(first) >> 11) + 1) * 2.0**-53  # above 0, at most 1
+    angle = 2.0 * math.pi * (int(second) >> 11) * 2.0**-53
+    return math.sqrt(-2.0 * math.log(uniform)) * math.cos(angle)
