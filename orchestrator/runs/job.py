@@ -41,7 +41,7 @@ from ..ssp.package import is_ssp
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .chosen import choose
 from .request import AUTO, Request
-from .scenario import SCENARIO, placed, refuse_misfit, with_inputs_read, without_file
+from .scenario import placed, refuse_misfit, told, with_inputs_read, without_file
 
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
@@ -131,15 +131,12 @@ def prepare(
     known += _load_cell_problems(request, system)
     if known:
         raise InputRefused(known + plan_problems(system, job.sources))
-    if chosen.case is None and system.scenario and not is_ssp(request.target):
-        refuse_misfit(plan_problems(system, job.sources), Path(request.target))
+    _refuse_misfit(chosen.case, system, request)
     if chosen.case is not None:
         system = _with_derived(job.system, system, request, chosen.case, job.facts["sizes"])
         warnings = [*chosen.case.warnings, *warnings]
     asked = replace(asked, values={**chosen.fields, **asked.values})
-    differing = {**chosen.fields, **job.facts["differences"]}
-    if SCENARIO in differing:
-        differing[SCENARIO] = str(system.scenario)
+    differing = told({**chosen.fields, **job.facts["differences"]}, system)
     facts: dict[str, Any] = {
         **chosen.facts,
         **job.facts,
@@ -151,6 +148,12 @@ def prepare(
     if warnings:
         facts["warnings"] = warnings
     return replace(job, system=system, facts=facts)
+
+
+def _refuse_misfit(chosen: Case | None, system: SystemSpec, request: Request) -> None:
+    """Refuse a system file whose scenario does not fit its FMUs, by line and column."""
+    if chosen is None and system.scenario and not is_ssp(request.target):
+        refuse_misfit(plan_problems(system, {}), Path(request.target))
 
 
 def _with_present_names(request: Request, chosen: Case) -> tuple[Request, list[str]]:

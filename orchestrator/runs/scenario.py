@@ -1,7 +1,8 @@
 """Scenarios as people write them: tables of inputs read, problems told by line and column."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ..core.errors import InputRefused, Problem
 from ..core.system.signals import TIME
@@ -112,3 +113,9 @@ def refuse_misfit(problems: Sequence[Problem], file: Path) -> None:
     """
     if any(problem.where.startswith(f"{SCENARIO}.") for problem in problems):
         raise InputRefused(placed(problems, file))
+
+
+def told(differing: Mapping[str, Any], system: SystemSpec) -> dict[str, Any]:
+    """Return what differs in a system, its scenario in a few words."""
+    words = {SCENARIO: str(system.scenario)} if SCENARIO in differing else {}
+    return {**differing, **words}

@@ -28,7 +28,7 @@ from .export import export_ssp, export_system
 from .inspection import Overview, describe_system
 from .job import Job, plan_problems, prepare
 from .request import Request, plain
-from .scenario import SCENARIO, read_inputs
+from .scenario import read_inputs, told
 from .subsystem import Subsystem, component_of, whole_sizes
 from .target import SYSTEM
 
@@ -451,8 +451,7 @@ class System:
     def _with(self, spec: SystemSpec, differing: Mapping[str, Any]) -> "System":
         """Return the system with this content; provenance names what differs."""
         known = self.job.facts.get("differences", {})
-        told = {**differing, SCENARIO: str(spec.scenario)} if SCENARIO in differing else differing
-        facts = {**self.job.facts, "differences": {**known, **told}}
+        facts = {**self.job.facts, "differences": {**known, **told(differing, spec)}}
         return System(replace(self.job, system=spec, facts=facts), self.request)
 
     def _checked(self, entries: Mapping[str, Any]) -> SystemSpec:

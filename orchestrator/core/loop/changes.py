@@ -181,8 +181,9 @@ def _why_fixed(plan: Plan, end: End) -> str:
     if port.shape:
         return "is an element of an array of FMI 3.0, which is set as a whole"
     if port.causality == "input":
-        fed = end.name in {target.name for target in plan.inputs}
-        return "is an input that a connection or the scenario feeds" if fed else ""
+        if end.name in {target.name for _, target, _ in plan.fed}:
+            return "is an input that a connection feeds"
+        return "is an input of the scenario" if end.name in plan.scenario.inputs else ""
     if port.causality != "parameter":
         return f"is no parameter and no input, but {port.causality or 'local'}"
     return "" if port.is_tunable else "is a fixed parameter: FMI sets it before the start alone"

@@ -104,7 +104,7 @@ class Switch(NamedTuple):
 
 
 class PlannedFault(NamedTuple):
-    """What a connection delivers to an input from an exchange on until before another one.
+    """A fault of the connection to an input, from an exchange on until before another one.
 
     instead: value (unit of the input) of a connection that is cut. deviation, seed: of noise.
     """
@@ -155,6 +155,16 @@ class PlannedScenario:
         """Inputs that it acts on."""
         ends = [*self.driven, *(s.end for s in self.switches), *(f.end for f in self.faults)]
         return {end.name: end for end in ends if end.port.causality == "input"}
+
+    @property
+    def ways(self) -> dict[str, tuple[float, float]]:
+        """Factor and offset of these inputs where their connections give none."""
+        return dict.fromkeys(self.inputs, (1.0, 0.0))
+
+    @property
+    def asked(self) -> list[End]:
+        """Outputs that conditions ask for."""
+        return [switch.condition.end for switch in self.switches if switch.condition is not None]
 
     @property
     def conditions(self) -> list[Switch]:

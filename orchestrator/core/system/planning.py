@@ -143,11 +143,9 @@ class _Planner:
         """Replace ports by places on the buses."""
         at_bonds = [end for bond in parts.bonds for end in bond.force + bond.position]
         sources = [source for source, _ in parts.links]
-        acted_on = parts.scenario.inputs
-        targets = [*(target for _, target in parts.links), *acted_on.values()]
+        targets = [*(target for _, target in parts.links), *parts.scenario.inputs.values()]
         inputs = _sorted(order, with_whole_arrays(self.descriptions, targets))
-        asked = [s.condition.end for s in parts.scenario.switches if s.condition is not None]
-        exchanged = [*sources, *parts.watched, *at_bonds, *asked]
+        exchanged = [*sources, *parts.watched, *at_bonds, *parts.scenario.asked]
         outputs = _sorted(order, with_whole_arrays(self.descriptions, exchanged))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
@@ -167,7 +165,7 @@ class _Planner:
             held=np.array([_held(end, parts.starts) for end in unfed], np.float64),
             linear={
                 place_of_input[name]: way
-                for name, way in {**dict.fromkeys(acted_on, (1.0, 0.0)), **self.linear}.items()
+                for name, way in {**parts.scenario.ways, **self.linear}.items()
                 if name in place_of_input
             },
             bonds=tuple(_bond_places(bond, place, place_of_input) for bond in parts.bonds),

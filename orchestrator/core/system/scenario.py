@@ -15,7 +15,7 @@ from ..fmu.description import Port
 from ..fmu.slave import REAL
 from .plan import NO_SIGNALS, Condition, End, PlannedFault, PlannedScenario, Switch
 from .signals import TIME, Signals, signals_of
-from .system import Fault, Scenario, ValueSet
+from .system import ConnectionFault, Scenario, ValueSet
 from .timing import Timing, exchanges_in
 from .values import start_value, value_for
 
@@ -216,7 +216,7 @@ class ScenarioReader:
 
     # ------------------------------------------------------------------ faults
 
-    def _faults(self, where: str, entry: Fault) -> Iterator[PlannedFault]:
+    def _faults(self, where: str, entry: ConnectionFault) -> Iterator[PlannedFault]:
         begin = self._exchange(f"{where}.from", entry.begin)
         end_ = None if entry.end is None else self._exchange(f"{where}.to", entry.end, is_end=True)
         if end_ is None and self.timing is not None:

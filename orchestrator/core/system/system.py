@@ -275,8 +275,8 @@ class ValueSet(_Data):
         return self
 
 
-class Fault(_Data):
-    """What a connection delivers in the place of its source's value, for some time.
+class ConnectionFault(_Data):
+    """A fault of a connection: what it delivers in the place of its source's value.
 
     It acts at exchanges, from that at ``from`` until before that at ``to``.
 
@@ -305,7 +305,7 @@ class Fault(_Data):
     seed: int = Field(default=0, ge=0, lt=2**63)
 
     @model_validator(mode="after")
-    def _is_whole(self) -> "Fault":
+    def _is_whole(self) -> "ConnectionFault":
         is_noise = self.kind == "noise"
         if is_noise and self.deviation is None:
             raise ValueError("is noise, and needs a deviation in the unit of the port")
@@ -326,7 +326,7 @@ class Fault(_Data):
 
 
 class Scenario(_Data):
-    """What happens to a system from outside during a run.
+    """A scenario: what happens to a system from outside during a run.
 
     Attributes
     ----------
@@ -335,13 +335,13 @@ class Scenario(_Data):
         in a system file also the path of a CSV file with these columns.
     set : list of ValueSet
         Values that change.
-    fault : list of Fault
+    fault : list of ConnectionFault
         What connections deliver instead.
     """
 
     inputs: str | dict[str, list[Finite]] | None = None
     set: list[ValueSet] = []
-    fault: list[Fault] = []
+    fault: list[ConnectionFault] = []
 
     def __bool__(self) -> bool:
         return bool(self.inputs or self.set or self.fault)
@@ -597,6 +597,6 @@ def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
 
 _MODELS = (
     *(ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, SystemSpec),
-    *(Scenario, ValueSet, Fault),
+    *(Scenario, ValueSet, ConnectionFault),
 )
 _KEYS = sorted({field.alias or key for m in _MODELS for key, field in m.model_fields.items()})
