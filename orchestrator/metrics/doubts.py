@@ -240,10 +240,17 @@ def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
         whole = "work of the machine"
     share = next((float(metric.value) for metric in found if metric.name == name), None)
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
-        yield (
-            f"the balance of energy does not close: {100.0 * share:+.3g} % of the {whole}; "
-            "do not trust the figures, reduce the steps"
-        )
+        remedy = "do not trust the figures, reduce the steps"
+        if _has_scenario(run):
+            remedy = "it has not the work of the scenario; see whether it closes without that"
+        missing = f"{100.0 * share:+.3g} % of the {whole}"
+        yield f"the balance of energy does not close: {missing}; {remedy}"
+
+
+def _has_scenario(run: StoredRun) -> bool:
+    """Tell whether inputs or faults from outside have acted on the system."""
+    system = run.provenance.get("system") or {}
+    return any((system.get("scenario") or {}).values())
 
 
 def _other_weight(run: StoredRun, structure: str) -> Iterator[str]:

@@ -229,6 +229,16 @@ def test_an_entry_of_a_wrong_form_is_refused_in_words(part, entry, words):
     assert f"scenario.{part}.0" in problem.where
 
 
+def test_work_from_outside_is_no_reason_to_reduce_the_steps(tmp_path):
+    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.05)
+    fall = fall.add("rock", "FallingRock", {"mass": 1.0})
+    thrown = fall.scenario(values=[{"port": "rock.force.x", "value": 1000.0, "at": 0.01}])
+    run = rockshed.simulate(thrown)
+    assert run["rock.velocity.x"][-1] == pytest.approx(40.0)  # 1000 N for 0.04 s on 1 kg
+    (warning,) = [text for text in run.warnings if "balance of energy" in text]
+    assert "work of the scenario" in warning
+
+
 # ------------------------------------------------------------------ files
 
 

@@ -153,7 +153,7 @@ class ScenarioReader:
     # ------------------------------------------------------------------ values that change
 
     def _switches(self, where: str, entry: ValueSet) -> Iterator[Switch]:
-        ends = self.find(where, entry.port)
+        ends = self.find(f"{where}.port", entry.port)
         moment = self._exchange(f"{where}.at", entry.at) if entry.at is not None else None
         condition = self._condition(f"{where}.when", entry.when) if entry.when else None
         for end in ends:
@@ -221,7 +221,7 @@ class ScenarioReader:
         end_ = None if entry.end is None else self._exchange(f"{where}.to", entry.end, is_end=True)
         if end_ is None and self.timing is not None:
             end_ = self.timing.exchanges
-        for end in self.find(where, entry.port):
+        for end in self.find(f"{where}.port", entry.port):
             if end.name not in self.fed or not end.port.is_number:
                 what = f"{end.name} is no input that a connection feeds with numbers"
                 self._refuse(f"{where}.port", what, "name the target of a connection")
