@@ -7,9 +7,12 @@ import rockshed
 from rockshed.core.continuing import find_stopped
 from rockshed.core.continuing import resume as go_on
 from rockshed.core.errors import InputRefused
+from rockshed.core.fmu.description import Port
+from rockshed.core.loop.scenario import noise
 from rockshed.core.results.bits import first_difference
 from rockshed.core.results.checkpoints import known_checkpoints
 from rockshed.core.run import simulate
+from rockshed.core.system.plan import End, PlannedFault
 from tests.cosim.mocks import Mock, inp, out, par, wired
 
 STEPS = 10
@@ -125,19 +128,32 @@ def test_of_a_linear_connection_what_arrives_is_frozen_and_cut(tmp_path):
     assert done.series["echo.got"][1:].tolist() == [1, 3, 5, 5, 9, 11, 13, 15, 7, 7]
 
 
-def test_noise_has_its_deviation_and_follows_from_the_seed_alone(tmp_path):
-    def noisy(folder, seed, **more):
-        fault = {"port": "echo.x", "kind": "noise", "from": 10.0, "deviation": 0.5, "seed": seed}
-        done = run(tmp_path / folder, {"fault": [fault]}, stop_time=210.0, **JACOBI, **more)
-        return done.series["echo.got"][1:] - np.arange(2100.0)
+def numbers(seed, name="x", count=4000):
+    end = End("echo", Port(name, 0, "Real", "input", "Real"))
+    fault = PlannedFault(end, "noise", 0, count, 0.0, 1.0, seed)
+    return np.array([noise(fault, exchange) for exchange in range(count)])
 
-    first = noisy("a", 1)
-    assert not first[:100].any()
-    assert abs(first[100:].mean()) < 4 * 0.5 / np.sqrt(2000)
-    assert first[100:].std() == pytest.approx(0.5, rel=0.08)
-    assert abs(np.corrcoef(first[100:-1], first[101:])[0, 1]) < 0.09  # one does not tell the next
-    np.testing.assert_array_equal(noisy("b", 1), first)
-    assert (noisy("c", 2)[100:] != first[100:]).all()
+
+def test_noise_is_normal_and_no_number_tells_another_one():
+    one = numbers(1)
+    within = [np.mean(np.abs(one) < bound) for bound in (1.0, 2.0)]
+    assert within == pytest.approx([0.6827, 0.9545], abs=0.03)
+    assert abs(one.mean()) < 4.0 / np.sqrt(one.size)
+    for other in (np.roll(one, 1), numbers(2), numbers(1, "y")):
+        assert abs(np.corrcoef(one, other)[0, 1]) < 4.0 / np.sqrt(one.size)
+
+
+def test_noise_is_added_to_what_arrives_from_its_begin_on_and_a_seed_gives_it_again(tmp_path):
+    def noisy(folder, deviation):
+        fault = {"port": "echo.x", "kind": "noise", "from": 0.3, "deviation": deviation, "seed": 1}
+        done = run(tmp_path / folder, {"fault": [fault]}, **JACOBI)
+        return done.series["echo.got"][1:] - np.arange(10.0)
+
+    first = noisy("a", 0.5)
+    assert not first[:3].any()
+    assert first[3:].all()
+    np.testing.assert_array_equal(noisy("b", 0.5), first)
+    np.testing.assert_allclose(noisy("c", 1.0), 2.0 * first, atol=1e-12)
 
 
 SCENARIO = {
