@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .analyses.back_analysis.run import calibrate_rockfall
     from .analyses.calibration.run import calibrate
     from .analyses.convergence.run import converge
+    from .analyses.exchange_steps.run import converge_exchange
     from .analyses.pile.run import pile
     from .analyses.pile_matching.run import match_pile
     from .analyses.rockfall.run import rockfall
@@ -60,6 +61,7 @@ _HOMES = {
     "calibrate_rockfall": "analyses.back_analysis.run",
     "check_fmu": "checking.check",
     "converge": "analyses.convergence.run",
+    "converge_exchange": "analyses.exchange_steps.run",
     "case": "runs.system",
     "component": "runs.subsystem",
     "list_cases": "runs.catalogue",
@@ -104,6 +106,7 @@ __all__ = [
     "check_fmu",
     "component",
     "converge",
+    "converge_exchange",
     "formulas",
     "list_cases",
     "list_components",

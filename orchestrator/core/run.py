@@ -192,6 +192,38 @@ def simulate_in_memory(
     return results.run()
 
 
+def starting_problems(
+    system: SystemSpec, sources: Mapping[str, Source], allow_unstable: bool = False
+) -> list[Problem]:
+    """Return why a system cannot begin; its components are initialised and thrown away.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        Components, connections and times.
+    sources : mapping of str to Source
+        Components that are made without an FMU file.
+    allow_unstable : bool
+        Whether steps may be longer than the stable ones.
+
+    Returns
+    -------
+    list of Problem
+        Empty if it can.
+    """
+    every = {**sources_of(system), **sources}
+    slaves: dict[str, Slave] = {}
+    try:
+        plan = make_plan(system, every)
+        slaves = instantiate(plan, every)
+        initialise(slaves, Buses(plan), allow_unstable)
+    except InputRefused as refusal:
+        return refusal.problems
+    finally:
+        free(slaves.values())
+    return []
+
+
 def _plan(system: SystemSpec, sources: Mapping[str, Source], allow_unstable: bool) -> Plan:
     """Make the plan; of steps that do not fit, components say too what they have against them."""
     try:

@@ -46,7 +46,7 @@ from .scenario import placed, refuse_misfit, told, with_inputs_read, without_fil
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
 
-__all__ = ["Job", "Request", "plan_problems", "prepare"]
+__all__ = ["Job", "Request", "plan_problems", "prepare", "recorded_names"]
 
 
 @dataclass(frozen=True)
@@ -451,3 +451,23 @@ def plan_problems(system: SystemSpec, sources: Mapping[str, Source]) -> list[Pro
     except InputRefused as refusal:
         return refusal.problems
     return []
+
+
+def recorded_names(job: Job) -> list[str]:
+    """Return the names of the numbers that a run records, without the energy of its interfaces.
+
+    Parameters
+    ----------
+    job : Job
+        The system.
+
+    Raises
+    ------
+    InputRefused
+        The system does not fit its FMUs.
+    """
+    from ..core.run import sources_of
+    from ..core.system.planning import make_plan
+
+    plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
+    return [end.name for end in plan.recorded]

@@ -10,7 +10,7 @@ from ...core.results.metric import identifier
 from ...metrics import names
 from .records import StudyRecords, values_of
 
-_FIRST = tuple(
+FIRST = tuple(
     identifier(name)
     for name in (
         names.SETTLED_ROCK,
@@ -25,8 +25,9 @@ _FIRST = tuple(
     )
 )
 """Metrics that a designer asks for first, in the order of the tables."""
-_UTILISATION = identifier(names.utilisation(""))
-_MOST_OTHERS = 8
+UTILISATION = identifier(names.utilisation(""))
+"""Beginning of the identifiers of utilisations."""
+MOST_OTHERS = 8
 """Metrics of a system that has none of the known ones."""
 _SIDE_ISSUES = ("_at", "_integral", "_minimum", "_place")
 _COUNTS = ("exchanges", "simulated_time")
@@ -55,16 +56,27 @@ def headline_metrics(records: StudyRecords) -> list[str]:
         Forces, penetration, moment, deflection and utilisation as far as there are any; of another
         system, the first metrics that vary.
     """
-    found = [name for name in _FIRST if name in records.names]
-    found += [name for name in records.names if name.startswith(_UTILISATION)]
+    found = [name for name in FIRST if name in records.names]
+    found += [name for name in records.names if name.startswith(UTILISATION)]
     if found:
         return found
     varying = [name for name in records.names if _varies(records, name)]
-    return varying[:_MOST_OTHERS]
+    return varying[:MOST_OTHERS]
+
+
+def is_main(name: str) -> bool:
+    """Tell whether a metric is worth telling: no count, and not where or when another one is.
+
+    Parameters
+    ----------
+    name : str
+        Its identifier.
+    """
+    return name not in _COUNTS and not name.endswith(_SIDE_ISSUES)
 
 
 def _varies(records: StudyRecords, name: str) -> bool:
-    if name in _COUNTS or name.endswith(_SIDE_ISSUES):
+    if not is_main(name):
         return False
     values = values_of(records.complete, name)
     return len(values) > 1 and bool(np.ptp(values))

@@ -1,0 +1,1 @@
+"""Exchange steps: at which order a co-simulation converges, and which step is fine enough."""
