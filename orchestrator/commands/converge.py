@@ -1,7 +1,7 @@
 """The command ``rockshed converge``: sizes of discs and elements of a shed, or exchange steps."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,6 +18,7 @@ from ..core.system.system import Value
 from ..input_files.quantities import in_si
 from ..runs.chosen import is_project_file
 from ..runs.request import Request
+from .analysis import as_json as data_of
 from .analysis import options_named, show, stages
 from .assignments import values_of
 from .options import (
@@ -116,33 +117,49 @@ def command(
     Of a case or system: order and recommended exchange step. Of a project: coarser and finer
     discs and elements, each mesh with several packings; with --exchange the steps.
     """
+    of_meshes = _given({"packings": packings, "finest": finest, "workers": workers})
+    of_steps = {
+        "levels": levels,
+        "accuracy": accuracy,
+        "watch": watch,
+        "metrics": metric,
+        "coupling": coupling,
+        "exchange_step": exchange_step,
+        "stop_time": stop_time,
+        "output_interval": output_interval,
+    }
     with opened(quiet, as_json) as screen:
-        problems: list[Problem] = []
-        values = values_of("--set", set_ or [], problems)
-        of_meshes = {"packings": packings, "finest": finest, "workers": workers}
-        of_steps = {
-            "levels": levels,
-            "accuracy": _share(accuracy, problems),
-            "watch": watch,
-            "metrics": metric,
-            "coupling": coupling,
-        }
-        times = {
-            "exchange_step": exchange_step,
-            "stop_time": stop_time,
-            "output_interval": output_interval,
-        }
-        options = _given(times)
-        asks_for_meshes = not exchange and is_project_file(target)
-        wrong = {**of_steps, **options} if asks_for_meshes else of_meshes
-        problems += _misplaced(wrong, asks_for_meshes)
-        if problems:
-            raise InputRefused(problems)
-        shown = {"pictures": not no_figures, "values": values, "folder": output_dir}
-        if asks_for_meshes:
-            _meshes(Path(target), {**shown, **_given(of_meshes)}, screen)
-        else:
-            _steps(target, {**shown, **_given(of_steps), "options": options}, screen)
+        shown = {"pictures": not no_figures, "folder": output_dir}
+        _carry_out((target, exchange), (of_meshes, _given(of_steps)), set_ or [], shown, screen)
+
+
+def _carry_out(
+    what: tuple[str, bool],
+    options: tuple[dict[str, Any], dict[str, Any]],
+    assigned: Sequence[str],
+    shown: Mapping[str, Any],
+    screen: Screen,
+) -> None:
+    """Carry out the study that is asked for.
+
+    Of a target, and whether its exchange steps are wanted in any case, with the options of meshes
+    and those of steps.
+    """
+    target, exchange = what
+    of_meshes, of_steps = options
+    problems: list[Problem] = []
+    values = values_of("--set", assigned, problems)
+    if "accuracy" in of_steps:
+        of_steps["accuracy"] = _share(of_steps["accuracy"], problems)
+    asks_for_meshes = not exchange and is_project_file(target)
+    problems += _misplaced(of_steps if asks_for_meshes else of_meshes, asks_for_meshes)
+    if problems:
+        raise InputRefused(problems)
+    if asks_for_meshes:
+        _meshes(Path(target), {**shown, "values": values, **of_meshes}, screen)
+    else:
+        times = {name: of_steps.pop(name) for name in _TIMES if name in of_steps}
+        _steps(target, {**shown, "values": values, **of_steps, "options": times}, screen)
 
 
 def _given(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -155,15 +172,12 @@ def _misplaced(options: Mapping[str, Any], asks_for_meshes: bool) -> list[Proble
     remedy = "add --exchange" if asks_for_meshes else "leave it out"
     spelt = {"metrics": "--metric"}
     return [
-        Problem(spelt.get(name, f"--{name.replace('_', '-')}"), what, remedy)
-        for name in _given(options)
+        Problem(spelt.get(name, f"--{name.replace('_', '-')}"), what, remedy) for name in options
     ]
 
 
-def _share(text: str | None, problems: list[Problem]) -> float | None:
+def _share(text: str, problems: list[Problem]) -> float | None:
     """Read a part of a whole, ``1%`` or ``0.01``."""
-    if text is None:
-        return None
     number, percent, rest = text.strip().partition("%")
     try:
         value = in_si(number.strip(), "1")
@@ -201,6 +215,9 @@ def _steps(target: str, asked: Mapping[str, Any], screen: Screen) -> None:
     except RunFailed as failure:
         screen.fail(str(failure))
         raise typer.Exit(RUN_FAILED) from None
+    if screen.as_json:
+        screen.dump({**data_of(result), "study": exchange_files.as_data(result)})
+        return
     show(screen, result)
 
 

@@ -135,7 +135,7 @@ class Figure:
 
     @cached_property
     def found(self) -> Convergence:
-        """Order and errors."""
+        """Order of convergence, and error at each step."""
         return converged(self.differences, self.scale)
 
     @property

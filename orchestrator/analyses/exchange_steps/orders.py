@@ -25,7 +25,7 @@ _MOST_HALVINGS = 20
 
 @dataclass(frozen=True)
 class Convergence:
-    """What the differences of a figure from step to step say.
+    """Order and errors that the differences of a figure from step to step show.
 
     Attributes
     ----------

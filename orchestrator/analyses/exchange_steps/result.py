@@ -134,7 +134,7 @@ class ExchangeStepsResult(Result):
         seen = self.step_for(figure)
         if seen is None:
             return text
-        return f"{text}, and from {seen:.6g} s on little: seen, not extrapolated"
+        return f"{text}; from {seen:.6g} s on they stay near: seen, not extrapolated"
 
     def _recommendation(self) -> str:
         wanted = f"for an accuracy of {100.0 * self.accuracy:g} %"

@@ -23,12 +23,12 @@ from .result import ExchangeStepsResult
 
 MOST_LEVELS = 12
 """Steps that are taken at most; the last one takes as many exchanges as all others together."""
-Target = str | Path | Mapping[str, Any] | System
+ExchangeTarget = str | Path | Mapping[str, Any] | System
 """A case, a project, system file or SSP, the content of a project, or a system."""
 
 
 def converge_exchange(
-    target: Target,
+    target: ExchangeTarget,
     *,
     levels: int = 4,
     accuracy: float = 0.01,
@@ -116,7 +116,7 @@ def converge_exchange(
 
 
 def _system(
-    target: Target,
+    target: ExchangeTarget,
     values: Mapping[str, Value],
     options: Mapping[str, Any],
     coupling: str | None,
@@ -128,13 +128,13 @@ def _system(
         changed = target.with_values(values) if values else target
         system = changed.with_options(**options) if options else changed
     else:
-        is_content = isinstance(target, Mapping)
+        content = target if isinstance(target, Mapping) else None
         request = Request(
-            "project" if is_content else str(target),
+            str(target) if content is None else "project",
             plain(values),
             coupling=coupling,
             options=plain(options),
-            project=target if is_content else None,
+            project=content,
         )
         try:
             system = System.prepared(request, note)
