@@ -1,6 +1,6 @@
 """Files of this program in a folder, told apart from those of the user by a list.
 
-The list is an entry of the file that describes the results: ``run.json`` or ``calibration.json``.
+The list is an entry of the file that describes the results: ``run.json``, ``calibration.json``, ...
 What it does not name is the user's, and is neither removed nor overwritten.
 """
 
@@ -17,7 +17,7 @@ MARK = ".rockshed"
 """File in a folder in which this program works; its results do not have it."""
 FILES = "rockshed_files"
 """Entry with the list, paths relative to the folder."""
-_DESCRIPTIONS = ("run.json", "calibration.json")
+_DESCRIPTIONS = ("run.json", "calibration.json", "convergence.json", "exchange-steps.json")
 """Files that may have the list."""
 _HEAD = 4096
 """Bytes in which a picture says who has made it."""
