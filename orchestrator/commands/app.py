@@ -24,7 +24,7 @@ COMMANDS = {
     "info": "Show an FMU, a component or a system: ports, values, connections.",
     "simulate": "Simulate one FMU alone, with its inputs from a CSV file.",
     "check": "Check any FMU: description, life cycle, steps, states, wrong values.",
-    "export": "Write a system as TOML with its FMUs, or a run in another format.",
+    "export": "Write a system with its FMUs as TOML or SSP, or a run for others.",
     "run": "Run a case, a project or a system file, compare, draw.",
     "resume": "Let a run that was ended go on from its last checkpoints.",
     "branch": "Run a variant of a run from one of its states.",

@@ -46,7 +46,7 @@ def command(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Check any FMU: description, life cycle, steps, states, wrong values, what it prints.
+    """Check any FMU: description, life cycle, steps, states, wrong values.
 
     The FMU is run, each probe in processes of its own. Exit code 3 if a probe failed, crashed or
     timed out.

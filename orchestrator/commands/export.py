@@ -84,7 +84,7 @@ def command(
     ssp: _Ssp = None,
     runtime: _Runtime = AUTO,
 ) -> None:
-    """Write a system with its FMUs as TOML or SSP, or a run in another format."""
+    """Write a system with its FMUs as TOML or SSP, or a run for others."""
     problems: list[Problem] = []
     with opened() as screen:
         if format_ is not None:

@@ -3,7 +3,7 @@
 import logging
 import signal
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
@@ -151,7 +151,7 @@ def _local(workers: int | None) -> "Iterator[Client]":
         folder = str(opened.enter_context(TemporaryFolder("rockshed-dask-")))
         opened.enter_context(dask.config.set({**_NO_PAGES, "temporary-directory": folder}))
         with put_off(), _deaf_to_ctrl_c():
-            cluster = opened.enter_context(_started(workers, folder, security))
+            cluster = opened.enter_context(_closing(_started(workers, folder, security)))
         yield opened.enter_context(Client(cluster, direct_to_workers=True, security=security))
 
 
@@ -182,6 +182,19 @@ def _started(workers: int | None, folder: str, security: "Security") -> "LocalCl
     except (OSError, RuntimeError) as error:
         text = f"scheduler and workers cannot be started: {_first_line(error)}"
         raise ClusterFailed(text) from error
+
+
+@contextmanager
+def _closing(cluster: "LocalCluster") -> Iterator["LocalCluster"]:
+    """Close a cluster at the end, also one that has lost a worker meanwhile.
+
+    Dask strikes off such a worker a second time while it closes, and stumbles over that at its end.
+    """
+    try:
+        yield cluster
+    finally:
+        with suppress(KeyError):
+            cluster.close()
 
 
 @contextmanager

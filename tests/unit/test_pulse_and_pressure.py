@@ -110,19 +110,6 @@ def test_formulas_take_mass_speed_and_thickness_from_the_results():
     assert len(formula_table(made_up())) == 0
 
 
-def test_a_design_tells_the_formulas_what_the_cushion_is_made_of():
-    run = with_roof()
-    facts = {**run.provenance, "design": {"cushion": {"modulus": 10e6, "thickness": 0.3}}}
-    assert impact_of(replace(run, provenance=facts)).modulus == 10e6
-
-
-@pytest.mark.parametrize("design", ["none", {"cushion": 3}, {"cushion": {"modulus": "stiff"}}])
-def test_a_damaged_design_leaves_the_assumed_cushion(design):
-    run = with_roof()
-    facts = {**run.provenance, "design": design}
-    assert impact_of(replace(run, provenance=facts)) == impact_of(run)
-
-
 def test_a_mass_that_is_no_positive_number_gives_no_formulas():
     run = with_roof()
     for wrong in ("heavy", -4.0, True):
