@@ -339,10 +339,10 @@ def command(words, place):
     return done
 
 
-def killed(words, place, moment):
-    """Kill a command, and the process that watches over it, a while (s) after it has begun."""
+def killed(words, place, moment, begun="run*/timeseries.arrows"):
+    """Kill a command, and the process that watches over it, a while (s) after it has made a file."""
     process = started(words, place)
-    while not list(place.glob("run*/timeseries.arrows")):
+    while not list(place.glob(begun)):
         assert process.poll() is None, "the run has ended by itself"
         time.sleep(0.005)
     time.sleep(moment)
@@ -425,7 +425,8 @@ def test_an_impact_that_is_killed_ten_times_gives_the_bits_of_one_in_one_go(tmp_
     random = np.random.default_rng(int(began))
     for _ in range(10):
         moment = random.uniform(0.0, 0.9 * (lasted["exchanges"] + lasted["recording"]))
-        killed([*words, "--output-dir", "run", "--checkpoint-every", "1ms"], tmp_path, moment)
+        run = [*words, "--output-dir", "run", "--checkpoint-every", "1ms"]
+        killed(run, tmp_path, moment, begun="run*/checkpoints/exchange-*")
         command(["resume", "run", "--no-figures", "--quiet"], tmp_path)
         assert not differing(tmp_path / "whole", tmp_path / "run"), f"killed after {moment} s"
         shutil.rmtree(tmp_path / "run")

@@ -37,7 +37,6 @@ needs_compiler = pytest.mark.skipif(
         "ImpulsiveGround",
         "Hammer",
         "PileRod",
-        "Probe",
     ],
 )
 def test_there_is_nothing_to_say_about_our_native_fmus(request, version, name):

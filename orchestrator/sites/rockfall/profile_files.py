@@ -148,7 +148,9 @@ def nodes_of_dxf(
         problems += refusal.problems
         return []
     except Exception as error:  # what a damaged drawing ends in is anything
-        text = f"is no DXF drawing that can be read: {_reason(error)}"
+        own = isinstance(error, (ezdxf.DXFError, OSError))  # others speak of Python, not of DXF
+        reason = _reason(error) if own else "its entities are damaged"
+        text = f"is no DXF drawing that can be read: {reason}"
         problems.append(Problem(str(path), text, "save it again as DXF"))
         return []
     if scale and not pieces:
