@@ -35,7 +35,7 @@ COMMANDS = {
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find parameters from measurements, of a sand by default.",
-    "converge": "Compare a shed with coarser and finer discs and elements.",
+    "converge": "Compare finer and finer exchange steps, or meshes of a shed.",
     "study": "Run a system with values that vary: designs, Monte Carlo, sensitivity.",
     "rockfall": "Monte Carlo of rockfall on a slope: envelopes, percentiles, end points, replays.",
     "formula": "Impact force by formulas of practice: Japanese handbook, ASTRA, Labiouse, Hertz.",

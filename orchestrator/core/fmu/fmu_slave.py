@@ -452,7 +452,7 @@ class _Ports:
             is_constant=variable.variability == "constant",
             is_tunable=variable.variability == "tunable",
             is_discrete=variable.variability == "discrete",
-            is_alias=getattr(variable, "alias", None) is not None,  # fmpy 0.3.24 knows none
+            is_alias=variable.alias is not None,
         )
 
 
