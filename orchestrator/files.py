@@ -1,10 +1,11 @@
 """Files that appear as a whole or not at all, whatever happens while they are written."""
 
+import csv
 import json
 import os
 import re
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -90,3 +91,19 @@ def write_json(file: Path, content: Any) -> None:
         What JSON has no form for is written as its ``str``.
     """
     write_file(file, json.dumps(content, indent=2, default=str, ensure_ascii=False) + "\n")
+
+
+def write_csv(file: Path, names: Iterable[str], columns: Iterable[Iterable[Any]]) -> None:
+    """Write a table as CSV, as a whole or not at all.
+
+    Parameters
+    ----------
+    file : Path
+        Its folder has to exist.
+    names : iterable of str
+        Of the columns.
+    columns : iterable of iterable
+        All of one length.
+    """
+    with whole_file(file) as place, place.open("w", newline="", encoding="utf-8") as text:
+        csv.writer(text).writerows([names, *zip(*columns, strict=True)])

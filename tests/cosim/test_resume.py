@@ -192,6 +192,12 @@ def test_a_complete_run_has_nothing_left_to_do(tmp_path):
     assert known_checkpoints(tmp_path / "run") == [0, 20, 30]
 
 
+def test_a_time_below_zero_between_checkpoints_is_called_that(tmp_path):
+    one, sources = system()
+    with pytest.raises(InputRefused, match=r"-2 s is no time above 0; give"):
+        simulate(one, tmp_path / "run", sources=sources, checkpoint_every=-2.0)
+
+
 def test_a_run_without_checkpoints_says_what_to_do(tmp_path):
     broken, sources = system(0.7)
     with pytest.raises(RunFailed):

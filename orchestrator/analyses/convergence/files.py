@@ -7,12 +7,11 @@ convergence.png       the picture
 ====================  ==========================================================================
 """
 
-import csv
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.results.own_files import FILES
-from ...files import whole_file, write_json
+from ...files import write_csv, write_json
 
 if TYPE_CHECKING:
     from .result import ConvergenceResult
@@ -40,8 +39,7 @@ def write_files(result: "ConvergenceResult", folder: Path) -> list[Path]:
     table = result.to_arrow()
     files = [folder / DATA, folder / TABLE]
     write_json(files[0], {**as_data(result, table), FILES: NAMES})
-    with whole_file(files[1]) as place, place.open("w", newline="", encoding="utf-8") as text:
-        csv.writer(text).writerows([table.column_names, *zip(*table.to_pydict().values())])
+    write_csv(files[1], table.column_names, table.to_pydict().values())
     return files
 
 

@@ -297,7 +297,8 @@ def interval_problems(plan: Plan, number: int | None, seconds: float) -> list[Pr
     if number is None or number < 1:
         step = timing.lasts(timing.exchange)
         whole = max(1, round(seconds / step)) if math.isfinite(seconds) else 1
-        what = f"{seconds:g} s is no whole number of exchange steps of {step:g} s"
+        whole_steps = f"whole number of exchange steps of {step:g} s"
+        what = f"{seconds:g} s is no {whole_steps if seconds > 0.0 else 'time above 0'}"
         remedy = f"give {timing.lasts(whole * timing.exchange):.12g} s, for instance"
     elif number >= timing.exchanges:
         lasts = timing.lasts(timing.exchanges * timing.exchange)
