@@ -22,6 +22,7 @@ from .loop.ledger import Accounts
 from .loop.master import Interruption, Keeper, Master, Progress
 from .loop.recording import Hearing, Recorder
 from .loop.scenario import Course
+from .masters import driver_of
 from .results.checkpoints import Checkpoint, new_record, write_settled
 from .results.memory import MemoryResults
 from .results.metric import Metric
@@ -321,10 +322,11 @@ class Session:
         self.warnings = [*plan.warnings, *initial]
         self.initialised = True
         self.accounts = Accounts(self.slaves, buses)
-        recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results)
+        driver = driver_of(buses, self.slaves)
+        recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results, driver)
         self.watched = buses.watched
         self.texts = buses.texts
-        self.master = Master(self.slaves, buses, recorder, self.keepers)
+        self.master = Master(self.slaves, buses, recorder, driver, self.keepers)
         self.hearing = Hearing(self.slaves)
         self.parts = Parts(self.slaves, buses, self.accounts, recorder, self.master, self.hearing)
         if self.checkpointing is not None:
@@ -407,6 +409,7 @@ class Session:
             "cpu_time": {"exchanges": self.master.cpu_time},
             "early_returns": dict(self.master.returned),
             "texts": self.texts.changes,
+            **self.master.driver.facts(),
             **({"scenario_events": self.course.events} if self.course else {}),
         }
 
@@ -427,7 +430,8 @@ class Session:
             ended = [f"{self.master.ended_by} has ended the run at t = {self.master.reached:.9g} s"]
         said = self.hearing.warnings(self.master.warned)
         missed = self.course.warnings if self.course else []
-        return self.warnings + self.accounts.warnings + missed + ended + self.texts.cut + said
+        own = self.accounts.warnings + self.master.driver.warnings
+        return self.warnings + own + missed + ended + self.texts.cut + said
 
     def _metrics(self) -> list[Metric]:
         simulated = self.plan.timing.lasts(self.master.exchanges * self.plan.timing.exchange)
@@ -438,6 +442,7 @@ class Session:
             *self.accounts.metrics(),
             Metric("simulated time", simulated, "s"),
             Metric("exchanges", self.master.exchanges),
+            *self.master.driver.metrics(),
             *(
                 Metric(f"early returns of {name}", count)
                 for name, count in self.master.returned.items()

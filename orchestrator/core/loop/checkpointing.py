@@ -88,7 +88,7 @@ class Parts:
             },
         }
         tables = {name: table.copy() for name, table in self._tables.items()}
-        tables |= self.accounts.memory()
+        tables |= self.accounts.memory() | self.master.driver.memory()
         states = {name: self._state(slave) for name, slave in self.slaves.items()}
         return Checkpoint(self.master.exchanges, facts, tables, states)
 
@@ -126,6 +126,7 @@ class Parts:
         for name, table in self._tables.items():
             table[...] = checkpoint.tables[name]
         self.accounts.recall(checkpoint.tables)
+        self.master.driver.recall(checkpoint.tables)
         self.recorder.rows_passed = checkpoint.rows
         self.recorder.frames_passed = checkpoint.frames
         self.buses.texts.newest = dict(checkpoint.facts["texts"])
@@ -141,7 +142,7 @@ class Parts:
 
     def _refuse_other(self, checkpoint: Checkpoint) -> None:
         """Refuse the state of another system; the hash says that it is one of this program."""
-        here = {**self._tables, **self.accounts.memory()}
+        here = {**self._tables, **self.accounts.memory(), **self.master.driver.memory()}
         shapes = {name: (table.shape, table.dtype) for name, table in here.items()}
         found = {name: (table.shape, table.dtype) for name, table in checkpoint.tables.items()}
         if found != shapes or [*checkpoint.states] != [*self.slaves]:

@@ -31,13 +31,14 @@ class Fault(NamedTuple):
     """An operation that ended the loop.
 
     exchange: number of the exchange, counted from 0. status: of FMI, or NOT_FINITE. cause: the
-    exception of a slave in Python.
+    exception of a slave in Python. what: why, where that is known to the driver alone.
     """
 
     exchange: int
     operation: Operation
     status: int
     cause: Exception | None = None
+    what: str = ""
 
 
 class ExchangeLoop:

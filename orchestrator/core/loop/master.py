@@ -12,7 +12,8 @@ from ..errors import RunFailed
 from ..fmu.slave import DISCARD, FATAL, Slave, status_name
 from ..system.schedule import Action
 from .buses import Buses
-from .exchange import ExchangeLoop, Fault
+from .driver import Driver
+from .exchange import Fault
 from .recording import Recorder, last_words
 from .tables import ENDED, NOT_FINITE, NOT_FITTING, STUCK, IntegerTable
 
@@ -87,6 +88,8 @@ class Master:
         With the values after the initialisation.
     recorder : Recorder
         Takes what is to be kept.
+    driver : Driver
+        Carries out the exchanges.
     keepers : sequence of Keeper
         Called between exchanges in this order, when rows and states have been recorded.
 
@@ -109,6 +112,7 @@ class Master:
         slaves: Mapping[str, Slave],
         buses: Buses,
         recorder: Recorder,
+        driver: Driver,
         keepers: Sequence[Keeper] = (),
     ) -> None:
         self._plan = buses.plan
@@ -116,7 +120,8 @@ class Master:
         self._buses = buses
         self._recorder = recorder
         self._keepers = keepers
-        self._loop = ExchangeLoop(buses, slaves)
+        self.driver = driver
+        self._loop = driver.loop
         self._has_begun = False
         self._began: float | None = None
         self._ended: float | None = None
@@ -223,6 +228,7 @@ class Master:
         timing = self._plan.timing
         stop = timing.seconds(timing.exchanges)
         snapshots = self._buses.snapshots
+        self.driver.begin()
         if not self._has_begun:
             self._buses.open_accounts()
             self._record()
@@ -250,7 +256,7 @@ class Master:
 
     def _record(self) -> None:
         """Take a row of the present values."""
-        fault = self._loop.record(self.exchanges)
+        fault = self.driver.record(self.exchanges)
         if fault is not None:
             raise self._failure(fault) from fault.cause
         self._buses.snapshots.waiting.append(self.exchanges)
@@ -270,7 +276,7 @@ class Master:
     def _advance(self, count: int) -> None:
         began = time.perf_counter()
         began_of_thread = time.thread_time()
-        fault = self._loop.advance(self.exchanges, count)
+        fault = self.driver.advance(self.exchanges, count)
         took = time.perf_counter() - began
         self.wall_time += took
         self.cpu_time += time.thread_time() - began_of_thread
@@ -318,6 +324,8 @@ class Master:
         """Say what went wrong, in the slave's own words."""
         name = fault.operation.component
         said = last_words(self._slaves[name])
+        if fault.what:
+            return RunFailed(name, self._time(fault), fault.what)
         if fault.status == FATAL:
             self._slaves[name].messages.append((FATAL, "cannot be used any more"))
         if fault.status == NOT_FINITE:

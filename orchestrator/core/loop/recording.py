@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import RunFailed
 from ..fmu.slave import WARNING, Slave, counts_of, times, without_name
 from ..results.run_folder import Column
+from .driver import Driver
 from .ledger import Accounts
 from .snapshots import Snapshots
 
@@ -43,6 +44,8 @@ class Recorder:
         Gives the columns of the energy accounts.
     sink : Sink
         Takes rows and frames.
+    driver : Driver
+        Gives columns of its own.
 
     Attributes
     ----------
@@ -53,13 +56,19 @@ class Recorder:
     """
 
     def __init__(
-        self, slaves: Mapping[str, Slave], snapshots: Snapshots, accounts: Accounts, sink: Sink
+        self,
+        slaves: Mapping[str, Slave],
+        snapshots: Snapshots,
+        accounts: Accounts,
+        sink: Sink,
+        driver: Driver,
     ) -> None:
         self._plan = accounts.plan
         self._slaves = slaves
         self._snapshots = snapshots
         self._accounts = accounts
         self._sink = sink
+        self._driver = driver
         recorded = self._plan.recorded
         self._places = np.array([snapshots.place[end.name] for end in recorded], np.int64)
         components = self._plan.system.components
@@ -76,7 +85,7 @@ class Recorder:
             Column(end.name, end.port.unit_name, end.port.description)
             for end in self._plan.recorded
         ]
-        return recorded + self._accounts.described
+        return recorded + self._accounts.described + self._driver.columns
 
     def look(self) -> None:
         """Pass on the snapshots that wait, if they have done so for a while or fill all rows."""
@@ -98,7 +107,8 @@ class Recorder:
             if self.ended_at is not None:
                 times[-1] = self.ended_at
             energies = self._accounts.values(rows, times)
-            self._sink.rows(times, np.concatenate((rows[:, self._places], energies), axis=1))
+            told = self._driver.values(waiting)
+            self._sink.rows(times, np.concatenate((rows[:, self._places], energies, told), axis=1))
             self.rows_passed += len(waiting)
             waiting.clear()
         self._flushed_at = time.monotonic()
