@@ -11,11 +11,13 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.connection import wait as wait_for
 from multiprocessing.process import BaseProcess
 from threading import Event, Thread
 from typing import Any, Protocol
 
 from ..core.errors import InputRefused, Problem
+from ..temporary import sweep
 
 Work = Callable[[Any], Any]
 """A function of a module, which other processes find by its name."""
@@ -26,6 +28,8 @@ _AHEAD = 2
 """Pieces that each process has, so that it never waits for the next one."""
 _DEAF = 5.0
 """Time (s) after which a process that was interrupted and goes on is killed."""
+_AGAIN = 0.2
+"""Time (s) after which a process that goes on is interrupted again."""
 _LONGEST_END = 20.0
 """Time (s) after which a run that has been interrupted is no longer waited for."""
 
@@ -151,17 +155,28 @@ class Processes:
 def _end(children: Sequence[BaseProcess]) -> None:
     """Interrupt the runs of processes, and kill those that do not hear it.
 
-    Only a terminal tells Ctrl-C to all processes. A kernel that prepares a large layer hears
-    nothing for minutes.
+    Only a terminal tells Ctrl-C to all processes. They are told again and again: the run that
+    hears it may be followed by one that waits in the process already. A kernel that prepares a
+    large layer hears nothing for minutes; what a process that is killed so leaves is removed.
     """
-    for child in children:
-        with suppress(OSError):
-            os.kill(child.pid or 0, signal.SIGINT)
     last = time.monotonic() + _DEAF
-    for child in children:
-        child.join(max(last - time.monotonic(), 0.0))
-        if child.is_alive():
-            child.kill()
+    living = _living(children)
+    while living and time.monotonic() < last:
+        for child in living:
+            with suppress(OSError):
+                os.kill(child.pid or 0, signal.SIGINT)
+        wait_for([child.sentinel for child in living], _AGAIN)
+        living = _living(living)
+    for child in living:
+        child.kill()
+    for child in living:
+        child.join()
+    if living:
+        sweep()
+
+
+def _living(children: Sequence[BaseProcess]) -> list[BaseProcess]:
+    return [child for child in children if child.is_alive()]
 
 
 @contextmanager

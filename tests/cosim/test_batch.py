@@ -6,15 +6,19 @@ import sys
 import time
 from contextlib import suppress
 from multiprocessing import active_children
+from multiprocessing.context import SpawnProcess
+from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 
+from rockshed.core.loop.master import Interruption
 from rockshed.runs import batch, executors
 from rockshed.runs.batch import COMPLETE, Task, run_all
 from rockshed.runs.job import Request
 from rockshed.runs.kept import KeptRuns
+from rockshed.temporary import TemporaryFolder
 
 SHORT = Task(Request("lab-impact", options={"stop_time": 0.001}))
 
@@ -118,3 +122,55 @@ def test_a_process_that_hears_no_interrupt_is_killed(monkeypatch):
     (child,) = reason.value.args
     with suppress(psutil.NoSuchProcess):  # raises TimeoutExpired where it goes on
         psutil.Process(child.pid).wait(60.0)
+
+
+def run_until_interrupted(began):
+    """Carry out a run that Ctrl-C ends, and that has a temporary folder as an FMU has."""
+    with executors.running(), TemporaryFolder(), Interruption() as interruption:
+        Path(began).touch()
+        last = time.monotonic() + 30.0
+        while not interruption.requested and time.monotonic() < last:
+            time.sleep(0.01)
+
+
+def interrupted_with_a_run_waiting(place):
+    with executors.Processes(1) as pool:
+        (lane,) = pool._lanes
+        began = [place / name for name in ("first", "second")]
+        runs = [lane.pool.submit(run_until_interrupted, str(path)) for path in began]
+        while not (began[0].exists() and runs[1].running()):
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+
+
+def test_a_run_that_waits_in_a_process_is_interrupted_too(tmp_path, monkeypatch):
+    monkeypatch.setattr(executors, "_DEAF", 10.0)
+    killed = []
+    monkeypatch.setattr(SpawnProcess, "kill", lambda process: killed.append(process))
+    with pytest.raises(KeyboardInterrupt):
+        interrupted_with_a_run_waiting(tmp_path)
+    assert not killed
+
+
+def keep_a_folder(began):
+    """Hear nothing, and keep a temporary folder."""
+    with TemporaryFolder() as folder:
+        Path(began).write_text(str(folder))
+        time.sleep(600.0)
+
+
+def interrupted_while_deaf_with_a_folder(began):
+    with executors.Processes(1) as pool:
+        (lane,) = pool._lanes
+        lane.pool.submit(keep_a_folder, str(began))
+        while not (began.exists() and began.read_text()):
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+
+
+def test_what_a_killed_process_leaves_is_removed_by_the_one_that_kills_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(executors, "_DEAF", 0.5)
+    began = tmp_path / "began"
+    with pytest.raises(KeyboardInterrupt):
+        interrupted_while_deaf_with_a_folder(began)
+    assert not Path(began.read_text()).exists()
