@@ -101,6 +101,7 @@ class InProcessSlave:
     def __init__(self, kind: type[ComponentSlave], name: str) -> None:
         self.name, self._kind = name, kind
         self.messages: list[tuple[int, str]] = []
+        self._marked = b""
         self.reset()
 
     def set(
@@ -234,6 +235,20 @@ class InProcessSlave:
         """
         if self._call(self._slave._set_fmu_state, content)[1] == ERROR:
             raise RuntimeError(self.messages[-1][1])
+
+    def mark(self) -> None:
+        """Keep the present state in memory."""
+        self._marked = self.state()
+
+    def roll_back(self) -> None:
+        """Go back to the state that was kept.
+
+        Raises
+        ------
+        RuntimeError
+            None was.
+        """
+        self.restore(self._marked)
 
     def reset(self) -> int:
         """Go back to the start values of a new slave, and return the status."""

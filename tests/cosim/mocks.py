@@ -160,6 +160,12 @@ class MockSlave:
     def restore(self, content) -> None:
         self.values = pickle.loads(content)
 
+    def mark(self) -> None:
+        self.marked = self.state()
+
+    def roll_back(self) -> None:
+        self.restore(self.marked)
+
     def reset(self) -> int:
         return 0
 

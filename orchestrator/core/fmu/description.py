@@ -194,6 +194,8 @@ class Description:
         Of FMI, as the description has it.
     may_return_early : bool
         A step may end before its end, at an event (FMI 3.0).
+    keeps_state : bool
+        The state can be got and set again, in memory.
     """
 
     model: str
@@ -210,6 +212,7 @@ class Description:
     tolerance: float | None = None
     version: str = "2.0"
     may_return_early: bool = False
+    keeps_state: bool = False
 
     @property
     def is_fmi_3(self) -> bool:

@@ -104,6 +104,7 @@ class Fmi3Slave:
         self._fmu: Any = None
         self._span: tuple[float, float, float | None] = (0.0, math.inf, None)
         self._terminated_at: float | None = None
+        self._mark = fmi3FMUState()
         self._key = next(_keys)
         _slaves[self._key] = self
         try:
@@ -269,6 +270,7 @@ class Fmi3Slave:
         An instance that failed beyond repair is not called any more.
         """
         if all(status != FATAL for status, _ in self.messages):
+            self._forget_mark()
             self._fmu.dll.fmi3FreeInstance(self._instance)
         self._unload()
 
@@ -317,6 +319,33 @@ class Fmi3Slave:
         self._demand(what, "DeserializeFMUState", passed, len(content), made)
         with self._freed(state):
             self._demand(what, "SetFMUState", state)
+
+    def mark(self) -> None:
+        """Keep the present state in memory.
+
+        Raises
+        ------
+        RuntimeError
+            A call failed.
+        """
+        self._forget_mark()
+        self._demand("the state cannot be kept", "GetFMUState", ctypes.byref(self._mark))
+
+    def roll_back(self) -> None:
+        """Go back to the state that was kept.
+
+        Raises
+        ------
+        RuntimeError
+            A call failed.
+        """
+        self._terminated_at = None
+        self._demand("the state that was kept is refused", "SetFMUState", self._mark)
+
+    def _forget_mark(self) -> None:
+        if self._mark:
+            self._status("FreeFMUState", ctypes.byref(self._mark))
+            self._mark = fmi3FMUState()
 
     @contextlib.contextmanager
     def _freed(self, state: Any) -> Iterator[None]:

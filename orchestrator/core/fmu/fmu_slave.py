@@ -33,6 +33,7 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
     fmi2CoSimulation,
+    fmi2FMUstate,
     free,
 )
 from fmpy.logging import addLoggerProxy
@@ -272,6 +273,7 @@ def _described(
         _tolerance(model.defaultExperiment),
         model.fmiVersion,
         interface.mightReturnEarlyFromDoStep,
+        bool(interface.canGetAndSetFMUstate),
     )
 
 
@@ -530,6 +532,7 @@ class FmuSlave:
         self._folder = TemporaryFolder()
         self._fmu: Any = None
         self._by_pythonfmu = _made_by_pythonfmu(description.generation_tool)
+        self._mark = fmi2FMUstate()
         key = next(_keys)
         _slaves[key] = self
         try:
@@ -706,6 +709,34 @@ class FmuSlave:
             finally:
                 self._fmu.freeFMUState(state)
 
+    def mark(self) -> None:
+        """Keep the present state in memory.
+
+        Raises
+        ------
+        RuntimeError
+            A call failed.
+        """
+        with self._refusals_raised("the state cannot be kept"):
+            self._forget_mark()
+            self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(self._mark))
+
+    def roll_back(self) -> None:
+        """Go back to the state that was kept.
+
+        Raises
+        ------
+        RuntimeError
+            A call failed.
+        """
+        with self._refusals_raised("the state that was kept is refused"):
+            self._fmu.fmi2SetFMUstate(self._fmu.component, self._mark)
+
+    def _forget_mark(self) -> None:
+        if self._mark:
+            self._fmu.fmi2FreeFMUstate(self._fmu.component, ctypes.byref(self._mark))
+            self._mark = fmi2FMUstate()
+
     @contextlib.contextmanager
     def _refusals_raised(self, what: str) -> Iterator[None]:
         """Raise a RuntimeError for a bad status, or for an error that is logged.
@@ -741,6 +772,8 @@ class FmuSlave:
         An instance that failed beyond repair is not called any more.
         """
         if all(status != FATAL for status, _ in self.messages):
+            with contextlib.suppress(FMICallException):
+                self._forget_mark()
             self._fmu.fmi2FreeInstance(self._fmu.component)
         self._unload()
 

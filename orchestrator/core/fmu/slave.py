@@ -195,6 +195,28 @@ class SlaveWithTexts(Slave, Protocol):
         """Set one variable of the kind String; of an array, all elements."""
 
 
+class SlaveWithRollback(Slave, Protocol):
+    """An instance that can go back to an earlier state of its own, kept in memory."""
+
+    def mark(self) -> None:
+        """Keep the present state, in the place of one that was kept before.
+
+        Raises
+        ------
+        RuntimeError
+            The slave cannot do it, or failed to.
+        """
+
+    def roll_back(self) -> None:
+        """Go back to the state that was kept, as often as wanted.
+
+        Raises
+        ------
+        RuntimeError
+            The slave failed to.
+        """
+
+
 class SlaveOfFmi3(SlaveWithTexts, Protocol):
     """An instance with the calls that FMI 3.0 alone has."""
 

@@ -103,11 +103,11 @@ def _call_counted_move(  # type: ignore[no-untyped-def]
 
 @_intrinsic
 def _call_step_of_3(  # type: ignore[no-untyped-def]
-    _context, function, instance, time, step, told, reached
+    _context, function, instance, time, step, forgets, told, reached
 ):
-    """Call a C function at an address, which says that no earlier state is needed.
+    """Call a C function at an address.
 
-    ``int function(void* instance, double time, double step, bool, bool* event, bool* end,
+    ``int function(void* instance, double time, double step, bool forgets, bool* event, bool* end,
     bool* early, double* reached)``; the three answers lie at ``told``, one byte each.
     """
 
@@ -116,7 +116,7 @@ def _call_step_of_3(  # type: ignore[no-untyped-def]
         pointer = ir.IntType(8).as_pointer()
         integer = ir.IntType(32)  # a bool is passed in the lowest byte of a register
         kind = ir.FunctionType(integer, [pointer, real, real, integer, *[pointer] * 4])
-        f, c, t, h, told, reached = arguments
+        f, c, t, h, forgets, told, reached = arguments
         answers = [builder.add(told, ir.Constant(told.type, place)) for place in range(3)]
         return builder.call(
             builder.inttoptr(f, kind.as_pointer()),
@@ -124,33 +124,37 @@ def _call_step_of_3(  # type: ignore[no-untyped-def]
                 _pointer(builder, c),
                 t,
                 h,
-                ir.Constant(integer, 1),
+                builder.trunc(forgets, integer),
                 *(_pointer(builder, place) for place in [*answers, reached]),
             ],
         )
 
     whole = types.int64
-    return types.int32(whole, whole, types.float64, types.float64, whole, whole), generate
+    real = types.float64
+    return types.int32(whole, whole, real, real, whole, whole, whole), generate
 
 
 @_intrinsic
-def _call_step(_context, function, instance, time, step):  # type: ignore[no-untyped-def]
-    """Call a C function at an address; its last argument says that no earlier state is needed.
+def _call_step(  # type: ignore[no-untyped-def]
+    _context, function, instance, time, step, forgets
+):
+    """Call a C function at an address.
 
-    ``int function(void* instance, double time, double step, int)``
+    ``int function(void* instance, double time, double step, int forgets)``
     """
 
     def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         real = ir.DoubleType()
         integer = ir.IntType(32)
         kind = ir.FunctionType(integer, [ir.IntType(8).as_pointer(), real, real, integer])
-        f, c, t, h = arguments
+        f, c, t, h, forgets = arguments
         return builder.call(
             builder.inttoptr(f, kind.as_pointer()),
-            [_pointer(builder, c), t, h, ir.Constant(integer, 1)],
+            [_pointer(builder, c), t, h, builder.trunc(forgets, integer)],
         )
 
-    return types.int32(types.int64, types.int64, types.float64, types.float64), generate
+    whole = types.int64
+    return types.int32(whole, whole, types.float64, types.float64, whole), generate
 
 
 @_compiled
@@ -330,7 +334,7 @@ def _step_in_parts(tables, number, time, step):  # type: ignore[no-untyped-def]
         tables.told[0] = 0
         tables.reached[0] = time
         status = _call_step_of_3(
-            operation["do_step"], operation["instance"], time, step, told, reached
+            operation["do_step"], operation["instance"], time, step, tables.forgets, told, reached
         )
         if _is_bad(status):
             return status
@@ -361,7 +365,7 @@ def _operate(tables, number, origin):  # type: ignore[no-untyped-def]
         step = float(operation["length"]) / float(tables.rate)
         if operation["may_return"]:
             return _step_in_parts(tables, number, time, step)
-        return _call_step(operation["do_step"], operation["instance"], time, step)
+        return _call_step(operation["do_step"], operation["instance"], time, step, tables.forgets)
     worst = 0
     for m in range(operation["first_move"], operation["end_move"]):
         if operation["action"] == _SET:

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,11 +14,13 @@ from .buses import Buses
 from .callbacks import Callbacks
 from .machine_code import advance
 from .tables import (
+    CHANNEL,
     FORMS,
     MOVE,
     NUMBERS,
     OPERATION,
     TRUTH_OF_INTEGER,
+    WATCHED,
     IntegerTable,
     Records,
     Tables,
@@ -126,9 +128,37 @@ class ExchangeLoop:
         """
         return self._call(exchange, 0)
 
+    def part(self, begin: int, end: int) -> "Part":
+        """Return a part of the loop, which forgets no state and enters nothing into the accounts.
+
+        Parameters
+        ----------
+        begin, end : int
+            The operations from the first up to before the second, by their places in
+            :attr:`~.buses.Buses.operations`.
+        """
+        return Part(
+            self,
+            self.with_tables(
+                every=_NEVER,
+                forgets=0,
+                first=np.array([begin, end], np.int64),
+                channels=np.zeros(0, CHANNEL),
+                watched=np.zeros(0, WATCHED),
+            ),
+        )
+
+    def with_tables(self, **others: Any) -> Tables:
+        """Return the tables of the loop with some others, by field; they lie in the same memory."""
+        return self._tables._replace(**others)
+
     def _call(self, first: int, count: int) -> Fault | None:
-        self._head[NUMBERS.index("row")] = len(self._waiting)
-        done, number, status = self._loop(self._head, first, count)
+        return self.carry_out(self._head, first, count)
+
+    def carry_out(self, head: IntegerTable, first: int, count: int) -> Fault | None:
+        """Carry out exchanges with the tables that a head points to; see :meth:`advance`."""
+        head[NUMBERS.index("row")] = len(self._waiting)
+        done, number, status = self._loop(head, first, count)
         if not status:
             return None
         operation = self._operations[number]
@@ -141,6 +171,37 @@ class ExchangeLoop:
     def _addresses(self, slaves: Mapping[str, Slave]) -> dict[str, Addresses]:
         own = {name: slave.addresses for name, slave in slaves.items() if slave.addresses}
         return own | {name: made.addresses for name, made in self._callbacks.items()}
+
+
+_NEVER = 1 << 62
+"""Number of exchanges for a row of snapshots where none is to be taken."""
+
+
+class Part:
+    """Some operations of the loop, to be carried out apart from their exchange.
+
+    Parameters
+    ----------
+    loop : ExchangeLoop
+        To which they belong.
+    tables : Tables
+        Of :meth:`ExchangeLoop.with_tables`.
+    """
+
+    def __init__(self, loop: ExchangeLoop, tables: Tables) -> None:
+        self._loop = loop
+        self._tables = tables  # keeps alive what the head points to
+        self._head = head(tables)
+
+    def carry_out(self, exchange: int) -> Fault | None:
+        """Carry them out; steps are those of the period that begins after so many exchanges.
+
+        Returns
+        -------
+        Fault or None
+            The operation that failed.
+        """
+        return self._loop.carry_out(self._head, exchange, 1)
 
 
 def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) -> Tables:
@@ -156,6 +217,7 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         width=snapshots.rows.shape[1],
         row=0,
         exchanged=len(plan.outputs),
+        forgets=1,
         first=np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),
         operations=operations,
         moves=moves,

@@ -85,6 +85,8 @@ class Tables(NamedTuple):
         The next row.
     exchanged : int
         Outputs that are exchanged; behind them stand values that nobody changes.
+    forgets : int
+        1 where steps are told that no earlier state is needed any more, else 0.
     first : array of int64
         Operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those
         after the last of a period read what is recorded.
@@ -126,6 +128,7 @@ class Tables(NamedTuple):
     width: int
     row: int
     exchanged: int
+    forgets: int
     first: IntegerTable
     operations: Records
     moves: Records
@@ -148,7 +151,7 @@ class Tables(NamedTuple):
     reached: FloatTable
 
 
-NUMBERS = ("start", "exchange", "rate", "every", "width", "row", "exchanged")
+NUMBERS = ("start", "exchange", "rate", "every", "width", "row", "exchanged", "forgets")
 """The numbers among the :class:`Tables`, which come first."""
 
 KINDS = {
