@@ -154,7 +154,7 @@ def test_own_fmus_of_both_runtimes_come_back_to_the_bit(tmp_path, runtime, versi
         "exchange_step": 0.01,
         "watch": ["rock.position.*"],
     }
-    plan, slaves, buses = proved(system_from(data), {"rock": FmuFile(fmu)})
+    _, slaves, buses = proved(system_from(data), {"rock": FmuFile(fmu)})
     rollback = Rollback(slaves)
     rollback.mark()
     for _ in range(3):

@@ -128,7 +128,7 @@ class ExchangeLoop:
         """
         return self._call(exchange, 0)
 
-    def part(self, begin: int, end: int) -> "Part":
+    def part(self, begin: int, end: int) -> "Excerpt":
         """Return a part of the loop, which forgets no state and enters nothing into the accounts.
 
         Parameters
@@ -137,7 +137,7 @@ class ExchangeLoop:
             The operations from the first up to before the second, by their places in
             :attr:`~.buses.Buses.operations`.
         """
-        return Part(
+        return Excerpt(
             self,
             self.with_tables(
                 every=_NEVER,
@@ -177,7 +177,7 @@ _NEVER = 1 << 62
 """Number of exchanges for a row of snapshots where none is to be taken."""
 
 
-class Part:
+class Excerpt:
     """Some operations of the loop, to be carried out apart from their exchange.
 
     Parameters

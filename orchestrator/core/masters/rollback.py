@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import InputRefused, Problem
 from ..fmu.slave import FATAL, REAL, Slave, SlaveWithRollback
 from ..loop.buses import Buses
-from ..loop.exchange import ExchangeLoop, Part
+from ..loop.exchange import ExchangeLoop, Excerpt
 from ..system.plan import Plan
 from ..system.schedule import Action
 
@@ -146,7 +146,7 @@ class _Trial:
         self._step = self._part(loop, Action.STEP)
         self._places = sorted(buses.shows[name])
 
-    def _part(self, loop: ExchangeLoop, action: Action) -> Part:
+    def _part(self, loop: ExchangeLoop, action: Action) -> Excerpt:
         """Return the first operation of this kind."""
         number = next(
             number
