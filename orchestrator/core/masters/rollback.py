@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import InputRefused, Problem
 from ..fmu.slave import FATAL, REAL, Slave, SlaveWithRollback
 from ..loop.buses import Buses
-from ..loop.exchange import ExchangeLoop, Excerpt
+from ..loop.exchange import Excerpt, ExchangeLoop
 from ..system.plan import Plan
 from ..system.schedule import Action
 
