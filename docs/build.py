@@ -44,6 +44,7 @@ CONTENTS = {
         "ssp",
         "fmi",
         "scenarios",
+        "adaptive",
         "results",
         "checkpoints",
         "studies",

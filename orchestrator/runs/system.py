@@ -231,6 +231,7 @@ class System:
         *,
         sizes: Mapping[str, int] | None = None,
         step: float | None = None,
+        extrapolation: int | None = None,
     ) -> "System":
         """Return the system with one more component.
 
@@ -248,6 +249,9 @@ class System:
             Sizes that differ from the component's defaults; not for FMU files.
         step : float, optional
             Communication step (s); by default the exchange step.
+        extrapolation : int, optional
+            Order of the polynomials that its inputs follow between exchanges, 0 to 2; by default
+            that of the system.
 
         Returns
         -------
@@ -277,7 +281,12 @@ class System:
             made = component_of(component if isinstance(component, Component) else str(component))
             sources[name] = _in_process(name, made, sizes)
             fmu = f"{made.name} (in process)"
-        spec = {"fmu": fmu, "step": step, "parameters": dict(values or {})}
+        spec = {
+            "fmu": fmu,
+            "step": step,
+            "extrapolation": extrapolation,
+            "parameters": dict(values or {}),
+        }
         entries: dict[str, Any] = {"components": {**self._data()["components"], name: spec}}
         if self.spec.order and name not in self.spec.order:  # it comes last
             entries["order"] = [*self.spec.order, name]

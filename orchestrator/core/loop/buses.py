@@ -10,7 +10,18 @@ from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
 from .blocks import Block, make_blocks
 from .snapshots import Snapshots
-from .tables import CHANNEL, LINEAR, WATCHED, IntegerTable, Records
+from .tables import (
+    CHANNEL,
+    DISCRETE,
+    EXTRAPOLATED,
+    GIVER,
+    LINEAR,
+    POSTED,
+    TAKER,
+    WATCHED,
+    IntegerTable,
+    Records,
+)
 from .texts import Texts
 
 
@@ -42,6 +53,14 @@ class Buses:
         them.
     fired : array of int
         Number of exchanges after which each condition of the scenario was true; -1 before.
+    extrapolated : array of EXTRAPOLATED
+        Inputs that follow polynomials, by rising place.
+    discrete : array of DISCRETE
+        Outputs whose changes begin polynomials anew, by rising place.
+    jumps : array of int64
+        Events of each component, in the order of turns.
+    posted : array of POSTED
+        Sides of channels that are posted after each step, component by component.
     """
 
     def __init__(self, plan: Plan, journal: IntegerTable | None = None) -> None:
@@ -54,6 +73,10 @@ class Buses:
         self.watched = _watched(plan)
         self.linear = _linear(plan)
         self.fired = np.full(len(plan.scenario.conditions), -1, np.int64)
+        self.extrapolated = _extrapolated(plan)
+        self.discrete = _discrete(plan)
+        self.jumps = np.zeros(len(plan.order), np.int64)
+        self.posted = _posted(plan)
         self.snapshots = Snapshots(plan)
         self.journal = np.full(2, -1, np.int64) if journal is None else journal
         self.texts = Texts(plan, self.journal)
@@ -106,8 +129,23 @@ class Buses:
     def linear_of(self, block: Block) -> slice:
         """Return which rows of the table of linear inputs belong to a block of inputs."""
         places = self.linear["place"]
-        first, end = np.searchsorted(places, [block.places.start, block.places.stop])
-        return slice(int(first), int(end))
+        return _within(places, block)
+
+    def extrapolated_of(self, block: Block) -> slice:
+        """Return which rows of the table of extrapolated inputs belong to a block of inputs."""
+        return _within(self.extrapolated["place"], block)
+
+    def discrete_of(self, component: str) -> slice:
+        """Return which rows of the table of discrete outputs belong to a component."""
+        blocks = self.getters.get(component, [])
+        rows = [_within(self.discrete["place"], block) for block in blocks]
+        return slice(rows[0].start, rows[-1].stop) if rows else slice(0, 0)
+
+    def posted_of(self, component: str) -> slice:
+        """Return which rows of the table of posted sides belong to a component."""
+        owners = [owner for owner, _, _ in _sides(self.plan)]
+        first = owners.index(component) if component in owners else 0
+        return slice(first, first + owners.count(component))
 
     def take(self, slave: Slave) -> int:
         """Get all exchanged outputs of a slave; return the worst status."""
@@ -130,9 +168,9 @@ class Buses:
         component : str
             Owner of the port.
         action : Action
-            SET for inputs, GET for outputs.
+            SET or EXTRAPOLATE for inputs, GET for outputs.
         """
-        is_set = action is Action.SET
+        is_set = action in (Action.SET, Action.EXTRAPOLATE)
         ends = self.plan.inputs if is_set else self.plan.outputs
         values = self.inputs if is_set else self.outputs
         for end, value in zip(ends, values):
@@ -160,6 +198,19 @@ class Buses:
         channels["last_position"] = self.outputs[channels["position"]]
         for name in ("low", "high", "last"):
             self.watched[name] = self.outputs[self.watched["place"]]
+        self.discrete["last"] = self.outputs[self.discrete["place"]]
+        self._begin_polynomials()
+
+    def _begin_polynomials(self) -> None:
+        """Let every polynomial begin with the value that its source has at the start."""
+        table = self.extrapolated
+        values = self.outputs[self.plan.source[table["place"]]]
+        _, rows, ways = np.intersect1d(table["place"], self.linear["place"], return_indices=True)
+        linear = self.linear[ways]
+        values[rows] = linear["factor"] * values[rows] + linear["offset"]
+        table["value"] = values
+        table["newest"] = self.plan.timing.start
+        table["known"] = 1
 
 
 def _channels(plan: Plan) -> Records:
@@ -177,6 +228,51 @@ def _linear(plan: Plan) -> Records:
     }
     rows = [(place, *ways[place]) for place in sorted(ways)]
     return np.array(rows, LINEAR)
+
+
+def _within(places: IntegerTable, block: Block) -> slice:
+    """Return which of the rising places lie in a block."""
+    first, end = np.searchsorted(places, [block.places.start, block.places.stop])
+    return slice(int(first), int(end))
+
+
+def _extrapolated(plan: Plan) -> Records:
+    table = np.zeros(len(plan.extrapolated), EXTRAPOLATED)
+    for row, entry in zip(table, plan.extrapolated, strict=True):
+        for name in ("place", "order", "ahead", "every"):
+            row[name] = getattr(entry, name)
+        row["owner"] = plan.order.index(entry.owner)
+    return table
+
+
+def _discrete(plan: Plan) -> Records:
+    """Return the table of outputs whose changes are events; empty where nobody asks for them."""
+    owners = {entry.owner for entry in plan.extrapolated}
+    places = [
+        place
+        for place, end in enumerate(plan.outputs)
+        if end.component in owners and end.port.is_held
+    ]
+    return np.array([(place, 0.0) for place in places], DISCRETE)
+
+
+def _posted(plan: Plan) -> Records:
+    return np.array([(channel, side) for _, channel, side in _sides(plan)], POSTED)
+
+
+def _sides(plan: Plan) -> list[tuple[str, int, int]]:
+    """Return component, channel and side of all that is posted after each step."""
+    found = []
+    channel = 0
+    for name, bond in plan.system.bonds.items():
+        number = next(places.force.size for places in plan.bonds if places.name == name)
+        channels = range(channel, channel + number)
+        channel += number
+        found += [(bond.taker, place, TAKER) for place in channels]
+        if bond.work is None:
+            found += [(bond.giver, place, GIVER) for place in channels]
+    extrapolating = {plan.inputs[entry.place].component for entry in plan.extrapolated}
+    return sorted(side for side in found if side[0] in extrapolating)
 
 
 def _watched(plan: Plan) -> Records:

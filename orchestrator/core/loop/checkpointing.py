@@ -62,6 +62,9 @@ class Parts:
             "watched": buses.watched,
             "linear": buses.linear,
             "fired": buses.fired,
+            "extrapolated": buses.extrapolated,
+            "discrete": buses.discrete,
+            "jumps": buses.jumps,
             "warned": self.master.warned_table,
             "returned": self.master.returned_table,
         }

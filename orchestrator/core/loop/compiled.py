@@ -6,17 +6,18 @@ runs: FMUs with Python inside need it, and so do slaves that are called back.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import llvmlite.binding as llvm
 from llvmlite import ir
-from numba import from_dtype, njit, types
+from numba import from_dtype, types
 from numba.extending import intrinsic
 
 from ..fmu.fmi3_slave import MOST_RETURNS, ROUNDING
 from ..fmu.slave import OK, WARNING
 from ..system.schedule import Action
+from .polynomials import compiled as _compiled
+from .polynomials import extrapolate, keep_values, look_for_jumps
 from .tables import (
     BYTE,
     DOUBLE,
@@ -30,6 +31,7 @@ from .tables import (
     SHORT,
     SINGLE,
     STUCK,
+    TAKER,
     TRUTH,
     TRUTH_OF_INTEGER,
     Tables,
@@ -37,17 +39,10 @@ from .tables import (
 
 _SET = int(Action.SET)
 _STEP = int(Action.STEP)
+_GET = int(Action.GET)
+_EXTRAPOLATE = int(Action.EXTRAPOLATE)
 _OK = OK
 _WARNING = WARNING
-
-
-def _compiled(function: Callable[..., Any]) -> Any:
-    """Compile with numba.
-
-    Nothing is allocated, so arrays need no counted references; counting them would cost 7 us an
-    exchange.
-    """
-    return njit(error_model="numpy", _nrt=False)(function)
 
 
 _intrinsic: Any = intrinsic
@@ -159,25 +154,45 @@ def _call_step(  # type: ignore[no-untyped-def]
 
 @_compiled
 def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
-    """Enter the work of one exchange.
-
-    The taker moves under the force that was set at the exchange: force times its own displacement.
-    The giver sees the position jump from one value to the next while its force changes: the mean
-    of both forces times the jump, which is exact for a spring.
-    """
+    """Enter the work of one exchange."""
     for i in range(channels.size):
-        channel = channels[i]
-        position = outputs[channel["position"]]
-        channel["taken"] += inputs[channel["given"]] * (position - channel["last_position"])
-        channel["last_position"] = position
-        if channel["seen"] >= 0:
-            seen = inputs[channel["seen"]]
-            force = outputs[channel["force"]]
-            channel["given_back"] -= (
-                0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
-            )
-            channel["last_seen"] = seen
-            channel["last_force"] = force
+        _post_taker(channels[i], inputs, outputs)
+        if channels[i]["seen"] >= 0:
+            _post_giver(channels[i], inputs, outputs)
+
+
+@_compiled
+def _post_taker(channel, inputs, outputs):  # type: ignore[no-untyped-def]
+    """Enter the work on a taker: the force that was set in it times its own displacement."""
+    position = outputs[channel["position"]]
+    channel["taken"] += inputs[channel["given"]] * (position - channel["last_position"])
+    channel["last_position"] = position
+
+
+@_compiled
+def _post_giver(channel, inputs, outputs):  # type: ignore[no-untyped-def]
+    """Enter the work on a giver.
+
+    It sees the position jump from one value to the next while its force changes: the mean of both
+    forces times the jump, which is exact for a spring.
+    """
+    seen = inputs[channel["seen"]]
+    force = outputs[channel["force"]]
+    channel["given_back"] -= 0.5 * (force + channel["last_force"]) * (seen - channel["last_seen"])
+    channel["last_seen"] = seen
+    channel["last_force"] = force
+
+
+@_compiled
+def _post_sides(tables, operation):  # type: ignore[no-untyped-def]
+    """Enter the work of one step of a component, whose force or motion is another in the next."""
+    for i in range(operation["first_posted"], operation["end_posted"]):
+        side = tables.posted[i]
+        channel = tables.channels[side["channel"]]
+        if side["side"] == TAKER:
+            _post_taker(channel, tables.inputs, tables.outputs)
+        else:
+            _post_giver(channel, tables.inputs, tables.outputs)
 
 
 @_compiled
@@ -215,8 +230,11 @@ def _lost(values):  # type: ignore[no-untyped-def]
 
 
 @_compiled
-def _give(tables, move):  # type: ignore[no-untyped-def]
-    """Set connected inputs of a component to the newest values; return the status."""
+def _give(tables, move, begin_of_step, length):  # type: ignore[no-untyped-def]
+    """Set connected inputs of a component to the newest values; return the status.
+
+    Those that are extrapolated, for a step (ticks).
+    """
     begin = move["begin"]
     number = move["number"]
     inputs = tables.inputs[begin : begin + number]
@@ -227,8 +245,28 @@ def _give(tables, move):  # type: ignore[no-untyped-def]
         way = tables.linear[i]
         value = tables.inputs[way["place"]]
         tables.inputs[way["place"]] = way["factor"] * value + way["offset"]
+    if move["first_extrapolated"] < move["end_extrapolated"]:
+        keep_values(tables, move, begin_of_step)
+        extrapolate(tables, move, begin_of_step, length)
+    return _set(tables, move)
+
+
+@_compiled
+def _give_extrapolated(tables, move, begin, length):  # type: ignore[no-untyped-def]
+    """Set connected inputs of a component for another step (ticks); return the status."""
+    if move["first_extrapolated"] == move["end_extrapolated"]:
+        return _OK
+    extrapolate(tables, move, begin, length)
+    return _set(tables, move)
+
+
+@_compiled
+def _set(tables, move):  # type: ignore[no-untyped-def]
+    """Set inputs of a component to the values on the bus; return the status."""
+    begin = move["begin"]
     address = tables.inputs.ctypes.data + 8 * begin
     if move["form"] != DOUBLE:
+        inputs = tables.inputs[begin : begin + move["number"]]
         if _pack(tables, move, inputs) > 0:
             return NOT_FITTING
         address = tables.longs.ctypes.data
@@ -348,6 +386,7 @@ def _step_in_parts(tables, number, time, step):  # type: ignore[no-untyped-def]
         if not at >= time:  # at the time of an event, a step may come no further
             return STUCK
         tables.returned[number] += 1
+        tables.jumps[operation["owner"]] += 1
         time = at
         step = end - time
     return STUCK
@@ -367,15 +406,21 @@ def _operate(tables, number, origin):  # type: ignore[no-untyped-def]
             return _step_in_parts(tables, number, time, step)
         return _call_step(operation["do_step"], operation["instance"], time, step, tables.forgets)
     worst = 0
+    begin = origin + operation["begin"]
     for m in range(operation["first_move"], operation["end_move"]):
         if operation["action"] == _SET:
-            status = _give(tables, tables.moves[m])
+            status = _give(tables, tables.moves[m], begin, operation["length"])
+        elif operation["action"] == _EXTRAPOLATE:
+            status = _give_extrapolated(tables, tables.moves[m], begin, operation["length"])
         else:
             status = _take(tables, tables.moves[m], tables.outputs, 0)
         if _is_bad(status):
             return status
         if status != 0:
             worst = status
+    if operation["action"] == _GET:
+        look_for_jumps(tables, operation)
+        _post_sides(tables, operation)
     return worst
 
 

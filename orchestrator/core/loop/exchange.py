@@ -225,12 +225,16 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         outputs=buses.outputs,
         source=plan.source.astype(np.uint64),
         linear=buses.linear,
+        extrapolated=buses.extrapolated,
+        discrete=buses.discrete,
+        jumps=buses.jumps,
         singles=buffer.view(np.float32),
         bytes=buffer.view(np.int8),
         shorts=buffer.view(np.int16),
         integers=buffer.view(np.int32),
         longs=buffer,
         channels=buses.channels,
+        posted=buses.posted,
         watched=buses.watched,
         snapshots=snapshots.rows.ravel(),
         journal=buses.journal,
@@ -251,24 +255,28 @@ def _calls(
     operations: list[tuple[int, ...]] = []
     moves: list[tuple[float, ...]] = []
     for operation in buses.operations:
-        called = addresses[operation.component]
+        name = operation.component
+        called = addresses[name]
         first = len(moves)
         moves += _moves(operation, buses, called)
-        moves += map(_text_move, texts.addresses(operation.component, operation.action))
+        moves += map(_text_move, texts.addresses(name, operation.action))
         steps = (operation.begin, operation.length)
         functions = (called.instance, called.do_step, called.may_return_early)
-        operations.append((operation.action, *functions, *steps, first, len(moves)))
+        rows = (*_ends(buses.discrete_of(name)), *_ends(buses.posted_of(name)))
+        owner = buses.plan.order.index(name)
+        operations.append((operation.action, *functions, *steps, first, len(moves), owner, *rows))
     return np.array(operations, OPERATION), np.array(moves, MOVE)
 
 
 def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[float, ...]]:
     if operation.action is Action.STEP:
         return []
-    is_set = operation.action is Action.SET
+    is_set = operation.action in (Action.SET, Action.EXTRAPOLATE)
     functions = called.set if is_set else called.get
     nothing = slice(0, 0)
     blocks = {
         Action.SET: buses.setters,
+        Action.EXTRAPOLATE: buses.setters,
         Action.GET: buses.getters,
         Action.RECORD: buses.snapshots.blocks,
     }[operation.action]
@@ -276,7 +284,11 @@ def _moves(operation: Operation, buses: Buses, called: Addresses) -> list[tuple[
         (
             functions[block.type],
             called.instance,
-            *_move(block, buses.linear_of(block) if is_set else nothing),
+            *_move(
+                block,
+                buses.linear_of(block) if is_set else nothing,
+                buses.extrapolated_of(block) if is_set else nothing,
+            ),
         )
         for block in blocks.get(operation.component, [])
     ]
@@ -287,7 +299,11 @@ def _text_move(address: int) -> tuple[float, ...]:
     return (address, *[0] * (len(MOVE.names or ()) - 1))
 
 
-def _move(block: Block, linear: slice) -> tuple[float, ...]:
+def _ends(rows: slice) -> tuple[int, int]:
+    return rows.start, rows.stop
+
+
+def _move(block: Block, linear: slice, extrapolated: slice) -> tuple[float, ...]:
     """Return the row of a block in the table of moves, without function and instance."""
     moved = TYPES[block.type]
     form = FORMS[moved.number.name]
@@ -295,5 +311,5 @@ def _move(block: Block, linear: slice) -> tuple[float, ...]:
         form = TRUTH_OF_INTEGER
     references = block.references
     called = (references.ctypes.data, references.size, block.number, block.begin)
-    ways = (linear.start, linear.stop)
+    ways = (*_ends(linear), *_ends(extrapolated))
     return (*called, form, moved.is_counted, *ways, moved.low, moved.high)

@@ -150,10 +150,12 @@ def _call(legend: dict[str, Any], operation: int, exchange: int, how: str) -> st
     period = exchange // legend["period"] * legend["period"]
     ticks = {
         Action.STEP: period * legend["exchange"] + begin,
+        Action.EXTRAPOLATE: period * legend["exchange"] + begin,
         Action.RECORD: (exchange + 1) * legend["exchange"],
     }.get(Action(action), exchange * legend["exchange"])
     what = {
         Action.SET: "when its inputs were set",
+        Action.EXTRAPOLATE: "when its inputs were set",
         Action.STEP: f"in the step by {to_seconds(length, legend['rate']):.6g} s",
         Action.GET: "when its outputs were read",
         Action.RECORD: "when its outputs were read",

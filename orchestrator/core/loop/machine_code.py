@@ -27,6 +27,7 @@ _CORE = Path(__file__).parents[1]
 _SOURCES = (
     "system/clock.py",
     "loop/compiled.py",
+    "loop/polynomials.py",
     "loop/machine_code.py",
     "system/schedule.py",
     "fmu/slave.py",

@@ -342,6 +342,7 @@ class Master:
         length = self._plan.timing.lasts(fault.operation.length)
         return {
             Action.SET: "the inputs are refused",
+            Action.EXTRAPOLATE: "the extrapolated inputs are refused",
             Action.GET: "the outputs are refused",
             Action.STEP: f"the step by {length:.6g} s failed",
             Action.RECORD: "does not give its values",

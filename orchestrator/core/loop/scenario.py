@@ -115,10 +115,15 @@ class Course:
         return self._plan.linear[self._places[name]]
 
     def _deliver(self, name: str, factor: float, offset: float) -> None:
-        """Let an input get factor times its source plus offset from the next exchange on."""
+        """Let an input get factor times its source plus offset from the next exchange on.
+
+        If it is extrapolated, its polynomial begins anew.
+        """
         row = self._buses.linear[self._rows[name]]
         row["factor"] = factor
         row["offset"] = offset
+        polynomials = self._buses.extrapolated
+        polynomials["known"][polynomials["place"] == self._places[name]] = 0
 
     # ------------------------------------------------------------------ told
 

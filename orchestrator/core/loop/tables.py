@@ -30,19 +30,26 @@ def _record(integers: str, reals: str = "") -> np.dtype[np.void]:
     )
 
 
-OPERATION = _record("action instance do_step may_return begin length first_move end_move")
+OPERATION = _record(
+    "action instance do_step may_return begin length first_move end_move owner first_discrete "
+    "end_discrete first_posted end_posted"
+)
 """One action of the schedule. instance, do_step: addresses. may_return: do_step is that of FMI 3.0,
 which may return early. begin, length: of a step, in ticks, from the beginning of the period.
-first_move, end_move: rows in the table of moves, for other actions."""
+first_move, end_move: rows in the table of moves, for other actions. owner: number of the component.
+first_discrete, end_discrete: rows in the table of discrete outputs; first_posted, end_posted: rows
+in the table of sides of channels that are posted right after the outputs were taken."""
 
 MOVE = _record(
-    "function instance references count number begin form is_counted first_linear end_linear",
+    "function instance references count number begin form is_counted first_linear end_linear "
+    "first_extrapolated end_extrapolated",
     "low high",
 )
 """A call that moves ``number`` values from place ``begin`` of a bus on, those of ``count``
 references. function, instance, references: addresses. form: how they travel, see :data:`FORMS`.
 is_counted: the call is told ``number``. first_linear, end_linear: rows in the table of linear
-inputs. low, high: what the type can hold."""
+inputs; first_extrapolated, end_extrapolated: in that of extrapolated ones. low, high: what the type
+can hold."""
 
 DOUBLE, SINGLE, BYTE, SHORT, INTEGER, LONG, TRUTH, TRUTH_OF_INTEGER = range(8)
 """Forms of values in calls. A truth is one byte, and any other number than 0 is true."""
@@ -62,6 +69,21 @@ CHANNEL = _record(
 )
 """A force of a power bond. Places as in :class:`rockshed.core.system.plan.BondPlaces`. taken,
 given_back: work (J) on the taker, and on the giver by what it was shown."""
+
+EXTRAPOLATED = _record(
+    "place order ahead every owner known jumps newest older oldest", "value before earliest"
+)
+"""An input that follows a polynomial, as in :class:`rockshed.core.system.plan.Extrapolated`; owner
+is the number of the component. known: how many values the polynomial has, up to 3; newest, older,
+oldest: their times (ticks); value, before, earliest: the values. jumps: events of the owner until
+the newest value."""
+
+DISCRETE = _record("place", "last")
+"""An output that changes at events alone, and its value before the newest one."""
+
+TAKER, GIVER = range(2)
+POSTED = _record("channel side")
+"""A side of a force of a power bond, TAKER or GIVER."""
 
 WATCHED = _record("place low_at high_at", "low high last area")
 """Smallest and largest value of a watched output, and the exchanges after which they were reached;
@@ -103,8 +125,16 @@ class Tables(NamedTuple):
         Inputs that get other values than their sources have, by rising place.
     singles, bytes, shorts, integers, longs : array of float32, int8, int16, int32, int64
         One buffer for values on their way in another form, as long as any row of them.
+    extrapolated : array of EXTRAPOLATED
+        Inputs that do not hold between exchanges, by rising place.
+    discrete : array of DISCRETE
+        Outputs whose changes begin polynomials anew.
+    jumps : array of int64
+        Events of each component.
     channels : array of CHANNEL
         Forces of power bonds.
+    posted : array of POSTED
+        Sides that are posted after each step.
     watched : array of WATCHED
         Watched outputs.
     snapshots : array of float64
@@ -141,7 +171,11 @@ class Tables(NamedTuple):
     shorts: NDArray[np.int16]
     integers: NDArray[np.int32]
     longs: NDArray[np.int64]
+    extrapolated: Records
+    discrete: Records
+    jumps: IntegerTable
     channels: Records
+    posted: Records
     watched: Records
     snapshots: FloatTable
     journal: IntegerTable
@@ -167,7 +201,11 @@ KINDS = {
     "shorts": np.dtype(np.int16),
     "integers": np.dtype(np.int32),
     "longs": np.dtype(np.int64),
+    "extrapolated": EXTRAPOLATED,
+    "discrete": DISCRETE,
+    "jumps": np.dtype(np.int64),
     "channels": CHANNEL,
+    "posted": POSTED,
     "watched": WATCHED,
     "snapshots": np.dtype(np.float64),
     "journal": np.dtype(np.int64),

@@ -118,6 +118,29 @@ class PlannedFault(NamedTuple):
     seed: int
 
 
+class Extrapolated(NamedTuple):
+    """An input that follows a polynomial between exchanges.
+
+    Attributes
+    ----------
+    place : int
+        On the bus of inputs.
+    order : int
+        Of the polynomial, 1 or 2.
+    ahead, every : int
+        What feeds it shows its values at the multiples of ``every``, and is then ``ahead`` of the
+        beginning of the exchange (ticks).
+    owner : str
+        Component that feeds it, whose events begin the polynomial anew.
+    """
+
+    place: int
+    order: int
+    ahead: int
+    every: int
+    owner: str
+
+
 NO_SIGNALS = Signals(np.empty(0), {})
 """A table of no inputs."""
 
@@ -220,6 +243,8 @@ class Plan:
         at the start.
     scenario : PlannedScenario
         What changes during the run; all its inputs are in ``linear``.
+    extrapolated : tuple of Extrapolated
+        Inputs that do not hold between exchanges, by rising place.
     """
 
     system: SystemSpec
@@ -243,6 +268,7 @@ class Plan:
     texts: tuple[tuple[End, End], ...] = ()
     recorded_texts: tuple[End, ...] = ()
     scenario: PlannedScenario = PlannedScenario()
+    extrapolated: tuple[Extrapolated, ...] = ()
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:

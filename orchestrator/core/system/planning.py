@@ -17,6 +17,7 @@ from ..errors import InputRefused, Problem, counted
 from ..fmu.description import SIZE, Description, Port, UnitDefinition
 from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import NUMBERS, REAL, STRING, Source
+from .extrapolation import Extrapolating, extrapolation_problems
 from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select, split_name
@@ -116,6 +117,9 @@ class _Planner:
         starts = self._starts({target.name for _, target in links})
         self._check_arrays(links, starts)
         bonds = [self._bond(name, bond, links) for name, bond in self.system.bonds.items()]
+        self.problems += extrapolation_problems(
+            self.system, self.descriptions, (target for _, target in links)
+        )
         return _Parts(
             [link for link in links if link[0].port.is_number],
             [link for link in links if not link[0].port.is_number],
@@ -152,22 +156,22 @@ class _Planner:
         feeds = {target.name: place[source.name] for source, target in parts.links}
         unfed = [end for end in inputs if end.name not in feeds]
         feeds |= {end.name: len(outputs) + i for i, end in enumerate(unfed)}
+        source = [feeds[end.name] for end in inputs]
+        extrapolating = Extrapolating(self.system, order, timing)
         return Plan(
             system=self.system,
             order=order,
             descriptions=self.descriptions,
             timing=timing,
-            schedule=make_schedule(order, timing.steps, timing.exchange, self.system.master),
+            schedule=make_schedule(
+                order, timing.steps, timing.exchange, self.system.master, extrapolating.components
+            ),
             starts=parts.starts,
             inputs=inputs,
             outputs=outputs,
-            source=np.array([feeds[end.name] for end in inputs], np.int64),
+            source=np.array(source, np.int64),
             held=np.array([_held(end, parts.starts) for end in unfed], np.float64),
-            linear={
-                place_of_input[name]: way
-                for name, way in {**parts.scenario.ways, **self.linear}.items()
-                if name in place_of_input
-            },
+            linear=_at_places({**parts.scenario.ways, **self.linear}, place_of_input),
             bonds=tuple(_bond_places(bond, place, place_of_input) for bond in parts.bonds),
             recorded=tuple(parts.recorded),
             watched=np.array([place[end.name] for end in parts.watched], np.int64),
@@ -178,6 +182,7 @@ class _Planner:
             texts=tuple((target, source) for source, target in parts.texts),
             recorded_texts=tuple(parts.recorded_texts),
             scenario=parts.scenario,
+            extrapolated=extrapolating.inputs(inputs, outputs, source),
         )
 
     def _split(self, name: str) -> tuple[str, str]:
@@ -704,6 +709,13 @@ def _held(end: End, starts: Mapping[str, Starts]) -> float:
     """Return the value of an element of an input that nothing feeds: given, or its start value."""
     given = {port.name: value for port, value in starts[end.component]}
     return float(given.get(end.port.name, start_value(end.port) or 0.0))
+
+
+def _at_places(
+    ways: Mapping[str, tuple[float, float]], place: Mapping[str, int]
+) -> dict[int, tuple[float, float]]:
+    """Return factors and offsets of inputs by their places."""
+    return {place[name]: way for name, way in ways.items() if name in place}
 
 
 def _bond_places(

@@ -10,9 +10,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import lcm
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Scheme = Literal["sequential", "jacobi"]
+NOTHING_EXTRAPOLATED: Mapping[str, bool] = {}
+"""Components whose inputs are set for each step, where there are none."""
 
 
 class Action(IntEnum):
@@ -26,13 +28,16 @@ class Action(IntEnum):
     """Take the values of its outputs."""
     RECORD = 4
     """Read what is recorded besides, after the exchange. In no schedule."""
+    EXTRAPOLATE = 5
+    """Set its inputs to where their polynomials go in the next step."""
 
 
 @dataclass(frozen=True)
 class Operation:
     """One action on one component.
 
-    A step goes from ``begin`` by ``length``, in ticks since the period began.
+    A step goes from ``begin`` by ``length``, in ticks since the period began. Inputs are set for
+    such a step.
     """
 
     action: Action
@@ -78,7 +83,11 @@ def nearest_steps(step: int, exchange: int) -> list[int]:
 
 
 def make_schedule(
-    order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: Scheme
+    order: Sequence[str],
+    steps: Mapping[str, int],
+    exchange: int,
+    scheme: Scheme,
+    extrapolated: Mapping[str, bool] = NOTHING_EXTRAPOLATED,
 ) -> Schedule:
     """Order the operations of each exchange.
 
@@ -94,42 +103,66 @@ def make_schedule(
         ``sequential``: one component after the other, each with the newest values there are.
         ``jacobi``: all take the values of the beginning of the exchange, then all step, then all
         show their new outputs.
+    extrapolated : mapping of str to bool
+        Components whose inputs are set for each of their steps, and whether they show their outputs
+        after each of them too.
 
     Returns
     -------
     Schedule
     """
     period = lcm(*(max(1, steps[name] // exchange) for name in order))
+    turns = [
+        _Turn(name, steps[name], name in extrapolated, extrapolated.get(name, False))
+        for name in order
+    ]
     return Schedule(
-        exchange,
-        tuple(_exchange(number, order, steps, exchange, scheme) for number in range(period)),
+        exchange, tuple(_exchange(number, turns, exchange, scheme) for number in range(period))
     )
+
+
+class _Turn(NamedTuple):
+    """A component in its turn: its step (ticks), and what is done between two steps."""
+
+    component: str
+    step: int
+    extrapolates: bool
+    shows: bool
+
+    def inputs(self, number: int, exchange: int) -> list[Operation]:
+        """Return how its inputs are set in an exchange."""
+        if number % max(1, self.step // exchange):
+            return []
+        begin, length = (number * exchange, self.step) if self.extrapolates else (0, 0)
+        return [Operation(Action.SET, self.component, begin, length)]
+
+    def steps(self, number: int, exchange: int) -> list[Operation]:
+        """Return its steps in an exchange, and what is done between two of them."""
+        if (number + 1) % max(1, self.step // exchange):
+            return []
+        end = (number + 1) * exchange
+        operations: list[Operation] = []
+        for at in range(end - max(self.step, exchange), end, self.step):
+            if operations and self.shows:
+                operations.append(Operation(Action.GET, self.component))
+            if operations and self.extrapolates:
+                operations.append(Operation(Action.EXTRAPOLATE, self.component, at, self.step))
+            operations.append(Operation(Action.STEP, self.component, at, self.step))
+        return operations
+
+    def outputs(self, number: int, exchange: int) -> list[Operation]:
+        """Return how its outputs are taken at the end of an exchange."""
+        if (number + 1) % max(1, self.step // exchange):
+            return []
+        return [Operation(Action.GET, self.component)]
 
 
 def _exchange(
-    number: int, order: Sequence[str], steps: Mapping[str, int], exchange: int, scheme: Scheme
+    number: int, turns: Sequence[_Turn], exchange: int, scheme: Scheme
 ) -> tuple[Operation, ...]:
-    turns = [_turn(number, name, steps[name], exchange) for name in order]
+    stages = (_Turn.inputs, _Turn.steps, _Turn.outputs)
     if scheme == "sequential":
-        return tuple(operation for turn in turns for operation in turn)
-    return tuple(
-        operation
-        for action in Action
-        for turn in turns
-        for operation in turn
-        if operation.action is action
-    )
-
-
-def _turn(number: int, name: str, step: int, exchange: int) -> list[Operation]:
-    """Return the operations of a component in exchange ``number``."""
-    multiple = max(1, step // exchange)
-    operations = []
-    if number % multiple == 0:
-        operations.append(Operation(Action.SET, name))
-    if (number + 1) % multiple == 0:
-        end = (number + 1) * exchange
-        begin = end - max(step, exchange)
-        operations += [Operation(Action.STEP, name, at, step) for at in range(begin, end, step)]
-        operations.append(Operation(Action.GET, name))
-    return operations
+        every = [stage(turn, number, exchange) for turn in turns for stage in stages]
+    else:
+        every = [stage(turn, number, exchange) for stage in stages for turn in turns]
+    return tuple(operation for operations in every for operation in operations)

@@ -76,6 +76,7 @@ Time = Annotated[float, BeforeValidator(_from_fraction), Field(allow_inf_nan=Fal
 Seconds = Annotated[float, BeforeValidator(_from_fraction), Field(gt=0.0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
+Extrapolation = Literal[0, 1, 2]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 _DottedName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$")]
 """Name of a component, ``rock``, also of one inside a system of an SSP, ``shed.rock``."""
@@ -116,6 +117,9 @@ class ComponentSpec(_Data):
         Keep serialized states every ``state_interval``.
     tolerance : float, optional
         Relative tolerance of the FMU's solver; without it, that of the system.
+    extrapolation : int, optional
+        Order, 0 to 2, of the polynomial through their newest values that its real inputs follow; in
+        each step, an input has the mean of that. 0 holds them. Without it, that of the system.
     """
 
     fmu: str
@@ -123,6 +127,7 @@ class ComponentSpec(_Data):
     parameters: dict[str, _PlainValue] = {}
     record_states: bool = False
     tolerance: Tolerance | None = None
+    extrapolation: Extrapolation | None = None
 
 
 class Connection(_Data):
@@ -387,6 +392,8 @@ class SystemSpec(_Data):
         notation.
     tolerance : float, optional
         Relative tolerance of the solvers in FMUs; without it, the one that each FMU proposes.
+    extrapolation : int
+        Order of the polynomials that inputs follow, of components that have none of their own.
     scenario : Scenario
         Inputs over time, values that change, and faults of connections.
     """
@@ -408,6 +415,7 @@ class SystemSpec(_Data):
     record: list[str] = ["*"]
     watch: list[str] = []
     tolerance: Tolerance | None = None
+    extrapolation: Extrapolation = 0
     scenario: Scenario = Scenario()
 
     def step(self, component: str) -> float:
