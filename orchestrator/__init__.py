@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .analyses.exchange_steps.run import converge_exchange
     from .analyses.pile.run import pile
     from .analyses.pile_matching.run import match_pile
+    from .analyses.resuming import resume
     from .analyses.rockfall.run import rockfall
     from .analyses.study.factors import Interval, RandomValue
     from .analyses.study.run import StudyFailed, study
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from .runs.alone import alone
     from .runs.building import build_fmu
     from .runs.catalogue import list_cases, list_components
-    from .runs.continuing import branch, resume
+    from .runs.continuing import branch
     from .runs.projects import shed
     from .runs.run import Run, read_run
     from .runs.simulation import simulate
@@ -71,7 +72,7 @@ _HOMES = {
     "read_run": "runs.run",
     "report": "reports.writing",
     "branch": "runs.continuing",
-    "resume": "runs.continuing",
+    "resume": "analyses.resuming",
     "verify": "runs.verification",
     "rockfall": "analyses.rockfall.run",
     "shed": "runs.projects",

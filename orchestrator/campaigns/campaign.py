@@ -4,11 +4,9 @@ A block is a function of the campaign and the numbers of its trials alone: whoev
 bits are the same.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +15,7 @@ from rockshed.components.slope_rockfall.declarations import BODY
 from rockshed.components.slope_rockfall.records import OUTCOME, PASSAGE, PEAK, ROCK
 from rockshed.components.slope_rockfall.trajectory import trials
 
-from ..animations.formats import Count
-from ..core.errors import InputRefused, Problem
+from ..core.errors import AnalysisFailed, InputRefused, Problem
 from ..sites.rockfall.checks import reach
 from ..sites.rockfall.preparation import PreparedSlope
 from ..sites.rockfall.profile import Node, surface
@@ -33,7 +30,7 @@ SKY = 1000.0
 """Height (m) above the surface of a search line that has only an x, and of a barrier's line."""
 
 
-class CampaignFailed(Exception):  # noqa: N818 (as RunFailed)
+class CampaignFailed(AnalysisFailed):
     """A campaign began and could not go on."""
 
 
@@ -298,32 +295,10 @@ def fill(records: TrialRecords, first: int, block: TrialRecords) -> int:
     return count
 
 
-# --- executors ---
+# --- threads ---
 
 
-@dataclass(frozen=True)
-class Executor:
-    """Threads or processes that compute trials.
-
-    Attributes
-    ----------
-    run : callable
-        Computes all trials of a campaign, and counts them.
-    facts : mapping of str to Any
-        Entries of ``run.json`` about it.
-    """
-
-    run: Callable[[Campaign, Count], TrialRecords]
-    facts: Mapping[str, Any]
-
-
-@contextmanager
-def threads(workers: int) -> Iterator[Executor]:
-    """Open an executor of so many threads of this process."""
-    yield Executor(lambda campaign, count: run(campaign, workers, count), {"workers": workers})
-
-
-def run(campaign: Campaign, workers: int, count: Count = lambda done, total: None) -> TrialRecords:
+def run(campaign: Campaign, workers: int) -> TrialRecords:
     """Compute all trials of a campaign on threads.
 
     Parameters
@@ -332,8 +307,6 @@ def run(campaign: Campaign, workers: int, count: Count = lambda done, total: Non
         To be computed.
     workers : int
         Number of threads. Kernels release Python's lock.
-    count : Count
-        Called with the numbers of trials done and of all.
 
     Returns
     -------
@@ -341,22 +314,46 @@ def run(campaign: Campaign, workers: int, count: Count = lambda done, total: Non
         In the order of the trials.
     """
     records = empty_records(campaign, campaign.trials)
+    for _ in on_threads(campaign, workers, records, np.zeros(campaign.trials, bool)):
+        pass
+    return records
+
+
+def on_threads(
+    campaign: Campaign, workers: int, records: TrialRecords, done: NDArray[np.bool_]
+) -> Generator[tuple[int, int], None, None]:
+    """Compute the trials that are not done, in blocks on threads.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        To be computed.
+    workers : int
+        Number of threads.
+    records : TrialRecords
+        Of all trials; those of a block are filled in when it is yielded.
+    done : array of bool, shape (trials,)
+        Trials that need not be computed.
+
+    Yields
+    ------
+    (int, int)
+        First trial and number of trials of a block that has ended.
+    """
     with ThreadPoolExecutor(workers) as pool:
         waiting = [
             pool.submit(_compute_into, campaign, first, records)
             for first in range(0, campaign.trials, BLOCK)
+            if not done[first : first + BLOCK].all()
         ]
         try:
-            finished = 0
             for block in as_completed(waiting):
-                finished += block.result()
-                count(finished, campaign.trials)
+                yield block.result()
         except BaseException:
             pool.shutdown(wait=True, cancel_futures=True)
             raise
-    return records
 
 
-def _compute_into(campaign: Campaign, first: int, records: TrialRecords) -> int:
+def _compute_into(campaign: Campaign, first: int, records: TrialRecords) -> tuple[int, int]:
     number = min(BLOCK, campaign.trials - first)
-    return fill(records, first, compute(campaign, first, number))
+    return first, fill(records, first, compute(campaign, first, number))

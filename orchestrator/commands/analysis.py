@@ -3,11 +3,45 @@
 import re
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from shlex import quote
 from typing import Any
 
+import typer
+
 from ..analyses.frame import Result, StageProgress
-from ..core.errors import InputRefused, Problem
-from .screen import Screen
+from ..core.errors import AnalysisFailed, InputRefused, Problem
+from .screen import INTERRUPTED, RUN_FAILED, Screen
+
+
+@contextmanager
+def kept_if_ended(screen: Screen, folder: Path) -> Iterator[None]:
+    """End a command in words where its analysis fails, is interrupted or finds the disk full.
+
+    Parameters
+    ----------
+    screen : Screen
+        Of the command.
+    folder : Path
+        Of the results, from which it goes on.
+
+    Raises
+    ------
+    typer.Exit
+        With the exit code.
+    """
+    again = f"`rockshed resume {quote(str(folder))}` goes on from what has ended"
+    try:
+        yield
+    except AnalysisFailed as failure:
+        screen.fail(str(failure))
+        raise typer.Exit(RUN_FAILED) from None
+    except OSError as error:  # a full disk, for instance
+        screen.fail(f"{error}; {again}")
+        raise typer.Exit(RUN_FAILED) from None
+    except KeyboardInterrupt:
+        screen.warn(f"interrupted; {again}")
+        raise typer.Exit(INTERRUPTED) from None
 
 
 @contextmanager

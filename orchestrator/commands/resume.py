@@ -1,21 +1,25 @@
-"""The command ``rockshed resume``: a run that was ended goes on from its last checkpoints."""
+"""The command ``rockshed resume``: what was ended goes on."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..core.errors import RunFailed
+from ..analyses.asked import Asked, find_asked
+from ..analyses.resuming import go_on
+from ..core.errors import RunFailed, counted
 from ..core.supervisor import announce
 from ..runs.continuing import resume, stopped_at
 from ..runs.run import Run
-from .analysis import options_named
+from .analysis import kept_if_ended, options_named, show, stages
 from .options import Json, NoFigures, Quiet, Strict
 from .run import show_run
-from .screen import Screen, opened
+from .screen import CHECK_FAILED, Screen, opened
 from .streams import stdout_for_results
 
-_StoppedRun = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run.")]
+_StoppedRun = Annotated[
+    Path, typer.Argument(metavar="RUN", help="Folder of a run, a study or a rockfall campaign.")
+]
 
 
 def command(
@@ -25,15 +29,31 @@ def command(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Let a run that was ended go on from its last checkpoints.
+    """Let a run, a study or a campaign that was ended go on.
 
-    The results are those of a run that nothing has ended, to the bit.
+    The results are those of one that nothing has ended, to the bit.
     """
-    announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
+        asked = find_asked(run)
+        if asked is not None:
+            _show_analysis(asked, screen, not no_figures, strict)
+            return
+        announce(quiet=quiet, as_json=as_json, figures=not no_figures)
         with stdout_for_results(), options_named(("checkpoint_every",)):
             done = _resumed(run, screen)
         show_run(done, screen, not no_figures, strict)
+
+
+def _show_analysis(asked: Asked, screen: Screen, with_figures: bool, strict: bool) -> None:
+    """Let an analysis go on, and show its result."""
+    screen.note(f"a {asked.kind} goes on")
+    pictures = None if with_figures else False
+    with kept_if_ended(screen, asked.folder), stages(screen) as progress:
+        result = go_on(asked, pictures=pictures, progress=progress, note=screen.note)
+    show(screen, result)
+    if strict and result.warnings:
+        screen.fail(f"strict: the result has {counted(len(result.warnings), 'warning')}")
+        raise typer.Exit(CHECK_FAILED)
 
 
 def _resumed(folder: Path, screen: Screen) -> Run:

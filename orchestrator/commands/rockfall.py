@@ -8,15 +8,14 @@ import typer
 
 from ..analyses.rockfall.run import rockfall
 from ..animations.formats import can_write_mp4
-from ..campaigns.campaign import CampaignFailed
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
 from ..runs.building import is_cold
-from .analysis import options_named, show, stages
+from .analysis import kept_if_ended, options_named, show, stages
 from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site
-from .screen import COLD_START, RUN_FAILED, Screen, opened
+from .screen import COLD_START, Screen, opened
 from .streams import tell_leftovers
 
 PRESETS = {"paper": 200}
@@ -89,25 +88,25 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         folder = _begun(site, output_dir, bool(replay) and animation is None, screen)
-        try:
-            with options_named(_OPTIONS), stages(screen) as progress:
-                result = rockfall(
-                    site,
-                    trials=_count(trials, preset),
-                    seed=seed,
-                    workers=workers,
-                    scheduler=scheduler,
-                    certificates=certificates_of(tls_ca, tls_cert, tls_key),
-                    replay=replay or [],
-                    trajectories=_number_or_word(trajectories),
-                    animation=animation,
-                    folder=folder,
-                    pictures=not no_figures,
-                    progress=progress,
-                )
-        except CampaignFailed as failure:
-            screen.fail(str(failure))
-            raise typer.Exit(RUN_FAILED) from None
+        with (
+            kept_if_ended(screen, folder),
+            options_named(_OPTIONS),
+            stages(screen) as progress,
+        ):
+            result = rockfall(
+                site,
+                trials=_count(trials, preset),
+                seed=seed,
+                workers=workers,
+                scheduler=scheduler,
+                certificates=certificates_of(tls_ca, tls_cert, tls_key),
+                replay=replay or [],
+                trajectories=_number_or_word(trajectories),
+                animation=animation,
+                folder=folder,
+                pictures=not no_figures,
+                progress=progress,
+            )
         show(screen, result)
 
 

@@ -8,19 +8,18 @@ from typing import Annotated, Any
 import typer
 
 from ..analyses.study.result import StudyResult
-from ..analyses.study.run import StudyFailed, study
+from ..analyses.study.run import study
 from ..cases.registry import case, is_case
 from ..core.errors import InputRefused, Problem
 from ..core.results.run_folder import RUN
 from ..runs.chosen import is_project_file
-from ..runs.cluster import ClusterFailed
 from ..runs.request import Request
-from .analysis import options_named, show, stages
+from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
 from .options import Assignments, Json, NoFigures, Quiet, Target, Workers
 from .results_place import free_folder
-from .screen import INTERRUPTED, RUN_FAILED, Screen, opened
+from .screen import Screen, opened
 from .vary import varied_of
 
 _OPTIONS = (
@@ -138,18 +137,12 @@ def _read(
 
 def _studied(target: str, asked: Mapping[str, Any], screen: Screen) -> StudyResult:
     """Carry out a study; one without a result, or that is interrupted, ends the command."""
-    try:
-        with options_named(_OPTIONS), stages(screen) as progress:
-            return study(target, **asked, progress=progress, note=screen.note)
-    except (StudyFailed, ClusterFailed) as failure:
-        screen.fail(str(failure))
-        raise typer.Exit(RUN_FAILED) from None
-    except OSError as error:  # a full disk, for instance
-        screen.fail(f"{error}; runs that are kept are not run again by the same command")
-        raise typer.Exit(RUN_FAILED) from None
-    except KeyboardInterrupt:
-        screen.warn("interrupted; runs that have ended are kept: the same command goes on")
-        raise typer.Exit(INTERRUPTED) from None
+    with (
+        kept_if_ended(screen, asked["folder"]),
+        options_named(_OPTIONS),
+        stages(screen) as progress,
+    ):
+        return study(target, **asked, progress=progress, note=screen.note)
 
 
 def _percentiles(text: str | None, problems: list[Problem]) -> list[float] | None:

@@ -87,6 +87,10 @@ class RunDoubted(Exception):  # noqa: N818
         )
 
 
+class AnalysisFailed(Exception):  # noqa: N818
+    """An analysis of many runs or trials began and could not go on."""
+
+
 class UnknownName(KeyError):  # noqa: N818
     """There is nothing of this name. The message names those that come nearest."""
 

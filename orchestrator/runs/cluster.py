@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.ending import put_off
-from ..core.errors import InputRefused, Problem
+from ..core.errors import AnalysisFailed, InputRefused, Problem
 from ..temporary import TemporaryFolder
 from .executors import number_of_workers
 
@@ -32,7 +32,7 @@ _NO_PAGES: Mapping[str, Any] = {
 """Settings of Dask with which its web servers show nothing."""
 
 
-class ClusterFailed(Exception):  # noqa: N818 (as RunFailed)
+class ClusterFailed(AnalysisFailed):
     """Workers of a scheduler could not begin, or could not go on."""
 
 
@@ -51,6 +51,10 @@ class Certificates:
     authority: str | Path
     certificate: str | Path
     key: str | Path
+
+    def as_data(self) -> dict[str, str]:
+        """Return the files as absolute paths."""
+        return {name: str(Path(file).absolute()) for name, file in vars(self).items()}
 
 
 @contextmanager

@@ -104,7 +104,7 @@ def _refuse_batch(folder: Path) -> None:
     """
     kind = read_data(folder / RUN).get("kind")
     if (folder / FINISHED).is_dir():
-        what = "holds runs of a study, calibration or reproduction that was ended"
+        what = "holds runs of a calibration, convergence study or reproduction that was ended"
         remedy = "start the same command again: it goes on from these runs"
     elif kind:
         what = f"holds the results of {kind}, which has ended"

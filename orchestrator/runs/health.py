@@ -21,6 +21,7 @@ from ..ssp.package import UNPACKED
 from ..tables import Table
 from ..temporary import left_behind
 from ..versions import versions
+from .kept import begun
 
 _STAMP = re.compile(r"[0-9a-f]{16}")
 _OBJECT = re.compile(rf"\w+-({'|'.join(PLATFORMS)})-[0-9a-f]{{24}}\.o")
@@ -172,8 +173,8 @@ def leftover_table(results: Path) -> Table:
     Returns
     -------
     Table
-        Unfinished results, which may be of runs that go on, and this user's temporary folders
-        whose processes are gone.
+        Unfinished results, which may be of runs that go on, what has ended of studies and
+        campaigns, and this user's temporary folders whose processes are gone.
     """
     table = Table(("left by killed runs", "number", "the first", "how it goes"))
     runs = unfinished(results)
@@ -182,6 +183,10 @@ def leftover_table(results: Path) -> Table:
         table.add(
             "unfinished results, if not of a run that goes on", str(len(runs)), str(runs[0]), how
         )
+    analyses = begun(results)
+    if analyses:
+        how = "`rockshed resume` goes on from it; or remove it"
+        table.add("studies and campaigns", str(len(analyses)), str(analyses[0]), how)
     folders = [folder for folder, _ in left_behind()]
     if folders:
         how = "with the next run, or a cleaning"

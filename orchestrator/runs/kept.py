@@ -25,8 +25,12 @@ from .outcome import Outcome
 
 FINISHED = ".finished-runs"
 """Folder, among the results of a batch, of its runs that have ended, until all have."""
+ASKED = "asked.json"
+"""File beside what has ended of an analysis, with what it was asked."""
 _NAME = re.compile(r"run-[0-9a-f]{32}\.npz")
 """Name of a file of this module, which ends in the beginning of a digest."""
+_UNFINISHED = re.compile(r"\.run-[0-9a-f]{32}\.[0-9a-f]{8}\.npz")
+"""Name of one that was being written when its process was killed."""
 _TEXTS, _TABLES = ("status", "error"), ("metrics", "options", "fmus", "units")
 _PROGRAM = ("core", "metrics", "runs")
 """Rooms of the package from which the outcome of a run follows, besides the FMUs."""
@@ -102,8 +106,9 @@ class KeptRuns:
 
     def clear(self) -> None:
         """Remove all outcomes, and the folder if it holds nothing else."""
-        for file in self.folder.glob("run-*.npz"):
-            if _NAME.fullmatch(file.name) and file.is_file() and not file.is_symlink():
+        for file in [*self.folder.glob("run-*.npz"), *self.folder.glob(".run-*.npz")]:
+            is_own = _NAME.fullmatch(file.name) or _UNFINISHED.fullmatch(file.name)
+            if is_own and file.is_file() and not file.is_symlink():
                 file.unlink(missing_ok=True)
         with suppress(OSError):
             self.folder.rmdir()
@@ -123,6 +128,18 @@ class KeptRuns:
         }
         text = json.dumps(content, sort_keys=True, default=str)
         return self.folder / f"run-{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+
+
+def begun(place: Path) -> list[Path]:
+    """Return the folders of analyses that have begun and not ended, in the folder of their results.
+
+    Parameters
+    ----------
+    place : Path
+        In which results lie, ``results`` for instance.
+    """
+    found = [*place.glob(f"*/{FINISHED}/{ASKED}"), *place.glob(f".*-finished-trials/{ASKED}")]
+    return sorted(file.parent for file in found)
 
 
 def _sha256(file: Path) -> str:

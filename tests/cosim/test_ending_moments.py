@@ -33,7 +33,10 @@ MINE = {
     "notes.txt": "beside it",
 }
 """Files of the user in and beside the folder of the results."""
-RESUMED = {"reproduce": {f"in results: {FINISHED}"}}
+RESUMED = {
+    "reproduce": {f"in results: {FINISHED}"},
+    "rockfall": {f".{RESULTS}-finished-trials"},
+}
 """What an ended command leaves, by its name, for the next one to go on from and to remove."""
 DISK = 48 << 20
 """Size (bytes) of the disk that gets full."""

@@ -19,6 +19,7 @@ import rockshed
 from rockshed.analyses.rockfall import cluster
 from rockshed.campaigns import campaign
 from rockshed.campaigns.campaign import campaign_of
+from rockshed.campaigns.executors import threads
 from rockshed.campaigns.kept import KeptTrials
 from rockshed.commands.app import app
 from rockshed.components.slope_rockfall.records import PASSAGE, ROCK
@@ -148,7 +149,7 @@ def test_one_of_several_workers_that_is_killed_loses_nothing(client, monkeypatch
 def test_trials_outlive_a_scheduler_and_are_not_computed_again(
     client, made, records, monkeypatch, tmp_path
 ):
-    kept = KeptTrials(tmp_path / "trials.npz")
+    kept = KeptTrials(tmp_path / "trials")
     given, left = cluster._result, iter(range(3))
     monkeypatch.setattr(cluster, "_block_size", lambda campaign, workers: 1000)
 
@@ -158,38 +159,64 @@ def test_trials_outlive_a_scheduler_and_are_not_computed_again(
         return given(block)
 
     monkeypatch.setattr(cluster, "_result", until_it_dies)
-    words = "the scheduler or its last worker is gone; 3000 of 5000 trials are kept: run it again"
+    words = "the scheduler or its last worker is gone; trials that have ended are kept: run it"
     with pytest.raises(campaign.CampaignFailed, match=words):
         cluster._run(client, made, lambda count, total: None, kept)
     monkeypatch.setattr(cluster, "_result", given)
-    told = []
-    found = cluster._run(client, made, lambda count, total: told.append(count), kept)
+    told, again = [], KeptTrials(tmp_path / "trials")
+    found = cluster._run(client, made, lambda count, total: told.append(count), again)
     assert_same(found, records)
-    assert told == [4000, 5000]
-    assert not kept.file.exists()
+    assert (told, again.found) == ([3000, 4000, 5000], 3000)
+    again.clear()
+    assert not kept.folder.exists()
 
 
 def test_kept_trials_of_another_campaign_or_that_are_damaged_are_computed_again(
     made, records, tmp_path
 ):
-    kept = KeptTrials(tmp_path / "trials.npz")
-    done = np.arange(5000) < 700
-    assert kept.keep(made, records, done)
+    kept = KeptTrials(tmp_path / "trials")
+    for first, number in ((0, 300), (2000, 500), (300, 400)):
+        kept.add(made, records, first, number)
+    kept.write(made, records)
+    beginning, later = sorted(kept.folder.iterdir())
     for other, number in (
-        (made, 700),
+        (made, 1200),
         (dataclasses.replace(made, trials=200), 200),
+        (dataclasses.replace(made, trials=2100), 800),
         (dataclasses.replace(made, seed=2), 0),
         (dataclasses.replace(made, right=made.right - 1.0), 0),
     ):
         empty = campaign.empty_records(other, other.trials)
         found = kept.find(other, empty)
         assert found.sum() == number
-        np.testing.assert_array_equal(empty.outcomes[found], records.outcomes[:number])
-    kept.file.write_bytes(kept.file.read_bytes()[:-100])
-    assert not kept.find(made, campaign.empty_records(made, 5000)).any()
-    assert not kept.keep(made, records, done)  # it may be the user's
+        expected = records.outcomes[: other.trials][found]
+        np.testing.assert_array_equal(empty.outcomes[found], expected)
+    beginning.write_bytes(beginning.read_bytes()[:-100])
+    assert kept.find(made, campaign.empty_records(made, 5000)).sum() == 500
+    (kept.folder / "mine.txt").write_text("mine")
+    later.with_name(f".{later.stem}.0123abcd.npz").touch()  # killed while it was written
     kept.clear()
-    assert kept.file.exists()
+    assert [file.name for file in kept.folder.iterdir()] == ["mine.txt"]
+
+
+def test_a_campaign_without_room_for_kept_trials_keeps_none_and_goes_on(
+    made, records, tmp_path, monkeypatch
+):
+    kept, written = KeptTrials(tmp_path / "trials"), []
+
+    def full(stream, **rows):
+        written.append(rows)
+        if len(written) > 1:
+            raise OSError(28, "No space left on device")
+        savez(stream, **rows)
+
+    savez = np.savez
+    monkeypatch.setattr(np, "savez", full)
+    monkeypatch.setattr("rockshed.campaigns.kept.INTERVAL", 0.0)
+    with threads(2, kept) as executor:
+        assert_same(executor.run(made, lambda count, total: None), records)
+    assert len(written) == 2
+    assert not kept.folder.exists()
 
 
 @pytest.mark.parametrize(
@@ -357,7 +384,7 @@ def test_without_dask_it_says_what_to_install(rockshed, monkeypatch):
 @pytest.mark.skipif(
     sys.platform == "win32", reason="a terminal's Ctrl-C is a signal to a group of processes"
 )
-def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_nothing(tmp_path):
+def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_what_has_ended(tmp_path):
     command = [
         sys.executable,
         "-m",
@@ -388,7 +415,7 @@ def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_nothing(tmp_path):
     os.killpg(run.pid, signal.SIGINT)
     _, rest = run.communicate(timeout=120)
     assert run.returncode == 130
-    assert rest.strip().splitlines()[-1] == "failed: interrupted"
+    assert "goes on from what has ended" in rest.strip().splitlines()[-1]
     psutil.wait_procs(started, timeout=10)
     assert not [p for p in started if p.is_running() and p.status() != psutil.STATUS_ZOMBIE]
-    assert not list(tmp_path.iterdir())
+    assert [place.name for place in tmp_path.iterdir()] == [".out-finished-trials"]

@@ -5,7 +5,7 @@ nothing depends on who computed a block, or when. A block whose worker dies is c
 another.
 """
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -18,12 +18,11 @@ from rockshed.components.common.cache import source_stamp
 from ...campaigns.campaign import (
     Campaign,
     CampaignFailed,
-    Executor,
     TrialRecords,
     compute,
-    empty_records,
     fill,
 )
+from ...campaigns.executors import Executor, TrialBlock, gather
 from ...campaigns.kept import KeptTrials
 from ...runs.cluster import GONE, Certificates, ClusterFailed, connected
 from ..frame import Count
@@ -62,7 +61,7 @@ def dask_workers(
     certificates : Certificates, optional
         For a scheduler at an address ``tls://HOST:PORT``.
     kept : KeptTrials, optional
-        Trials that have been computed before, and where they are kept if the scheduler dies.
+        Trials that have been computed before, to which others are added.
 
     Yields
     ------
@@ -97,25 +96,22 @@ def _run(
     CampaignFailed
         It cannot go on; what has ended is kept.
     """
-    records = empty_records(campaign, campaign.trials)
-    done = kept.find(campaign, records) if kept else np.zeros(campaign.trials, bool)
+
+    def blocks(records: TrialRecords, done: NDArray[np.bool_]) -> Generator[TrialBlock, None, None]:
+        return _computed(client, campaign, records, done)
+
     try:
-        for first, number in _computed(client, campaign, records, done):
-            done[first : first + number] = True
-            count(int(done.sum()), campaign.trials)
+        return gather(campaign, blocks, count, kept)
     except CampaignFailed as failure:
-        if kept is None or not done.any() or not kept.keep(campaign, records, done):
+        if kept is None:
             raise
-        text = f"{failure}; {done.sum()} of {campaign.trials} trials are kept: run it again"
+        text = f"{failure}; trials that have ended are kept: run it again"
         raise CampaignFailed(text) from failure
-    if kept is not None:
-        kept.clear()
-    return records
 
 
 def _computed(
     client: "Client", campaign: Campaign, records: TrialRecords, done: NDArray[np.bool_]
-) -> Iterator[tuple[int, int]]:
+) -> Generator[TrialBlock, None, None]:
     """Compute the trials that are not done; yield first trial and number of each block."""
     from distributed import as_completed
 

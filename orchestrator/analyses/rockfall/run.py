@@ -2,22 +2,25 @@
 
 import time
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Literal
 
 from rockshed.components.catalogue import component
 
 from ...animations.formats import animation_format
-from ...campaigns.campaign import Campaign, Executor, campaign_of, threads
+from ...campaigns.campaign import Campaign, campaign_of
+from ...campaigns.executors import Executor, threads
 from ...campaigns.kept import KeptTrials
 from ...campaigns.replay import check
 from ...core.errors import InputRefused, Problem
 from ...runs.executors import number_of_workers
 from ...runs.first_compilation import tell_first_compilation
-from ...sites.rockfall.preparation import prepare
+from ...sites.rockfall.preparation import PreparedSlope, prepare
 from ...sites.source import SiteLike
+from ..asked import finished_trials, remembering
 from ..frame import StageProgress, counter, no_progress
+from .arguments import CampaignArguments
 from .cluster import Certificates, dask_workers
 from .result import RockfallResult
 
@@ -59,7 +62,8 @@ def rockfall(
     animation : str, optional
         ``mp4`` or ``gif``; by default MP4 where it can be written.
     folder : path, optional
-        Where the results are saved; it appears as a whole or not at all.
+        Where the results are saved; it appears as a whole or not at all. Trials that have ended are
+        kept beside it until all have: a campaign that was killed or interrupted goes on.
     pictures : bool
         Whether figures are drawn and saved too.
     progress : callable, optional
@@ -95,27 +99,75 @@ def rockfall(
     >>> result.to_arrow().num_rows
     100
     """
-    show = progress or no_progress
-    form = animation_format(animation) if replay else "gif"
-    slope = prepare(site, trials, seed)
+    asked = CampaignArguments(
+        site,
+        trials,
+        seed,
+        workers,
+        scheduler,
+        certificates,
+        replay,
+        trajectories,
+        animation,
+        pictures,
+    )
+    return carry_out_campaign(asked, Path(folder) if folder else None, progress or no_progress)
+
+
+def carry_out_campaign(
+    asked: CampaignArguments, folder: Path | None, show: StageProgress
+) -> RockfallResult:
+    """Carry out a campaign; with a folder, it can go on in another process when this one is ended.
+
+    Parameters
+    ----------
+    asked : CampaignArguments
+        Everything that it follows from.
+    folder, show
+        As :func:`rockfall` has them.
+
+    Raises
+    ------
+    InputRefused, CampaignFailed
+        As :func:`rockfall` does.
+    """
+    slope = prepare(asked.site, asked.trials, asked.seed)
     campaign = campaign_of(slope)
-    check(campaign, replay)
-    paths = _path_count(campaign, trajectories)
-    with ExitStack() as opened:
-        place = opened.enter_context(RockfallResult.opened(folder)) if folder else None
-        show("trials", 0, campaign.trials)
-        tell_first_compilation([component("SlopeRockfall")])
-        kept = KeptTrials(_beside(Path(folder))) if folder and scheduler else None
-        with _executor(scheduler, workers, certificates, kept) as executor:
-            began = time.perf_counter()
-            records = executor.run(campaign, counter(show, "trials"))
-            wall_time = time.perf_counter() - began
-        result = RockfallResult(slope, campaign, records, wall_time, executor.facts)
-        result.animate(replay, form)
-        result.trajectories = paths
-        if place is not None:
-            result.write(place, pictures, show)
-    result.folder = Path(folder) if folder else None
+    check(campaign, asked.replay)
+    paths = _path_count(campaign, asked.trajectories)
+    place = finished_trials(folder) if folder else None
+    kept = KeptTrials(place) if place else None
+    files = [slope.source.file.absolute()] if slope.source.file else []
+    with remembering(place, RockfallResult.kind, asked.as_data(slope), files):
+        with RockfallResult.opened(folder) if folder else nullcontext() as inside:
+            result = _result(asked, slope, campaign, kept, show)
+            result.trajectories = paths
+            if inside is not None:
+                result.write(inside, asked.pictures, show)
+        if kept is not None:
+            kept.clear()
+    result.folder = folder
+    return result
+
+
+def _result(
+    asked: CampaignArguments,
+    slope: PreparedSlope,
+    campaign: Campaign,
+    kept: KeptTrials | None,
+    show: StageProgress,
+) -> RockfallResult:
+    """Compute the trials of a campaign that are not kept."""
+    form = animation_format(asked.animation) if asked.replay else "gif"
+    show("trials", 0, campaign.trials)
+    tell_first_compilation([component("SlopeRockfall")])
+    with _executor(asked.scheduler, asked.workers, asked.certificates, kept) as executor:
+        began = time.perf_counter()
+        records = executor.run(campaign, counter(show, "trials"))
+        wall_time = time.perf_counter() - began
+    facts = {**executor.facts, **({"resumed": kept.found} if kept and kept.found else {})}
+    result = RockfallResult(slope, campaign, records, wall_time, facts)
+    result.animate(asked.replay, form)
     return result
 
 
@@ -141,10 +193,5 @@ def _executor(
         if certificates is not None:
             text = "are for a running scheduler"
             raise InputRefused([Problem("certificates", text, "name it with scheduler=...")])
-        return threads(number_of_workers(workers))
+        return threads(number_of_workers(workers), kept)
     return dask_workers(scheduler, workers, certificates, kept)
-
-
-def _beside(folder: Path) -> Path:
-    """Return the file beside the results that keeps trials if a scheduler dies."""
-    return folder.absolute().with_name(f".{folder.absolute().name}-finished-trials.npz")

@@ -131,9 +131,13 @@ class Factor:
 
     def as_data(self) -> dict[str, Any]:
         """Return the factor as plain data."""
-        content = {key: value for key, value in vars(self.varied).items() if value is not None}
-        kind = type(self.varied).__name__.lower()
-        return {"name": self.name, "unit": self.unit, kind: content}
+        return {"name": self.name, "unit": self.unit, **varied_as_data(self.varied)}
+
+
+def varied_as_data(varied: Varied) -> dict[str, Any]:
+    """Return how a factor varies as plain data, under the name of its kind."""
+    content = {key: value for key, value in vars(varied).items() if value is not None}
+    return {type(varied).__name__.lower(): content}
 
 
 def factor_from(data: Mapping[str, Any]) -> Factor:
@@ -144,6 +148,17 @@ def factor_from(data: Mapping[str, Any]) -> Factor:
     data : mapping
         As :meth:`Factor.as_data` gives it.
     """
+    return Factor(str(data["name"]), str(data["unit"]), varied_from(data))
+
+
+def varied_from(data: Mapping[str, Any]) -> Varied:
+    """Return how a factor varies of plain data.
+
+    Parameters
+    ----------
+    data : mapping
+        As :func:`varied_as_data` gives it; other entries are passed over.
+    """
     kinds: Mapping[str, Callable[..., Varied]] = {
         "levels": Levels,
         "interval": Interval,
@@ -153,7 +168,7 @@ def factor_from(data: Mapping[str, Any]) -> Factor:
         if kind in data:
             content = dict(data[kind])
             listed = {k: tuple(v) if isinstance(v, list) else v for k, v in content.items()}
-            return Factor(str(data["name"]), str(data["unit"]), made(**listed))
+            return made(**listed)
     raise ValueError("it has a factor that does not vary")
 
 

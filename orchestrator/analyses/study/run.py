@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import InputRefused, Problem
+from ...core.errors import AnalysisFailed, InputRefused, Problem
 from ...core.input_text import shown
 from ...core.results.metric import identifier
 from ...core.system.names import nearest
@@ -23,9 +23,11 @@ from ...runs.kept import FINISHED, KeptRuns
 from ...runs.parameters import SystemValues
 from ...runs.request import Request, plain
 from ...runs.system import System
+from ..asked import remembering
 from ..frame import StageProgress, counter, no_progress
+from .arguments import StudyArguments, varied
 from .designs import GRID, MOST_POINTS, RANDOM, SAMPLED, SOBOL, DesignPoint, design_problems, points
-from .factors import Factor, Interval, Levels, RandomValue, Varied, in_si
+from .factors import Factor, Varied, in_si
 from .headline import headline_metrics
 from .records import (
     MetricName,
@@ -47,7 +49,7 @@ StudyTarget = str | Path | Mapping[str, Any] | System
 """A case, a project or system file, the content of a project, or a system of one of them."""
 
 
-class StudyFailed(Exception):  # noqa: N818 (as RunFailed)
+class StudyFailed(AnalysisFailed):
     """No run of a study has a result.
 
     Attributes
@@ -182,24 +184,59 @@ def study(
     >>> found.to_arrow().column("rock.velocity0.y").to_pylist()
     [-4.0, -8.0]
     """
-    show = progress or no_progress
-    request = _request(target, values or {}, options or {})
-    plan = _plan(request, vary, design, samples, seeds, draw, note)
-    shares = _shares(percentiles, plan)
+    asked = StudyArguments(
+        _request(target, values or {}, options or {}),
+        {name: varied(given) for name, given in vary.items()},
+        design,
+        samples,
+        seeds,
+        draw,
+        tuple(metrics),
+        percentiles,
+        workers,
+        scheduler,
+        certificates,
+        pictures,
+    )
+    return carry_out_study(asked, Path(folder) if folder else None, progress or no_progress, note)
+
+
+def carry_out_study(
+    asked: StudyArguments, folder: Path | None, show: StageProgress, note: Note
+) -> StudyResult:
+    """Carry out a study; with a folder, it can go on in another process when this one is ended.
+
+    Parameters
+    ----------
+    asked : StudyArguments
+        Everything that it follows from.
+    folder, show, note
+        As :func:`study` has them.
+
+    Raises
+    ------
+    InputRefused, StudyFailed, ClusterFailed
+        As :func:`study` does.
+    """
+    plan = _plan(asked, note)
+    shares = _shares(asked.percentiles, plan)
     orders = orders_of([task for *_, task in plan.entries], note)
-    opening = _Opening(workers, scheduler, certificates)
-    kept = KeptRuns(Path(folder) / FINISHED) if folder else None
-    began = time.perf_counter()
-    outcomes = carry_out(orders, opening.open, note, counter(show, "runs"), kept, check_first=True)
-    effort = {"wall_time": time.perf_counter() - began, **opening.facts}
-    result = _result(plan, outcomes, metrics, shares, effort)
-    has_any = bool(result.records.complete)
-    if folder:
-        result.save(folder, pictures=pictures and has_any, progress=show)
-    if not has_any:
-        raise StudyFailed(result)
-    if kept is not None:
-        kept.clear()
+    opening = _Opening(asked.workers, asked.scheduler, asked.certificates)
+    place = folder / FINISHED if folder else None
+    kept = KeptRuns(place) if place else None
+    with remembering(place, StudyResult.kind, asked.as_data(), asked.files):
+        began = time.perf_counter()
+        counted = counter(show, "runs")
+        outcomes = carry_out(orders, opening.open, note, counted, kept, check_first=True)
+        effort = {"wall_time": time.perf_counter() - began, **opening.facts}
+        result = _result(plan, outcomes, asked.metrics, shares, effort)
+        has_any = bool(result.records.complete)
+        if folder:
+            result.save(folder, pictures=asked.pictures and has_any, progress=show)
+        if not has_any:
+            raise StudyFailed(result)
+        if kept is not None:
+            kept.clear()
     return result
 
 
@@ -226,15 +263,7 @@ def _request(
     )
 
 
-def _plan(
-    request: Request,
-    vary: Mapping[str, Any],
-    design: str | None,
-    samples: int | None,
-    seeds: int,
-    draw: int,
-    note: Note,
-) -> _Plan:
+def _plan(asked: StudyArguments, note: Note) -> _Plan:
     """Return the runs of a study.
 
     Raises
@@ -242,25 +271,16 @@ def _plan(
     InputRefused
         Everything that is wrong with what varies, and with the design.
     """
+    request, seeds = asked.request, asked.seeds
     job = prepare(request, note)
     known = SystemValues(job)
-    factors, problems = _factors(vary, known)
-    chosen = design or (RANDOM if any(f.is_distribution for f in factors) else GRID)
-    if not vary:
-        text = "nothing varies"
-        problems.append(Problem("vary", text, "name a value and its levels"))
-    problems += [
-        Problem(f"vary {name}", "has a value too, in values", "leave one of them out")
-        for name in vary
-        if name in request.values
-    ]
-    problems += _seed_problems(seeds, vary, known)
-    if draw < 0:
-        problems.append(Problem("draw", f"{draw} is below 0", "give a whole number from 0 on"))
-    problems += [] if problems else design_problems(chosen, factors, samples)
+    factors, problems = _factors(asked.vary, known)
+    chosen = asked.design or (RANDOM if any(f.is_distribution for f in factors) else GRID)
+    problems += [*_argument_problems(asked), *_seed_problems(seeds, asked.vary, known)]
+    problems += [] if problems else design_problems(chosen, factors, asked.samples)
     if problems:
         raise InputRefused(problems)
-    found = points(chosen, factors, samples or 0, draw)
+    found = points(chosen, factors, asked.samples or 0, asked.draw)
     if not _in_turn(chosen) and len(found) * seeds > MOST_POINTS:
         text = f"{len(found)} points of {shown(seeds)} packings; {MOST_POINTS:,} runs are most"
         raise InputRefused([Problem("seeds", text, "give fewer")])
@@ -270,20 +290,29 @@ def _plan(
         for seed, seeded in _packings(known, seeds, number - 1, point, chosen)
     ]
     kind = next(k for k in ("case", "project_file", "system_file", "request") if k in job.facts)
-    origin = {kind: job.facts[kind], "draw": draw, "samples": samples, "seeds": seeds}
-    asked = {"values": dict(request.values), "options": dict(request.options)}
-    return _Plan(job.name, chosen, factors, entries, {**origin, **asked})
+    origin = {kind: job.facts[kind], "draw": asked.draw, "samples": asked.samples, "seeds": seeds}
+    given = {"values": dict(request.values), "options": dict(request.options)}
+    return _Plan(job.name, chosen, factors, entries, {**origin, **given})
 
 
-def _factors(vary: Mapping[str, Any], known: SystemValues) -> tuple[list[Factor], list[Problem]]:
+def _argument_problems(asked: StudyArguments) -> Iterator[Problem]:
+    """Yield what is wrong with the arguments of a study, whatever the system is."""
+    if not asked.vary:
+        yield Problem("vary", "nothing varies", "name a value and its levels")
+    for name in asked.vary:
+        if name in asked.request.values:
+            text = "has a value too, in values"
+            yield Problem(f"vary {name}", text, "leave one of them out")
+    if asked.draw < 0:
+        text = f"{asked.draw} is below 0"
+        yield Problem("draw", text, "give a whole number from 0 on")
+
+
+def _factors(vary: Mapping[str, Varied], known: SystemValues) -> tuple[list[Factor], list[Problem]]:
     """Return what varies with numbers in SI, and what is wrong with it."""
     factors = []
     problems = []
-    for name, given in vary.items():
-        varied = given if isinstance(given, Levels | Interval | RandomValue) else None
-        if varied is None:
-            listed = [given] if isinstance(given, str | int | float) else given
-            varied = Levels(tuple(listed))
+    for name, how in vary.items():
         unit = known.unit(name)
         if unit is None:
             text = "is no value of this system"
@@ -293,7 +322,7 @@ def _factors(vary: Mapping[str, Any], known: SystemValues) -> tuple[list[Factor]
         def read(value: Value, name: str = name) -> Value:
             return known.read(name, value)
 
-        factor, wrong = in_si(name, varied, unit, read)
+        factor, wrong = in_si(name, how, unit, read)
         factors.append(factor)
         problems += wrong
     return factors, problems
