@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import Component
@@ -337,16 +338,46 @@ def _compile_or_refuse(
 def _compile(
     component: Component, sizes: Sizes, platforms: Sequence[str], work: Path, **environment: str
 ) -> list[str]:
-    """Write ``PLATFORM.o`` into a folder, and return the problems.
-
-    Numba takes the processor from its environment, once per process.
-    """
+    """Write ``PLATFORM.o`` into a folder, and return the problems."""
     order = {
         "folder": str(component.folder),
         "sizes": dict(sizes),
         "platforms": list(platforms),
         "cpu": CPU.name,
     }
+    return compiled_apart(f"{__package__}.kernels", component, order, work, **environment)
+
+
+def compiled_apart(
+    module: str, component: Component, order: Mapping[str, Any], work: Path, **environment: str
+) -> list[str]:
+    """Compile kernels in a process of its own.
+
+    Numba takes the processor from its environment, once per process.
+
+    Parameters
+    ----------
+    module : str
+        Module that carries out the order: it writes files, and a JSON list of problems.
+    component : Component
+        Whose kernels.
+    order : mapping
+        What is asked for.
+    work : Path
+        Folder of the files.
+    **environment : str
+        Further variables.
+
+    Returns
+    -------
+    list of str
+        What is wrong with the kernels.
+
+    Raises
+    ------
+    BuildError
+        The process failed.
+    """
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     settings = {
         "NUMBA_CPU_NAME": CPU.name,
@@ -354,7 +385,7 @@ def _compile(
         "PYTHONPATH": os.pathsep.join(_import_folders()),
     }
     done = subprocess.run(
-        [sys.executable, "-P", "-m", f"{__package__}.kernels"],
+        [sys.executable, "-P", "-m", module],
         input=json.dumps(order),
         cwd=work,
         text=True,

@@ -11,7 +11,7 @@ besides is checked against a list of functions that every C library has.
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -114,7 +114,7 @@ def compile_problems(
     return problems
 
 
-def linked(component: Component, instance: Instance) -> Any:
+def linked(component: Component, instance: Instance, any_size: bool = False) -> Any:
     """Return all kernels with everything that they call, as one LLVM module.
 
     Parameters
@@ -123,13 +123,15 @@ def linked(component: Component, instance: Instance) -> Any:
         The component.
     instance : Instance
         Of this component; its buffers have the lengths of the FMU's.
+    any_size : bool
+        Whether the entries take the lengths of the buffers as further parameters.
 
     Returns
     -------
     llvmlite.binding.ModuleRef
         A module that shows the three entries only.
     """
-    lengths = [len(instance.w), len(instance.x), len(instance.k)]
+    lengths = None if any_size else [len(instance.w), len(instance.x), len(instance.k)]
     whole = llvm.parse_assembly("")
     for name, signature in signatures(instance).items():
         caller = njit(
@@ -153,12 +155,12 @@ def _caller(component: Component, name: str) -> Callable[..., int]:
     return lambda w, x, k: kernel(w, x, k)
 
 
-def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
+def entry_module(entry: str, compiled: Any, lengths: list[int] | None) -> ir.Module:
     """Return a C function around a compiled kernel, in a module of its own.
 
     It is ``int64 entry([double t, double h,] double *w, double *x, int64 *k)`` and returns what the
     kernel returns, or the negative status of numba's calling convention if the kernel raises an
-    exception.
+    exception. Without lengths three parameters follow, ``int64 nw, int64 nx, int64 nk``.
 
     Parameters
     ----------
@@ -166,8 +168,8 @@ def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
         Name of the function.
     compiled : numba.core.compiler.CompileResult
         The kernel.
-    lengths : list of int
-        Numbers of elements of ``w``, ``x`` and ``k``.
+    lengths : list of int or None
+        Numbers of elements of ``w``, ``x`` and ``k``; None for those that the caller gives.
 
     Returns
     -------
@@ -182,10 +184,12 @@ def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
         descriptor.llvm_func_name,
     )
     integer, pointer = ir.IntType(64), ir.IntType(8).as_pointer()
-    times = [ir.DoubleType()] * (len(descriptor.argtypes) - len(lengths))
+    times = [ir.DoubleType()] * (len(descriptor.argtypes) - 3)
+    told = [integer] * 3 if lengths is None else []
     function = ir.Function(
-        module, ir.FunctionType(integer, [*times, pointer, pointer, pointer]), entry
+        module, ir.FunctionType(integer, [*times, pointer, pointer, pointer, *told]), entry
     )
+    given = function.args[len(times) + 3 :] if lengths is None else map(integer, lengths)
     builder = ir.IRBuilder(function.append_basic_block())
     kinds = callee.function_type.args
     arguments = [
@@ -193,22 +197,43 @@ def entry_module(entry: str, compiled: Any, lengths: list[int]) -> ir.Module:
         builder.alloca(kinds[1].pointee),
         *function.args[: len(times)],
     ]
-    for buffer, length in zip(function.args[len(times) :], lengths):
-        kind = kinds[len(arguments) :]
-        arguments += [
-            kind[0](None),
-            kind[1](None),
-            integer(length),
-            integer(8),
-            builder.bitcast(buffer, kind[4]),
-            integer(length),
-            integer(8),
-        ]  # owner, parent, number of elements, bytes of an element, data, shape, strides
+    for buffer, length in zip(function.args[len(times) : len(times) + 3], given):
+        arguments += described(builder, kinds[len(arguments) :], buffer, [length])
     status = builder.call(callee, arguments)
     raised = builder.icmp_signed("!=", status, status.type(0))
     negative = builder.sub(integer(0), builder.sext(status, integer))
     builder.ret(builder.select(raised, negative, builder.load(arguments[0])))
     return module
+
+
+def described(
+    builder: ir.IRBuilder, kinds: Sequence[Any], buffer: ir.Value, shape: Sequence[ir.Value]
+) -> list[ir.Value]:
+    """Return an array of numbers of 8 bytes as numba hands it over.
+
+    Parameters
+    ----------
+    builder : llvmlite.ir.IRBuilder
+        Where the call is written.
+    kinds : sequence of llvmlite.ir.Type
+        Types of the arguments from the first of this array on.
+    buffer : llvmlite.ir.Value
+        Address of its first number.
+    shape : sequence of llvmlite.ir.Value
+        Its lengths; the last one is that of numbers which follow each other.
+
+    Returns
+    -------
+    list of llvmlite.ir.Value
+        Owner, parent, number of elements, bytes of an element, data, shape, strides.
+    """
+    eight = ir.IntType(64)(8)
+    items, strides = shape[-1], [eight]
+    for longer, length in zip(reversed(shape[:-1]), reversed(shape[1:])):
+        strides.insert(0, builder.mul(strides[0], length))
+        items = builder.mul(items, longer)
+    data = builder.bitcast(buffer, kinds[4])
+    return [kinds[0](None), kinds[1](None), items, eight, data, *shape, *strides]
 
 
 def shown_only(module: Any, names: Iterable[str]) -> Any:
