@@ -228,7 +228,8 @@ def described(
         Owner, parent, number of elements, bytes of an element, data, shape, strides.
     """
     eight = ir.IntType(64)(8)
-    items, strides = shape[-1], [eight]
+    items = shape[-1]
+    strides = [eight]
     for longer, length in zip(reversed(shape[:-1]), reversed(shape[1:])):
         strides.insert(0, builder.mul(strides[0], length))
         items = builder.mul(items, longer)

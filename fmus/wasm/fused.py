@@ -30,51 +30,51 @@ _DOUBT = 2.0**-50
 
 
 @dataclass(frozen=True)
-class Numbers:
+class WideNumber:
     """One vector of float64 or of masks, with the arithmetic of a number, while LLVM is written."""
 
     builder: ir.IRBuilder
     value: ir.Value
 
-    def made(self, value: ir.Value) -> "Numbers":
+    def made(self, value: ir.Value) -> "WideNumber":
         """Return another vector at the same place of the program."""
-        return Numbers(self.builder, value)
+        return WideNumber(self.builder, value)
 
-    def __add__(self, other: "Numbers") -> "Numbers":
+    def __add__(self, other: "WideNumber") -> "WideNumber":
         return self.made(self.builder.fadd(self.value, other.value))
 
-    def __sub__(self, other: "Numbers") -> "Numbers":
+    def __sub__(self, other: "WideNumber") -> "WideNumber":
         return self.made(self.builder.fsub(self.value, other.value))
 
-    def __mul__(self, other: "Numbers") -> "Numbers":
+    def __mul__(self, other: "WideNumber") -> "WideNumber":
         return self.made(self.builder.fmul(self.value, other.value))
 
-    def __and__(self, other: "Numbers") -> "Numbers":
+    def __and__(self, other: "WideNumber") -> "WideNumber":
         return self.made(self.builder.and_(self.value, other.value))
 
-    def __or__(self, other: "Numbers") -> "Numbers":
+    def __or__(self, other: "WideNumber") -> "WideNumber":
         return self.made(self.builder.or_(self.value, other.value))
 
-    def __lt__(self, other: "Numbers") -> "Numbers":
+    def __lt__(self, other: "WideNumber") -> "WideNumber":
         return self.made(self.builder.fcmp_ordered("<", self.value, other.value))
 
-    def differs(self, other: "Numbers") -> "Numbers":
+    def differs(self, other: "WideNumber") -> "WideNumber":
         """Return where numbers differ, or one of them is no number."""
         return self.made(self.builder.fcmp_unordered("!=", self.value, other.value))
 
-    def filled(self, number: float) -> "Numbers":
+    def filled(self, number: float) -> "WideNumber":
         """Return the same number in all lanes."""
         kind = self.value.type
         return self.made(ir.Constant(kind, [ir.Constant(REAL, number)] * kind.count))
 
-    def magnitude(self) -> "Numbers":
-        """Return absolute values."""
+    def magnitude(self) -> "WideNumber":
+        """Return the absolute value of each number."""
         kind = self.value.type
         name = f"llvm.fabs.v{kind.count}f64"
         function = _declared(self.builder.module, name, kind, [kind])
         return self.made(self.builder.call(function, [self.value]))
 
-    def upper_half(self) -> "Numbers":
+    def upper_half(self) -> "WideNumber":
         """Return numbers rounded to their upper 26 bits."""
         kind = self.value.type
         whole = ir.VectorType(INTEGER, kind.count)
@@ -88,19 +88,19 @@ class Numbers:
         return self.made(builder.bitcast(builder.and_(rounded, all_lanes(-1 << _LOW_BITS)), kind))
 
 
-def fast_sum(a: Numbers, b: Numbers, c: Numbers) -> tuple[Numbers, Numbers]:
+def fast_sum(a: WideNumber, b: WideNumber, c: WideNumber) -> tuple[WideNumber, WideNumber]:
     """Write ``a b + c`` rounded once, and where that is not certain.
 
     Parameters
     ----------
-    a, b, c : Numbers
+    a, b, c : WideNumber
         Factors and summand.
 
     Returns
     -------
-    result : Numbers
+    result : WideNumber
         The sums.
-    doubtful : Numbers
+    doubtful : WideNumber
         Mask of the lanes in which they may be wrong.
     """
     a_high, b_high = a.upper_half(), b.upper_half()
@@ -133,11 +133,11 @@ def define_fused(module: ir.Module, name: str, lanes: int, exact: str, together:
     name : str
         Name of the function.
     lanes : int
-        Numbers in a vector.
+        WideNumber in a vector.
     exact : str
         Name of a function of the same on three single numbers, for what is not certain.
     together : int
-        Numbers that are computed together; ``lanes`` is a multiple of it.
+        WideNumber that are computed together; ``lanes`` is a multiple of it.
     """
     part = ir.VectorType(REAL, together)
     called = module.globals.get(_PART) or _part(module, part, exact)
@@ -151,7 +151,7 @@ def _part(module: ir.Module, kind: ir.VectorType, exact: str) -> ir.Function:
     """Add the function that all others call, on as many numbers as a register holds."""
     function, builder = _begun(module, _PART, kind)
     function.attributes.add("noinline")
-    result, doubtful = fast_sum(*(Numbers(builder, value) for value in function.args))
+    result, doubtful = fast_sum(*(WideNumber(builder, value) for value in function.args))
     wide = ir.VectorType(INTEGER, kind.count)
     with builder.if_then(_any(builder, builder.sext(doubtful.value, wide)), likely=False):
         builder.ret(_slow(builder, function.args, exact))

@@ -148,7 +148,8 @@ def emitted(code: str, variant: Variant, tables: Mapping[str, Any]) -> bytes:
         features=variant.features, opt=3, reloc="static", codemodel="default"
     )
     module = _with_fused(code, variant)
-    module.triple, module.data_layout = _TRIPLE, str(machine.target_data)
+    module.triple = _TRIPLE
+    module.data_layout = str(machine.target_data)
     shown_only(module, (*ENTRIES.values(), *tables))
     options = llvm.create_pipeline_tuning_options(speed_level=2)
     options.loop_unrolling = False

@@ -38,13 +38,13 @@ _STACK = 1 << 16
 """Room (bytes) for what functions hold while they run."""
 _OPTIONS = (
     "-target", "wasm32-freestanding", "-O2", "-fno-math-errno", "-ffp-contract=off",
-    "-mbulk-memory", "-s", "-Wl,--no-entry", f"-Wl,-z,stack-size={_STACK}",
-    "-Wl,--export=__heap_base",
+    "-mbulk-memory", "-s", "-Wl,-no-entry", f"-Wl,-z,stack-size={_STACK}",
+    "-Wl,-export=__heap_base",
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Table:
+class RowKernel:
     """A kernel that reads an instance and writes rows of numbers; it returns how many.
 
     Parameters
@@ -60,7 +60,7 @@ class Table:
 
 
 def wasm_modules(
-    component: Component, tables: Mapping[str, Table] | None = None
+    component: Component, tables: Mapping[str, RowKernel] | None = None
 ) -> dict[str, bytes]:
     """Return the module of a component for every kind of host.
 
@@ -68,7 +68,7 @@ def wasm_modules(
     ----------
     component : Component
         The component.
-    tables : mapping of str to Table, optional
+    tables : mapping of str to RowKernel, optional
         Further functions of the module, ``int64 NAME(w, x, k, table, int64 nw, nx, nk, rows)``.
 
     Returns
@@ -128,7 +128,7 @@ def linked(component: str, variant: str, exported: tuple[str, ...], work: Path) 
     """Return the module made of ``VARIANT.o`` in a folder."""
     shutil.copy(_RUNTIME, work)
     result = f"{variant}.wasm"
-    shown = [f"-Wl,--export={name}" for name in exported]
+    shown = [f"-Wl,-export={name}" for name in exported]
     command = [sys.executable, "-m", "ziglang", "cc", *_OPTIONS, *shown]
     done = subprocess.run(
         [*command, "-o", result, _RUNTIME.name, f"{variant}.o"],

@@ -23,7 +23,7 @@ class LayoutError(Exception):
 
 
 @dataclass(frozen=True)
-class Kind:
+class MemoryType:
     """A type of LLVM: its text, size and alignment (bytes), and its members.
 
     Parameters
@@ -32,16 +32,16 @@ class Kind:
         As LLVM writes it.
     size, alignment : int
         With pointers of 8 bytes (bytes).
-    members : tuple of (int, Kind)
+    members : tuple of (int, MemoryType)
         Distance from the beginning (bytes) and type of each; none of a number or pointer.
     """
 
     text: str
     size: int
     alignment: int
-    members: "tuple[tuple[int, Kind], ...]" = ()
+    members: "tuple[tuple[int, MemoryType], ...]" = ()
 
-    def leaves(self) -> "Iterator[tuple[tuple[int, ...], int, Kind]]":
+    def leaves(self) -> "Iterator[tuple[tuple[int, ...], int, MemoryType]]":
         """Yield path, distance (bytes) and type of every number and pointer."""
         if not self.members:
             yield (), 0, self
@@ -50,7 +50,7 @@ class Kind:
                 yield (number, *path), distance + inner, leaf
 
 
-def kind_at(text: str, at: int) -> tuple[Kind, int]:
+def kind_at(text: str, at: int) -> tuple[MemoryType, int]:
     """Read the type that begins at a place of a text.
 
     Parameters
@@ -62,7 +62,7 @@ def kind_at(text: str, at: int) -> tuple[Kind, int]:
 
     Returns
     -------
-    kind : Kind
+    kind : MemoryType
         The type.
     end : int
         Place behind it.
@@ -75,34 +75,39 @@ def kind_at(text: str, at: int) -> tuple[Kind, int]:
     found = _TOKEN.match(text, at)
     if not found:
         raise LayoutError(f"no known type: {text[at : at + 40]}")
-    word, end = found[1], found.end()
+    word = found[1]
+    end = found.end()
     if word == "{":
         return _structure(text, end)
     if word.startswith("["):
         member, end = kind_at(text, end)
         count = int(word[1:-2])
         members = tuple((number * member.size, member) for number in range(count))
-        kind = Kind(f"{word} {member.text}]", count * member.size, member.alignment, members)
+        kind = MemoryType(f"{word} {member.text}]", count * member.size, member.alignment, members)
         return kind, text.index("]", end) + 1
     size = {"ptr": 8, "double": 8, "float": 4, "i1": 1}.get(word) or int(word[1:]) // 8
-    return Kind(word, size, size), end
+    return MemoryType(word, size, size), end
 
 
-def _structure(text: str, end: int) -> tuple[Kind, int]:
-    members: list[tuple[int, Kind]] = []
-    size, alignment = 0, 1
+def _structure(text: str, end: int) -> tuple[MemoryType, int]:
+    members: list[tuple[int, MemoryType]] = []
+    size = 0
+    alignment = 1
     while True:
         member, end = kind_at(text, end)
         size = _up(size, member.alignment)
         members.append((size, member))
-        size, alignment = size + member.size, max(alignment, member.alignment)
+        size += member.size
+        alignment = max(alignment, member.alignment)
         found = _TOKEN.match(text, end)
         if not found or found[1] not in ",}":
             raise LayoutError(f"no known structure: {text}")
         end = found.end()
         if found[1] == "}":
             inside = ", ".join(member.text for _, member in members)
-            return Kind(f"{{ {inside} }}", _up(size, alignment), alignment, tuple(members)), end
+            return MemoryType(
+                f"{{ {inside} }}", _up(size, alignment), alignment, tuple(members)
+            ), end
 
 
 def _up(size: int, alignment: int) -> int:
@@ -156,12 +161,13 @@ def _as_bytes(line: str, at: int) -> str:
     return f"{line[:at]}[{kind.size} x i8]{line[end:]}"
 
 
-def _loaded(to: str, kind: Kind, rest: str, number: int) -> str:
+def _loaded(to: str, kind: MemoryType, rest: str, number: int) -> str:
     """Return instructions that load a structure member by member."""
     found = re.match(r", ptr (%[^\s,]+)", rest)
     if not found:
         raise LayoutError(f"a structure that is loaded from no known place: {rest}")
-    lines, whole = [], "poison"
+    lines = []
+    whole = "poison"
     leaves = list(kind.leaves())
     for place, (path, distance, leaf) in enumerate(leaves):
         address, value = f"%place.{number}.{place}", f"%member.{number}.{place}"

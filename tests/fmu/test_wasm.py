@@ -3,13 +3,13 @@
 import pytest
 
 from rockshed.components.catalogue import component
-from rockshed.fmus.wasm.module import VARIANTS, Table, wasm_modules
+from rockshed.fmus.wasm.module import VARIANTS, RowKernel, wasm_modules
 from tests.wasm import HostedInstance
 
 pytest.importorskip("wasmtime")
 pytest.importorskip("ziglang")
 
-CONTACTS = {"contacts": Table("rockshed.components.sand_cushion.reader:list_contacts", 9)}
+CONTACTS = {"contacts": RowKernel("rockshed.components.sand_cushion.reader:list_contacts", 9)}
 LARGEST = 200 * 1024
 """Bytes of a module, at most."""
 
