@@ -36,10 +36,12 @@ _HERE = Path(__file__).parent
 _RUNTIME = _HERE / "runtime.c"
 _STACK = 1 << 16
 """Room (bytes) for what functions hold while they run."""
+_LINKER = "-Wl,--"
+"""Beginning of an option that is meant for the linker."""
 _OPTIONS = (
     "-target", "wasm32-freestanding", "-O2", "-fno-math-errno", "-ffp-contract=off",
-    "-mbulk-memory", "-s", "-Wl,-no-entry", f"-Wl,-z,stack-size={_STACK}",
-    "-Wl,-export=__heap_base",
+    "-mbulk-memory", "-s", f"{_LINKER}no-entry", f"-Wl,-z,stack-size={_STACK}",
+    f"{_LINKER}export=__heap_base",
 )  # fmt: skip
 
 
@@ -128,7 +130,7 @@ def linked(component: str, variant: str, exported: tuple[str, ...], work: Path) 
     """Return the module made of ``VARIANT.o`` in a folder."""
     shutil.copy(_RUNTIME, work)
     result = f"{variant}.wasm"
-    shown = [f"-Wl,-export={name}" for name in exported]
+    shown = [f"{_LINKER}export={name}" for name in exported]
     command = [sys.executable, "-m", "ziglang", "cc", *_OPTIONS, *shown]
     done = subprocess.run(
         [*command, "-o", result, _RUNTIME.name, f"{variant}.o"],
