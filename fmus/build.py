@@ -8,7 +8,6 @@ same content gives the same file, byte for byte. Native ones: :mod:`rockshed.fmu
 
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.metadata import distribution
 from pathlib import Path
 
 import pythonfmu
@@ -21,6 +20,8 @@ from rockshed.files import write_file
 
 from .description.documentation import documentation
 from .description.fmi2 import model_description
+from .description.legal import license_files, license_text, needed_by_python
+from .experiments.files import experiment_files
 from .native.fmu import native_files
 from .parts import (
     DESCRIPTION,
@@ -312,9 +313,11 @@ def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
     files |= (
         dict(_binaries(component))
         | documentation(component, sizes)
+        | experiment_files(component, sizes)
         | picture(component, "model.png")
     )
-    files["documentation/licenses/pythonfmu.txt"] = _pythonfmu_license()
+    files |= license_files() | needed_by_python()
+    files["documentation/licenses/pythonfmu.txt"] = license_text("pythonfmu")
     stamp = digest(files | _stamped_files(component, sizes, library_name, "0" * 64))
     return files | _stamped_files(component, sizes, library_name, stamp)
 
@@ -367,13 +370,3 @@ def _import_problems(sources: Files) -> list[str]:
 def _binaries(component: Component) -> Iterator[tuple[str, bytes]]:
     for path in sorted((_PYTHONFMU / "resources" / "binaries").glob("*/*")):
         yield f"binaries/{path.parent.name}/{component.name}{path.suffix}", path.read_bytes()
-
-
-def _pythonfmu_license() -> bytes:
-    """Return the text of pythonfmu's license, which has to accompany every copy."""
-    texts = [
-        file.read_binary()
-        for file in distribution("pythonfmu").files or ()
-        if file.name == "LICENSE"
-    ]
-    return b"\n".join(texts)

@@ -12,6 +12,8 @@ from rockshed.components.common.component import Component
 COMPONENTS = Path(components.__file__).parent
 SHARED = COMPONENTS / "common"
 DESCRIPTION = "modelDescription.xml"
+EXPERIMENTS = "experiments.py"
+"""Module of a component's folder with its experiments, which nothing inside an FMU runs."""
 _NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
 
 Files = dict[str, bytes]
@@ -68,7 +70,7 @@ def component_sources(component: Component) -> Files:
     paths |= {
         f"components/{path.relative_to(component.folder.parent).as_posix()}": path
         for path in component.folder.rglob("*")
-        if path.is_file() and path.suffix not in _NOT_FROZEN
+        if path.is_file() and path.suffix not in _NOT_FROZEN and path.name != EXPERIMENTS
     }
     return {name: path.read_bytes() for name, path in paths.items()}
 

@@ -42,26 +42,59 @@ def index_html(component: Component, sizes: Sizes) -> str:
     from markdown_it import MarkdownIt
 
     body = MarkdownIt("commonmark").enable("table").render(component.documentation())
-    body += "<h2>Variables</h2>\n" + _table(
+    body += "<h2>Variables</h2>\n" + table(
         ("name", "causality", "unit", "start", "range", "description", "source"),
         (_row(variable, sizes) for variable in component.layout.ordered),
     )
     if sizes:
-        body += "<h2>Sizes of this FMU</h2>\n" + _table(
+        body += "<h2>Sizes of this FMU</h2>\n" + table(
             ("name", "value", "description"),
             (
                 (name, str(value), component.sizes[name].description)
                 for name, value in sizes.items()
             ),
         )
+    return page(component.title, body)
+
+
+def page(title: str, body: str) -> str:
+    """Return a page in HTML.
+
+    Parameters
+    ----------
+    title : str
+        Its title, as text.
+    body : str
+        Its content, as HTML.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8">'
-        f"<title>{escape(component.title)}</title>"
+        f"<title>{escape(title)}</title>"
         f"<style>{_STYLE}</style></head>\n<body>\n{body}</body>\n</html>\n"
     )
 
 
-def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return a table in HTML.
+
+    Parameters
+    ----------
+    head : iterable of str
+        Names of the columns.
+    rows : iterable of iterable of str
+        Cells of each row.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+
     def line(tag: str, cells: Iterable[str]) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>\n"
 

@@ -100,6 +100,11 @@ def model_description(
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
 
 
+_TOLERANCE = 1e-3
+"""Share by which results are off at most with the steps of the start values: see the experiments.
+What an importer asks for instead changes nothing, as the internal step is a parameter."""
+
+
 def log_categories_and_experiment(root: etree._Element, component: Component) -> None:
     """Append the elements LogCategories and DefaultExperiment to the root.
 
@@ -118,6 +123,7 @@ def log_categories_and_experiment(root: etree._Element, component: Component) ->
         "DefaultExperiment",
         startTime="0.0",
         stopTime=repr(component.default_stop_time),
+        tolerance=repr(_TOLERANCE),
         stepSize=repr(component.default_step),
     )
 

@@ -28,6 +28,8 @@ from .fmi2 import (
 
 FMI_VERSION = "3.0"
 TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
+INTERNAL_STEP = "internal_step"
+"""Name of the parameter that has the length of internal steps."""
 TIME = "time"
 """Name of the independent variable."""
 
@@ -78,8 +80,9 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
         },
     )
     early = {"mightReturnEarlyFromDoStep": "true"} if component.next_event else {}
+    more = early | _internal_step(component, sizes)
     etree.SubElement(
-        root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES, **early}
+        root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES, **more}
     )
     unit_definitions(root, component)
     _type_definitions(root, component)
@@ -89,6 +92,19 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
     _model_structure(root, component, references)
     _annotate(root, annotations.of_component(component))
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
+
+
+def _internal_step(component: Component, sizes: Sizes) -> dict[str, str]:
+    """Return the attribute fixedInternalStepSize, where the component divides every step so.
+
+    One that goes from event to event has no such step, and an internal step that is longer than
+    the communication step proposed is only a bound.
+    """
+    for variable in component.layout.variables:
+        step = variable.start_at(0, sizes) if variable.name == INTERNAL_STEP else 0.0
+        if 0.0 < step <= component.default_step and component.next_event is None:
+            return {"fixedInternalStepSize": repr(step)}
+    return {}
 
 
 def value_references(component: Component, sizes: Sizes) -> dict[str, int]:

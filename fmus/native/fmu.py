@@ -32,8 +32,10 @@ from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
 
 from ..description.documentation import documentation
+from ..description.legal import license_files
 from ..parts import (
     DESCRIPTION,
+    EXPERIMENTS,
     BuildError,
     Files,
     Fmi,
@@ -251,13 +253,19 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
     str
         A UUID in braces.
     """
-    beside = [path for path in component.folder.iterdir() if path.suffix in (".md", ".png")]
+    beside = [
+        path
+        for path in component.folder.iterdir()
+        if path.suffix in (".md", ".png") or path.name == EXPERIMENTS
+    ]
     ours = (
         *_HERE.glob("*.py"),
         *_HERE.glob("*.j2"),
         _CONDUCT,
         *_HERE.parent.glob("*.py"),
         *_HERE.parent.glob("description/*.py"),
+        *_HERE.parent.glob("experiments/*.py"),
+        *_HERE.parent.glob("experiments/data/*.csv"),
         _SLAVE,
         _SHIMS[fmi],
     )
@@ -274,8 +282,10 @@ def _described(component: Component, sizes: Sizes, guid: str, fmi: Fmi) -> Files
     """Return description, documentation, icon and terminals, for which nothing is compiled."""
     from ..description import fmi2 as description
     from ..description import fmi3 as description3
+    from ..experiments.files import experiment_files
 
-    files = documentation(component, sizes)
+    files = documentation(component, sizes) | experiment_files(component, sizes, fmi)
+    files |= license_files()
     if fmi is Fmi.THREE:
         own = {DESCRIPTION: description3.model_description(component, sizes, guid)}
         return files | own | description3.terminals_and_icon(component)

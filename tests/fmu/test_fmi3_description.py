@@ -133,6 +133,7 @@ def test_the_files_are_where_fmi_3_has_them(fmi3_fmus):
         "modelDescription.xml",
         "binaries",
         "documentation",
+        "extra",
         "terminalsAndIcons",
     }
     assert {"documentation/index.html", "terminalsAndIcons/icon.png", TERMINALS} <= names

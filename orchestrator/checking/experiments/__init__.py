@@ -1,0 +1,1 @@
+"""Experiments that an FMU carries with it: read with care, carried out, compared."""
