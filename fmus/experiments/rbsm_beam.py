@@ -32,7 +32,7 @@ def experiments(sizes: Sizes) -> tuple[Experiment, ...]:
         their tolerances and coarse enough for their internal step.
     """
     elements = sizes["elements"]
-    if sizes["support_count"] != 2 or not 12 <= elements <= 30:
+    if sizes["support_count"] != 2 or not 12 <= elements <= 24:
         return ()
     chain = _Chain(elements)
     return (
