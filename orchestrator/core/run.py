@@ -441,7 +441,7 @@ class Session:
             *(metric for entry in self.watched for metric in self._of_watched(entry)),
             *self.accounts.metrics(),
             Metric("simulated time", simulated, "s"),
-            Metric("exchanges", self.master.exchanges),
+            Metric("exchanges", self.master.driver.made(self.master.exchanges)),
             *self.master.driver.metrics(),
             *(
                 Metric(f"early returns of {name}", count)

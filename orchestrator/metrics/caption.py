@@ -96,7 +96,10 @@ def scheme(run: StoredRun) -> str:
     coupling = f"{system['master']} master"
     if "coupling" in facts:
         coupling = f"coupling {facts['coupling']}"
-    return f"{coupling}: steps in ms: exchange {system['exchange_step'] / ms:g}{shown}"
+    exchange = f"{system['exchange_step'] / ms:g}"
+    if adaptive := system.get("adaptive"):
+        exchange += f" to {adaptive['largest_step'] / ms:g}, adaptive"
+    return f"{coupling}: steps in ms: exchange {exchange}{shown}"
 
 
 def _step(run: StoredRun, component: str, system: Mapping[str, Any]) -> float:

@@ -136,7 +136,16 @@ def pictures_of(run: StoredRun) -> list[RunPicture]:
     ]
     striking = [member.column for member in members(run, Role.STRIKING)]
     balance = [RunPicture("energy", partial(energy, run), striking)] if striking else []
-    return of_cushions + of_components + balance + _of_slope(run)
+    return of_cushions + of_components + balance + _of_slope(run) + _of_exchanges(run)
+
+
+def _of_exchanges(run: StoredRun) -> list[RunPicture]:
+    """Return the picture of the exchange steps of an adaptive run; none of another one."""
+    if run.provenance["system"].get("adaptive") is None or len(run.time) < 2:
+        return []
+    from .exchange_step import COLUMN, exchange_step  # matplotlib is imported when it is drawn
+
+    return [RunPicture("exchange_step", partial(exchange_step, run), [COLUMN])]
 
 
 def _of_slope(run: StoredRun) -> list[RunPicture]:

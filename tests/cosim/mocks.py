@@ -77,6 +77,7 @@ class Mock:
     start: Callable[[Values], Any] = lambda v: None
     once: bool = False
     serializes: bool = True
+    varies: bool = True
     types: str = ""
     origin: dict[str, str] = field(default_factory=lambda: {"mock": "yes"})
     calls: list[tuple[Any, ...]] = field(default_factory=list)
@@ -95,6 +96,7 @@ class Mock:
         flag = str(self.serializes).lower()
         return f"""<?xml version='1.0'?><fmiModelDescription fmiVersion='2.0' modelName='Mock' guid='mock-guid'>
             <CoSimulation modelIdentifier='Mock' canGetAndSetFMUstate='{flag}' canSerializeFMUstate='{flag}'
+             canHandleVariableCommunicationStepSize='{str(self.varies).lower()}'
              canBeInstantiatedOnlyOncePerProcess='{str(self.once).lower()}'/>
             {f"<UnitDefinitions>{units}</UnitDefinitions>" if units else ""}{self.types}
             <ModelVariables>{variables}</ModelVariables>

@@ -196,6 +196,8 @@ class Description:
         A step may end before its end, at an event (FMI 3.0).
     keeps_state : bool
         The state can be got and set again, in memory.
+    varies_step : bool
+        Its communication steps may have any length.
     """
 
     model: str
@@ -213,6 +215,7 @@ class Description:
     version: str = "2.0"
     may_return_early: bool = False
     keeps_state: bool = False
+    varies_step: bool = False
 
     @property
     def is_fmi_3(self) -> bool:

@@ -274,6 +274,7 @@ def _described(
         model.fmiVersion,
         interface.mightReturnEarlyFromDoStep,
         bool(interface.canGetAndSetFMUstate),
+        bool(interface.canHandleVariableCommunicationStepSize),
     )
 
 

@@ -108,9 +108,15 @@ class Buses:
 
     @cached_property
     def operations(self) -> list[Operation]:
-        """Operations of a period, and behind them those that read what is recorded."""
+        """Operations of a period, of longer exchanges, and those that read what is recorded."""
+        schedules = (self.plan.schedule, *self.plan.longer)
         return [
-            *(operation for exchange in self.plan.schedule.operations for operation in exchange),
+            *(
+                operation
+                for schedule in schedules
+                for exchange in schedule.operations
+                for operation in exchange
+            ),
             *(Operation(Action.RECORD, name) for name in self.snapshots.blocks),
         ]
 
@@ -247,7 +253,7 @@ def _extrapolated(plan: Plan) -> Records:
 
 def _discrete(plan: Plan) -> Records:
     """Return the table of outputs whose changes are events; empty where nobody asks for them."""
-    owners = {entry.owner for entry in plan.extrapolated}
+    owners = set(plan.order if plan.longer else (entry.owner for entry in plan.extrapolated))
     places = [
         place
         for place, end in enumerate(plan.outputs)

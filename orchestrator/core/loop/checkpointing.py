@@ -308,6 +308,10 @@ def interval_problems(plan: Plan, number: int | None, seconds: float) -> list[Pr
         lasts = timing.lasts(timing.exchanges * timing.exchange)
         what = f"{seconds:g} s: there would be none, as the run lasts {lasts:g} s"
         remedy = "make it shorter"
+    elif plan.longer and number % timing.output_every:
+        rows = timing.lasts(timing.output_every * timing.exchange)
+        what = f"{seconds:g} s would shorten adaptive exchanges, which end at rows alone"
+        remedy = f"give a multiple of output_interval = {rows:g} s"
     else:
         return []
     return [Problem("checkpoint_every", what, remedy)]

@@ -196,8 +196,11 @@ def _post_sides(tables, operation):  # type: ignore[no-untyped-def]
 
 
 @_compiled
-def _watch(watched, outputs, exchange):  # type: ignore[no-untyped-def]
-    """Enter the values after so many exchanges into extremes and integrals (trapezoidal rule)."""
+def _watch(watched, outputs, exchange, units):  # type: ignore[no-untyped-def]
+    """Enter the values after so many exchanges into extremes and integrals (trapezoidal rule).
+
+    units: exchange steps since the values before.
+    """
     for i in range(watched.size):
         entry = watched[i]
         value = outputs[entry["place"]]
@@ -207,7 +210,7 @@ def _watch(watched, outputs, exchange):  # type: ignore[no-untyped-def]
         if value < entry["low"]:
             entry["low"] = value
             entry["low_at"] = exchange
-        entry["area"] += 0.5 * (entry["last"] + value)
+        entry["area"] += 0.5 * (entry["last"] + value) * units
         entry["last"] = value
 
 
@@ -436,7 +439,7 @@ def _record(tables, base):  # type: ignore[no-untyped-def]
     for i in range(tables.channels.size):
         tables.snapshots[works + i] = tables.channels[i]["taken"]
         tables.snapshots[works + tables.channels.size + i] = tables.channels[i]["given_back"]
-    for o in range(tables.first[tables.first.size - 1], tables.operations.size):
+    for o in range(tables.recording, tables.operations.size):
         tables.journal[1] = o
         for m in range(tables.operations[o]["first_move"], tables.operations[o]["end_move"]):
             status = _take(tables, tables.moves[m], tables.snapshots, base)
@@ -457,22 +460,24 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
     tables : Tables
         Values and addresses.
     first : int
-        Number of the first exchange.
+        Number of exchange steps before the first exchange.
     count : int
-        How many. With 0, a snapshot of the present values is taken.
+        How many exchanges. With 0, a snapshot of the present values is taken.
 
     Returns
     -------
     (int, int, int)
-        Number of exchanges before the one that failed; operation and status that ended the loop
-        early, status OK if none did.
+        Number of exchange steps before the exchange that failed; operation and status that ended
+        the loop early, status OK if none did.
     """
     if count == 0:
         tables.journal[0] = first - 1
         o, status = _record(tables, tables.row * tables.width)
         return -1, o, status
     period = tables.first.size - 1
-    for n in range(first, first + count):
+    units = tables.units
+    for i in range(count):
+        n = first + i * units
         origin = tables.start + n // period * period * tables.exchange
         tables.journal[0] = n
         for o in range(tables.first[n % period], tables.first[n % period + 1]):
@@ -483,14 +488,15 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
                     return n - first, o, status
                 tables.warned[o] += 1
         _post(tables.channels, tables.inputs, tables.outputs)
-        _watch(tables.watched, tables.outputs, n + 1)
-        if (n + 1) % tables.every == 0:
-            row = tables.row + (n + 1) // tables.every - first // tables.every - 1
+        end = n + units
+        _watch(tables.watched, tables.outputs, end, units)
+        if end % tables.every == 0:
+            row = tables.row + end // tables.every - first // tables.every - 1
             o, status = _record(tables, row * tables.width)
             if status != 0:
                 return n - first, o, status
         tables.journal[1] = -1
-    return count, 0, 0
+    return count * units, 0, 0
 
 
 def object_code(target: llvm.TargetMachine) -> bytes:

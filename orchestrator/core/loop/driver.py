@@ -33,6 +33,22 @@ class Driver:
     def begin(self) -> None:
         """Act before the first exchange of this process, when all values are there."""
 
+    def portion(self, first: int, count: int, at_once: int) -> int:
+        """Return how many exchanges are carried out before the master looks around.
+
+        Parameters
+        ----------
+        first, count : int
+            Number of the first exchange, and of all until something is due.
+        at_once : int
+            As many as take a moment; it depends on the clock of this computer.
+        """
+        return min(count, at_once)
+
+    def made(self, exchanges: int) -> int:
+        """Return the number of exchanges in so many exchange steps."""
+        return exchanges
+
     def advance(self, first: int, count: int) -> Fault | None:
         """Carry out exchanges until the first operation that fails.
 

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,6 +57,9 @@ class ExchangeLoop:
 
     def __init__(self, buses: Buses, slaves: Mapping[str, Slave]) -> None:
         self._operations = buses.operations
+        schedules = [buses.plan.schedule, *buses.plan.longer]
+        numbers = [sum(map(len, schedule.operations)) for schedule in schedules]
+        self._places = [0, *accumulate(numbers)]
         self._callbacks = {
             name: Callbacks(slave) for name, slave in slaves.items() if slave.addresses is None
         }
@@ -148,6 +152,27 @@ class ExchangeLoop:
             ),
         )
 
+    def longer(self, level: int, forgets: bool) -> "Excerpt":
+        """Return exchanges of ``2**level`` exchange steps, which take no snapshots.
+
+        Parameters
+        ----------
+        level : int
+            0 for one exchange step; at most the number of :attr:`~.plan.Plan.longer`.
+        forgets : bool
+            Whether no FMU goes back to a time before them.
+        """
+        begin, end = self._places[level : level + 2]
+        return Excerpt(
+            self,
+            self.with_tables(
+                every=_NEVER,
+                forgets=int(forgets),
+                first=np.array([begin, end], np.int64),
+                units=1 << level,
+            ),
+        )
+
     def with_tables(self, **others: Any) -> Tables:
         """Return the tables of the loop with some others, by field; they lie in the same memory."""
         return self._tables._replace(**others)
@@ -205,8 +230,7 @@ class Excerpt:
 
 
 def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) -> Tables:
-    plan = buses.plan
-    snapshots = buses.snapshots
+    plan, snapshots = buses.plan, buses.snapshots
     operations, moves = _calls(buses, addresses, texts)
     buffer = np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int64)
     return Tables(
@@ -216,6 +240,8 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         every=snapshots.every,
         width=snapshots.rows.shape[1],
         row=0,
+        units=1,
+        recording=len(operations) - len(snapshots.blocks),
         exchanged=len(plan.outputs),
         forgets=1,
         first=np.cumsum([0, *map(len, plan.schedule.operations)]).astype(np.int64),

@@ -296,7 +296,7 @@ def _too_many(plan: Plan, slave: Slave) -> list[Problem]:
     """Refuse more internal steps in one communication step than a run can wait for."""
     ports = plan.descriptions[slave.name].ports
     used = next((name for name in ("time_step", "internal_step") if name in ports), None)
-    step = plan.system.step(slave.name)
+    step = plan.system.longest_step(slave.name)
     if used is None:
         return []
     length = read_value(slave, ports[used])
@@ -322,7 +322,7 @@ def _stability(plan: Plan, slave: Slave) -> list[Problem]:
 
 def _port_stability(plan: Plan, slave: Slave) -> list[Problem]:
     ports = plan.descriptions[slave.name].ports
-    step = plan.system.step(slave.name)
+    step = plan.system.longest_step(slave.name)
     if "step_limit" not in ports:
         return []
     limit = read_value(slave, ports["step_limit"])
@@ -340,7 +340,7 @@ def _port_stability(plan: Plan, slave: Slave) -> list[Problem]:
 
 def _internal_stability(plan: Plan, slave: Slave) -> list[Problem]:
     ports = plan.descriptions[slave.name].ports
-    step = plan.system.step(slave.name)
+    step = plan.system.longest_step(slave.name)
     if "stable_step" not in ports or "internal_step" not in ports:
         return []
     stable = read_value(slave, ports["stable_step"])

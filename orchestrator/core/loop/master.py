@@ -236,7 +236,8 @@ class Master:
         while self.exchanges < timing.exchanges and not interruption.requested:
             nexts = (keeper.next(self.exchanges) for keeper in self._keepers)
             due = min(self._recorder.next_frames(self.exchanges), timing.exchanges, *nexts)
-            self._advance(min(due - self.exchanges, self._at_once, snapshots.room))
+            count = min(due - self.exchanges, snapshots.room)
+            self._advance(self.driver.portion(self.exchanges, count, self._at_once))
             if self.ended_by:
                 self._record_end()
                 return True

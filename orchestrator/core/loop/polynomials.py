@@ -27,7 +27,8 @@ def keep_values(tables, move, now):  # type: ignore[no-untyped-def]
     for i in range(move["first_extrapolated"], move["end_extrapolated"]):
         entry = tables.extrapolated[i]
         every = entry["every"]
-        shown = tables.start + (now + entry["ahead"] - tables.start) // every * every
+        since = now + entry["ahead"] * tables.units - tables.start
+        shown = tables.start + since // every * every
         jumps = tables.jumps[entry["owner"]]
         if jumps != entry["jumps"]:  # what was before says nothing about what comes
             entry["known"] = 0

@@ -105,15 +105,19 @@ class Tables(NamedTuple):
         Numbers in a row.
     row : int
         The next row.
+    units : int
+        Exchange steps in one exchange.
+    recording : int
+        The first operation that reads what is recorded; the others follow it.
     exchanged : int
         Outputs that are exchanged; behind them stand values that nobody changes.
     forgets : int
         1 where steps are told that no earlier state is needed any more, else 0.
     first : array of int64
-        Operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period; those
-        after the last of a period read what is recorded.
+        Operations ``first[i]`` to ``first[i + 1]`` are those of exchange i of a period.
     operations : array of OPERATION
-        All operations of a period, then those that read what is recorded.
+        All operations of a period, those of longer exchanges, then those that read what is
+        recorded.
     moves : array of MOVE
         Calls that move values.
     inputs, outputs : array of float64
@@ -157,6 +161,8 @@ class Tables(NamedTuple):
     every: int
     width: int
     row: int
+    units: int
+    recording: int
     exchanged: int
     forgets: int
     first: IntegerTable
@@ -185,7 +191,18 @@ class Tables(NamedTuple):
     reached: FloatTable
 
 
-NUMBERS = ("start", "exchange", "rate", "every", "width", "row", "exchanged", "forgets")
+NUMBERS = (
+    "start",
+    "exchange",
+    "rate",
+    "every",
+    "width",
+    "row",
+    "units",
+    "recording",
+    "exchanged",
+    "forgets",
+)
 """The numbers among the :class:`Tables`, which come first."""
 
 KINDS = {

@@ -10,6 +10,7 @@ from ..fmu.slave import Slave
 from ..loop.buses import Buses
 from ..loop.driver import Driver
 from ..loop.exchange import ExchangeLoop
+from .adaptive import DoublingDriver, LedgerDriver
 
 
 def driver_of(buses: Buses, slaves: Mapping[str, Slave]) -> Driver:
@@ -22,4 +23,9 @@ def driver_of(buses: Buses, slaves: Mapping[str, Slave]) -> Driver:
     slaves : mapping of str to Slave
         Initialised, by component.
     """
-    return Driver(ExchangeLoop(buses, slaves))
+    loop = ExchangeLoop(buses, slaves)
+    adaptive = buses.plan.system.adaptive
+    if adaptive is not None:
+        kinds = {"doubling": DoublingDriver, "ledger": LedgerDriver}
+        return kinds[adaptive.control](loop, buses, slaves)
+    return Driver(loop)

@@ -118,18 +118,19 @@ def internal_step_problems(system: SystemSpec, starts: Mapping[str, Starts]) -> 
     -------
     list of Problem
     """
+    asked = {name: system.longest_step(name) for name in starts}
     return [
         Problem(
             f"{name}.internal_step",
-            f"steps of {value:g} s are {system.step(name) / value:.2g} in each communication step "
-            f"of {system.step(name):g} s, and at most {MOST_INTERNAL_STEPS:,} can be made",
-            f"raise it to {system.step(name) / MOST_INTERNAL_STEPS:g} s or more",
+            f"steps of {value:g} s are {asked[name] / value:.2g} in each communication step "
+            f"of {asked[name]:g} s, and at most {MOST_INTERNAL_STEPS:,} can be made",
+            f"raise it to {asked[name] / MOST_INTERNAL_STEPS:g} s or more",
         )
         for name, values in starts.items()
         for port, value in values
         if port.name == "internal_step"
         and isinstance(value, float)
-        and 0.0 < value * MOST_INTERNAL_STEPS < system.step(name)
+        and 0.0 < value * MOST_INTERNAL_STEPS < asked[name]
     ]
 
 

@@ -245,6 +245,8 @@ class Plan:
         What changes during the run; all its inputs are in ``linear``.
     extrapolated : tuple of Extrapolated
         Inputs that do not hold between exchanges, by rising place.
+    longer : tuple of Schedule
+        Of exchanges of 2, 4, 8, ... exchange steps, where the system is adaptive.
     """
 
     system: SystemSpec
@@ -269,6 +271,7 @@ class Plan:
     recorded_texts: tuple[End, ...] = ()
     scenario: PlannedScenario = PlannedScenario()
     extrapolated: tuple[Extrapolated, ...] = ()
+    longer: tuple[Schedule, ...] = ()
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:

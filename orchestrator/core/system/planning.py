@@ -17,6 +17,7 @@ from ..errors import InputRefused, Problem, counted
 from ..fmu.description import SIZE, Description, Port, UnitDefinition
 from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import NUMBERS, REAL, STRING, Source
+from .adaptive import adaptive_problems, make_schedules
 from .extrapolation import Extrapolating, extrapolation_problems
 from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
@@ -24,7 +25,6 @@ from .names import expand, nearest, select, split_name
 from .plan import BondPlaces, End, Plan, PlannedScenario, Starts, with_whole_arrays
 from .renaming import present_name, renaming_warning
 from .scenario import ScenarioReader
-from .schedule import make_schedule
 from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
 from .units import is_force, is_joule, unit_text, units_agree
@@ -108,6 +108,7 @@ class _Planner:
             columns = 1 + len(parts.recorded) + 3 * len(parts.bonds)
             self.problems += amount_problems(self.system, timing, columns)
         self.problems += internal_step_problems(self.system, parts.starts)
+        self.problems += adaptive_problems(self.system, self.descriptions, parts.scenario)
         if self.problems or timing is None:
             raise InputRefused(self.problems)
         return self._resolved(order, timing, parts)
@@ -158,14 +159,13 @@ class _Planner:
         feeds |= {end.name: len(outputs) + i for i, end in enumerate(unfed)}
         source = [feeds[end.name] for end in inputs]
         extrapolating = Extrapolating(self.system, order, timing)
+        schedules = make_schedules(self.system, order, timing, extrapolating.components)
         return Plan(
             system=self.system,
             order=order,
             descriptions=self.descriptions,
             timing=timing,
-            schedule=make_schedule(
-                order, timing.steps, timing.exchange, self.system.master, extrapolating.components
-            ),
+            schedule=schedules[0],
             starts=parts.starts,
             inputs=inputs,
             outputs=outputs,
@@ -183,6 +183,7 @@ class _Planner:
             recorded_texts=tuple(parts.recorded_texts),
             scenario=parts.scenario,
             extrapolated=extrapolating.inputs(inputs, outputs, source),
+            longer=schedules[1:],
         )
 
     def _split(self, name: str) -> tuple[str, str]:

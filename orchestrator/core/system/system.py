@@ -358,6 +358,30 @@ class Scenario(_Data):
         return ", ".join(counted(number, what) for what, number in parts.items() if number)
 
 
+class Adaptive(_Data):
+    """An exchange step that follows the error of the coupling.
+
+    The exchange step of the system is the smallest one; the others are 2, 4, 8, ... times as long.
+
+    Attributes
+    ----------
+    tolerance : float
+        Error of one exchange: with ``doubling``, root mean square of the errors of all exchanged
+        values, each as a part of the largest value so far of its component and unit; with
+        ``ledger``, energy that the couplings have made, as a part of E0.
+    largest_step : float
+        Longest step (s) that is tried.
+    control : str
+        ``doubling``: a step is compared with two of half of it, after which all FMUs go back; the
+        two are kept. ``ledger``: the energy residual of the last step is looked at, and none is
+        taken back.
+    """
+
+    tolerance: Tolerance
+    largest_step: Seconds
+    control: Literal["doubling", "ledger"] = "doubling"
+
+
 class SystemSpec(_Data):
     """A co-simulation: what takes part, how it is connected and how it is run.
 
@@ -394,6 +418,8 @@ class SystemSpec(_Data):
         Relative tolerance of the solvers in FMUs; without it, the one that each FMU proposes.
     extrapolation : int
         Order of the polynomials that inputs follow, of components that have none of their own.
+    adaptive : Adaptive, optional
+        The exchange step becomes longer where the error allows it.
     scenario : Scenario
         Inputs over time, values that change, and faults of connections.
     """
@@ -416,11 +442,17 @@ class SystemSpec(_Data):
     watch: list[str] = []
     tolerance: Tolerance | None = None
     extrapolation: Extrapolation = 0
+    adaptive: Adaptive | None = None
     scenario: Scenario = Scenario()
 
     def step(self, component: str) -> float:
         """Return the communication step of a component (s)."""
         return self.components[component].step or self.exchange_step
+
+    def longest_step(self, component: str) -> float:
+        """Return the longest communication step (s) that a component may be asked for."""
+        longest = self.adaptive.largest_step if self.adaptive else self.exchange_step
+        return self.components[component].step or max(longest, self.exchange_step)
 
 
 def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
@@ -605,6 +637,6 @@ def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
 
 _MODELS = (
     *(ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, SystemSpec),
-    *(Scenario, ValueSet, ConnectionFault),
+    *(Scenario, ValueSet, ConnectionFault, Adaptive),
 )
 _KEYS = sorted({field.alias or key for m in _MODELS for key, field in m.model_fields.items()})

@@ -26,6 +26,8 @@ class Timing:
         Communication step of each component (ticks).
     rate : int
         Ticks in a second.
+    longest : int
+        Most exchange steps that are made in one; a power of two.
     """
 
     start: int
@@ -35,6 +37,7 @@ class Timing:
     state_every: int
     steps: Mapping[str, int]
     rate: int
+    longest: int = 1
 
     def seconds(self, exchange: int) -> float:
         """Return the time (s) at the beginning of an exchange."""
@@ -107,6 +110,7 @@ def _fitted(
         state_every=ticks["state_interval"] // exchange,
         steps=steps,
         rate=rate,
+        longest=max(1, ticks.get("adaptive.largest_step", exchange) // exchange),
     )
 
 
@@ -117,6 +121,7 @@ def _exact_times(system: SystemSpec, problems: list[Problem]) -> dict[str, Fract
         "stop_time": system.stop_time,
         "output_interval": system.output_interval or system.exchange_step,
         "state_interval": system.state_interval or system.exchange_step,
+        **({"adaptive.largest_step": system.adaptive.largest_step} if system.adaptive else {}),
         **{f"{name}.step": spec.step for name, spec in system.components.items() if spec.step},
     }
     found = {}
@@ -145,9 +150,12 @@ def _misfits(
     start = ticks["start_time"]
     length = ticks["stop_time"] - start
     problems = [
-        problem
-        for name, step in steps.items()
-        for problem in _step_problems(f"{name}.step", step, exchange, rate)
+        *_longest_problems(ticks.get("adaptive.largest_step"), exchange, rate),
+        *(
+            problem
+            for name, step in steps.items()
+            for problem in _step_problems(f"{name}.step", step, exchange, rate)
+        ),
     ]
     if length <= 0:
         what = f"{system.stop_time:g} s is not after start_time = {system.start_time:g} s"
@@ -176,6 +184,22 @@ def _together(exchange: int, start: int, nearest: Mapping[str, int], rate: int) 
         for key, value in {"exchange_step": exchange, **times}.items()
     )
     return Problem("exchange_step", "does not fit these times", f"this will do: {listed}")
+
+
+def _longest_problems(longest: int | None, exchange: int, rate: int) -> list[Problem]:
+    """Refuse a longest step (ticks) that is not 2, 4, 8, ... times the exchange step."""
+    if longest is None:
+        return []
+    times, rest = divmod(longest, exchange)
+    if not rest and times > 1 and times & (times - 1) == 0:
+        return []
+    power = 1 << max(1, times.bit_length() - 1)
+    near = " or ".join(f"{to_seconds(exchange * n, rate):.12g} s" for n in (power, 2 * power))
+    what = (
+        f"{to_seconds(longest, rate):g} s is not 2, 4, 8, ... times the exchange step "
+        f"{to_seconds(exchange, rate):g} s, which is the smallest step"
+    )
+    return [Problem("adaptive.largest_step", what, f"nearest are {near}")]
 
 
 def _step_problems(key: str, step: int, exchange: int, rate: int) -> list[Problem]:
