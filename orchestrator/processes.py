@@ -1,8 +1,9 @@
-"""Processes that end with the one that has started them, however that one ends."""
+"""Processes that end with the one that has started them, and how they have ended."""
 
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, partial
 from typing import Any
 
@@ -36,3 +37,23 @@ def end_with_parent() -> None:
     ask = with_parent()
     if ask is not None:
         ask()
+
+
+def ended_in_words(code: int) -> str:
+    """Say how a process has ended.
+
+    Parameters
+    ----------
+    code : int
+        Exit code, or the negative number of the signal that has ended it.
+
+    Returns
+    -------
+    str
+        For ``"its code ..."``.
+    """
+    if code >= 0:
+        return f"ended the process with exit code {code}"
+    with suppress(ValueError):
+        return f"crashed ({signal.Signals(-code).name})"
+    return f"crashed (signal {-code})"

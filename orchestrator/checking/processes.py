@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -11,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from ..processes import with_parent
+from ..processes import ended_in_words, with_parent
 from .server import OUTPUT, RESULT, TRAIL, WORK, ProbeJob
 from .verdicts import Seen, Verdict
 
@@ -123,17 +122,9 @@ def _verdict(job: ProbeJob, ending: dict[str, Any]) -> Seen | None:
         return Seen(Verdict.FAILED, what, remedy)
     return Seen(
         Verdict.CRASHED,
-        f"{_ended(int(ending['code']))} in {where}{said}",
+        f"{ended_in_words(int(ending['code']))} in {where}{said}",
         "let the call return an error instead of ending the process",
     )
-
-
-def _ended(code: int) -> str:
-    if code >= 0:
-        return f"ended the process with exit code {code}"
-    with suppress(ValueError):
-        return f"crashed ({signal.Signals(-code).name})"
-    return f"crashed (signal {-code})"
 
 
 def _end_of(file: Path) -> str:

@@ -120,7 +120,7 @@ def options_named(
             )
             for problem in refusal.problems
         ]
-        raise InputRefused(problems) from None
+        raise type(refusal)(problems) from None
 
 
 def _place(where: str, arguments: Collection[str], target: str) -> str:

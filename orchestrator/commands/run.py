@@ -49,6 +49,8 @@ OPTIONS = (
     "state_interval",
     "master",
     "tolerance",
+    "isolate",
+    "time_limit",
     "allow_unstable",
     "checkpoint_every",
 )
@@ -87,6 +89,18 @@ _Tolerance = Annotated[
         metavar="NUMBER",
         help="Relative tolerance of the solvers in FMUs; default is what each of them proposes.",
     ),
+]
+_Isolate = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--isolate",
+        metavar="COMPONENT|all",
+        help="Run the FMU of a component in a process of its own: a crash or hang is told with its "
+        "time. May be repeated.",
+    ),
+]
+_TimeLimit = Annotated[
+    float | None, _seconds("Longest time of one call of an isolated FMU; default 600.")
 ]
 _AllowUnstable = Annotated[
     bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")
@@ -137,6 +151,8 @@ def command(
     state_interval: _StateInterval = None,
     master: _Master = None,
     tolerance: _Tolerance = None,
+    isolate: _Isolate = None,
+    time_limit: _TimeLimit = None,
     model: ModelName = None,
     coupling: CouplingScheme = None,
     allow_unstable: _AllowUnstable = False,
@@ -156,14 +172,9 @@ def command(
     """
     problems = _without_band(band, target)
     values, sizes = values_of("--set", set_ or [], problems), sizes_of(size or [], problems)
-    options = _chosen(
-        stop_time=stop_time,
-        exchange_step=exchange_step,
-        output_interval=output_interval,
-        state_interval=state_interval,
-        master=master,
-        tolerance=tolerance,
-    )
+    options = _chosen(stop_time=stop_time, exchange_step=exchange_step, master=master)
+    options |= _chosen(output_interval=output_interval, state_interval=state_interval)
+    options |= _chosen(tolerance=tolerance, isolate=isolate or None, time_limit=time_limit)
     asked = Request(target, values, sizes, coupling, options, in_process, load_cell, model, runtime)
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:

@@ -23,7 +23,7 @@ from rich.text import Text
 from rockshed.components.common.cache import cache_problem
 
 from ..core.ending import asked_to_end, interrupt
-from ..core.errors import InputRefused, Problem
+from ..core.errors import ComponentLost, InputRefused, Problem
 from ..tables import Table
 
 if TYPE_CHECKING:
@@ -171,6 +171,11 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     try:
         with asked_to_end(interrupt), without_warnings_of_libraries():
             yield screen
+    except ComponentLost as lost:
+        for problem in lost.problems:
+            screen.fail(str(problem))
+        screen.say("nothing was computed")
+        raise typer.Exit(RUN_FAILED) from None
     except InputRefused as refusal:
         screen.refuse(refusal.problems)
         raise typer.Exit(REFUSED) from None

@@ -49,6 +49,13 @@ class InputRefused(Exception):  # noqa: N818 (it says what happened, not that it
         super().__init__(count + "\n".join(map(str, self.problems)))
 
 
+class ComponentLost(InputRefused):
+    """The code of a component crashed or hung while it was made ready; nothing has been computed.
+
+    Only a component in a process of its own can be lost without this one.
+    """
+
+
 class RunFailed(Exception):  # noqa: N818
     """A run began and could not go on. What was computed until then is kept.
 

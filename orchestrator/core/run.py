@@ -11,11 +11,12 @@ from typing import Any, NoReturn
 
 from .errors import InputRefused, Problem, RunFailed
 from .fmu.fmu_slave import FmuFile
-from .fmu.slave import FATAL, OK, WARNING, Slave, Source, counts_of, status_name
+from .fmu.slave import FATAL, OK, WARNING, Slave, SlaveLost, Source, counts_of, status_name
+from .isolation.slave import IsolatedFmu
 from .loop.buses import Buses
 from .loop.changes import Changing, ValueChange, plan_change
 from .loop.checkpointing import Checkpointing, Parts, checkpoint_exchanges
-from .loop.initialisation import free, initialise, instantiate
+from .loop.initialisation import free, initialise, instantiate, losses_refused
 from .loop.instances import FreshInstances, KeptInstances, SettledInstances
 from .loop.journal import Journal
 from .loop.ledger import Accounts
@@ -40,8 +41,13 @@ Facts = Mapping[str, Any]
 
 
 def sources_of(system: SystemSpec) -> dict[str, Source]:
-    """Return the FMU files of a system by component."""
-    return {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
+    """Return the FMU files of a system by component, those to be isolated as such."""
+    limits = system.isolated
+    files = {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
+    return {
+        name: IsolatedFmu(file, limits[name]) if name in limits else file
+        for name, file in files.items()
+    }
 
 
 def simulate(
@@ -61,8 +67,8 @@ def simulate(
     """Run a system and write its results into a folder.
 
     Ctrl-C or SIGTERM ends the run and keeps what was computed. Everything happens in the calling
-    process: code of an FMU that crashes takes it along (the command ``rockshed run`` does not die
-    of it).
+    process, but for FMUs that the system isolates: code of any other FMU that crashes takes it
+    along (the command ``rockshed run`` does not die of it).
 
     Parameters
     ----------
@@ -216,8 +222,9 @@ def starting_problems(
     slaves: dict[str, Slave] = {}
     try:
         plan = make_plan(system, every)
-        slaves = instantiate(plan, every)
-        initialise(slaves, Buses(plan), allow_unstable)
+        with losses_refused():
+            slaves = instantiate(plan, every)
+            initialise(slaves, Buses(plan), allow_unstable)
     except InputRefused as refusal:
         return refusal.problems
     finally:
@@ -255,8 +262,9 @@ def _against_steps(
     slaves: dict[str, Slave] = {}
     try:
         plan = make_plan(system.model_copy(update=fitting), sources)
-        slaves = instantiate(plan, sources)
-        initialise(slaves, Buses(plan), allow_unstable)
+        with losses_refused():
+            slaves = instantiate(plan, sources)
+            initialise(slaves, Buses(plan), allow_unstable)
     except InputRefused as refusal:
         return refusal.problems if slaves else []
     finally:
@@ -309,7 +317,19 @@ class Session:
             self.keepers.insert(0, changing)
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
-        """Make and initialise the slaves, then open the results."""
+        """Make and initialise the slaves, then open the results.
+
+        Raises
+        ------
+        InputRefused
+            They refuse that.
+        ComponentLost
+            The process of an isolated one has ended, or does not return.
+        """
+        with losses_refused(self.plan.timing.seconds(0)):
+            self._prepare(allow_unstable, facts)
+
+    def _prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         began = time.perf_counter()
         plan = self.plan
         self.journal = Journal(self.results.running, plan.order)
@@ -350,7 +370,9 @@ class Session:
     def large_results(self) -> str:
         """Say what the results will take, if that is much; else nothing."""
         names = [name for name, spec in self.plan.system.components.items() if spec.record_states]
-        state = sum(len(zlib.compress(self.slaves[name].state(), 1)) for name in names)
+        with losses_refused(self.plan.timing.seconds(0)):
+            states = [self.slaves[name].state() for name in names]
+        state = sum(len(zlib.compress(content, 1)) for content in states)
         columns = 1 + len(self.columns)
         place = self.results.running or self.results.folder
         return amount_in_words(self.plan.timing, columns, state, place)
@@ -371,6 +393,9 @@ class Session:
         except RunFailed as error:
             status = "failed"
             failure = error
+        except SlaveLost as lost:
+            status = "failed"
+            failure = RunFailed(lost.name, self.master.reached, lost.what)
         except OSError as error:
             self._give_up(error)
         self._finish(status, failure)

@@ -34,6 +34,7 @@ from .slave import (
     WARNING,
     Addresses,
     Messages,
+    PartialStep,
     ValueReferences,
     Values,
     counts_of,
@@ -79,7 +80,48 @@ _MOVE = ctypes.CFUNCTYPE(
 )
 
 
-class Fmi3Slave:
+class StepsInParts:
+    """Communication steps of an instance that may return early from one.
+
+    Attributes
+    ----------
+    forgets : bool
+        Whether it may forget states before a step: it will not go back to them.
+    """
+
+    messages: list[tuple[int, str]]
+    forgets = True
+    _terminated_at: float | None = None
+
+    def partial_step(self, time: float, step: float) -> PartialStep:
+        """Make a step (s) from a time (s), or the beginning of it."""
+        raise NotImplementedError
+
+    def step(self, time: float, step: float) -> int:
+        """Make a step (s) from a time (s), in as many parts as the FMU makes of it."""
+        end = time + step
+        worst = OK
+        for _ in range(MOST_RETURNS):
+            done = self.partial_step(time, step)
+            worst = max(worst, done.status)
+            if done.ended:
+                self._terminated_at = done.reached
+                return DISCARD
+            if done.status > WARNING or not done.early or is_reached(done.reached, end):
+                return worst
+            if not done.reached >= time:  # at the time of an event, a step may come no further
+                break
+            time = done.reached
+            step = end - time
+        self.messages.append((ERROR, f"returned early from its step again and again at {time:g} s"))
+        return ERROR
+
+    def terminated_at(self) -> float | None:
+        """Return the time (s) up to which a step went that has ended the run."""
+        return self._terminated_at
+
+
+class Fmi3Slave(StepsInParts):
     """An instance of an FMU of FMI 3.0. See :class:`rockshed.core.fmu.slave.Slave`.
 
     Parameters
@@ -103,7 +145,6 @@ class Fmi3Slave:
         self._folder = TemporaryFolder()
         self._fmu: Any = None
         self._span: tuple[float, float, float | None] = (0.0, math.inf, None)
-        self._terminated_at: float | None = None
         self._mark = fmi3FMUState()
         self._key = next(_keys)
         _slaves[self._key] = self
@@ -229,31 +270,13 @@ class Fmi3Slave:
         """Leave the initialisation mode of the FMU."""
         return self._status("ExitInitializationMode")
 
-    def step(self, time: float, step: float) -> int:
-        """Make a step (s) from a time (s), in as many parts as the FMU makes of it."""
+    def partial_step(self, time: float, step: float) -> PartialStep:
+        """Make a step (s) from a time (s), or the beginning of it."""
         event, terminate, early = (ctypes.c_bool() for _ in range(3))
         reached = ctypes.c_double(time)
         told = [ctypes.byref(answer) for answer in (event, terminate, early, reached)]
-        end = time + step
-        worst = OK
-        for _ in range(MOST_RETURNS):
-            status = self._status("DoStep", time, step, True, *told)
-            worst = max(worst, status)
-            if terminate.value:
-                self._terminated_at = reached.value
-                return DISCARD
-            if status > WARNING or not early.value or is_reached(reached.value, end):
-                return worst
-            if not reached.value >= time:  # at the time of an event, a step may come no further
-                break
-            time = reached.value
-            step = end - time
-        self.messages.append((ERROR, f"returned early from its step again and again at {time:g} s"))
-        return ERROR
-
-    def terminated_at(self) -> float | None:
-        """Return the time (s) up to which a step went that has ended the run."""
-        return self._terminated_at
+        status = self._status("DoStep", time, step, self.forgets, *told)
+        return PartialStep(status, event.value, terminate.value, early.value, reached.value)
 
     def reset(self) -> int:
         """Go back to the state after the instantiation."""

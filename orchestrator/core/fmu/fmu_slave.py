@@ -525,7 +525,15 @@ _STEP = ctypes.CFUNCTYPE(
 
 
 class FmuSlave:
-    """An instance of an FMU of FMI 2.0. See :class:`rockshed.core.fmu.slave.Slave`."""
+    """An instance of an FMU of FMI 2.0. See :class:`rockshed.core.fmu.slave.Slave`.
+
+    Attributes
+    ----------
+    forgets : bool
+        Whether it may forget states before a step: it will not go back to them.
+    """
+
+    forgets = True
 
     def __init__(self, file: FmuFile, name: str, description: Description) -> None:
         self.name = name
@@ -659,7 +667,7 @@ class FmuSlave:
 
     def step(self, time: float, step: float) -> int:
         """Make a step (s) from a time (s)."""
-        return int(self._step(self._fmu.component, time, step, 1))
+        return int(self._step(self._fmu.component, time, step, self.forgets))
 
     def terminated_at(self) -> float | None:
         """Return the time (s) up to which the last step went, if the FMU wants to end there.

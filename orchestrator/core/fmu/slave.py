@@ -14,7 +14,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,6 +97,23 @@ class Messages(list[tuple[int, str]]):
         if message not in self.counts and len(self.counts) >= MESSAGES_KEPT:
             message = (message[0], "(other messages)")
         self.counts[message] += 1
+
+
+class SlaveLost(RuntimeError):  # noqa: N818 (it says what happened)
+    """The process of a slave has ended, or does not return. It cannot be called any more.
+
+    Attributes
+    ----------
+    name : str
+        Of the component.
+    what : str
+        How it was lost.
+    """
+
+    def __init__(self, name: str, what: str) -> None:
+        self.name = name
+        self.what = what
+        super().__init__(what)
 
 
 def counts_of(messages: list[tuple[int, str]]) -> Counter[tuple[int, str]]:
@@ -217,11 +234,28 @@ class SlaveWithRollback(Slave, Protocol):
         """
 
 
+class PartialStep(NamedTuple):
+    """A step of FMI 3.0, which may end early.
+
+    status: of FMI. event: something has happened. ended: the run is to end. early: the step has
+    ended before its end. reached: time (s) at which it ended.
+    """
+
+    status: int
+    event: bool = False
+    ended: bool = False
+    early: bool = False
+    reached: float = 0.0
+
+
 class SlaveOfFmi3(SlaveWithTexts, Protocol):
     """An instance with the calls that FMI 3.0 alone has."""
 
     def configure(self, sizes: Sequence[tuple[ValueReferences, Values, str]]) -> int:
         """Set structural parameters, references, values and type of each, before all else."""
+
+    def partial_step(self, time: float, step: float) -> PartialStep:
+        """Make a step (s) from a time (s), or the beginning of it."""
 
 
 class Source(Protocol):

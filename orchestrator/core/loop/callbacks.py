@@ -2,12 +2,12 @@
 
 import ctypes
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu.slave import ERROR, Addresses, Slave
+from ..fmu.slave import ERROR, FATAL, Addresses, Slave, SlaveLost, SlaveOfFmi3
 from ..fmu.types import TYPES, NumberType
 
 _MOVE = ctypes.CFUNCTYPE(
@@ -23,6 +23,11 @@ _COUNTED_MOVE = ctypes.CFUNCTYPE(
 )
 _STEP = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int
+)
+_PARTIAL_STEP = ctypes.CFUNCTYPE(
+    *(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int),
+    *[ctypes.POINTER(ctypes.c_bool)] * 3,
+    ctypes.POINTER(ctypes.c_double),
 )
 
 
@@ -51,19 +56,25 @@ class Callbacks:
         self.raised: BaseException | None = None
         setters = {name: self._made(moved, self._set) for name, moved in TYPES.items()}
         getters = {name: self._made(moved, self._get) for name, moved in TYPES.items()}
-        step = _STEP(self._guarded(self._step))
+        in_parts = hasattr(slave, "partial_step")
+        made = (_PARTIAL_STEP, self._partial_step) if in_parts else (_STEP, self._step)
+        step = made[0](self._guarded(made[1]))
         self._kept = (setters, getters, step)
         self.addresses = Addresses(
             0,
             {kind: _address(function) for kind, function in setters.items()},
             {kind: _address(function) for kind, function in getters.items()},
             _address(step),
+            may_return_early=in_parts,
         )
 
     def _guarded(self, function: Callable[..., int]) -> Callable[..., int]:
         def call(*arguments: Any) -> int:
             try:
                 return function(*arguments)
+            except SlaveLost as lost:  # its messages say so
+                self.raised = lost
+                return FATAL
             except BaseException as error:
                 self.raised = error
                 self._slave.messages.append((ERROR, f"{type(error).__name__}: {error}"))
@@ -91,8 +102,23 @@ class Callbacks:
         values[:] = out
         return status
 
-    def _step(self, _instance: Any, time: float, step: float, _forgets: int) -> int:
+    def _step(self, _instance: Any, time: float, step: float, forgets: int) -> int:
+        self._tell(forgets)
         return self._slave.step(time, step)
+
+    def _partial_step(
+        self, _instance: Any, time: float, step: float, forgets: int, *told: Any
+    ) -> int:
+        self._tell(forgets)
+        done = cast(SlaveOfFmi3, self._slave).partial_step(time, step)
+        for place, fact in zip(told, done[1:], strict=True):
+            place[0] = fact
+        return done.status
+
+    def _tell(self, forgets: int) -> None:
+        """Tell a slave that passes it on whether it will have to go back before this step."""
+        if hasattr(self._slave, "forgets"):
+            self._slave.forgets = bool(forgets)
 
     def _array(self, address: int, count: int, number: np.dtype[Any]) -> NDArray[Any]:
         """Return the numbers at an address; the loop uses the same few addresses all the time."""

@@ -4,18 +4,20 @@ What they refuse is collected from all of them.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import InputRefused, Problem
+from ..errors import ComponentLost, InputRefused, Problem
 from ..fmu.access import read_value
 from ..fmu.slave import (
     DISCARD,
     OK,
     WARNING,
     Slave,
+    SlaveLost,
     Source,
     status_name,
     times,
@@ -53,6 +55,28 @@ class Stages:
 
 NO_STAGES = Stages()
 """Adds nothing to an initialisation."""
+
+
+@contextmanager
+def losses_refused(start: float = 0.0) -> Iterator[None]:
+    """Refuse a system whose component is lost while it is made ready.
+
+    Parameters
+    ----------
+    start : float
+        Time (s) at which the run starts.
+
+    Raises
+    ------
+    ComponentLost
+        The process of a slave has ended, or does not return.
+    """
+    try:
+        yield
+    except SlaveLost as lost:
+        what = f"{lost.what} while it was made ready, at t = {start:.9g} s"
+        remedy = "`rockshed check` looks for the reason"
+        raise ComponentLost([Problem(lost.name, what, remedy)]) from lost
 
 
 def instantiate(

@@ -139,7 +139,8 @@ class KeptInstances:
             status = path.stat()
         except OSError:
             return source  # which says what is wrong with it
-        mark = (status.st_mtime_ns, status.st_size, status.st_ino)
+        process = source.origin.get("process")
+        mark = (status.st_mtime_ns, status.st_size, status.st_ino, process)
         known, found = self._sources.get(str(path), (None, None))
         if found is None or known != mark:
             found = _DescribedOnce(source)

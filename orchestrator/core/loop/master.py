@@ -327,8 +327,9 @@ class Master:
         said = last_words(self._slaves[name])
         if fault.what:
             return RunFailed(name, self._time(fault), fault.what)
-        if fault.status == FATAL:
-            self._slaves[name].messages.append((FATAL, "cannot be used any more"))
+        messages = self._slaves[name].messages
+        if fault.status == FATAL and all(status != FATAL for status, _ in messages):
+            messages.append((FATAL, "cannot be used any more"))
         if fault.status == NOT_FINITE:
             return RunFailed(name, self._plan.timing.seconds(fault.exchange + 1), self._lost(fault))
         if fault.status == NOT_FITTING:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any, cast
 
-from ..fmu.slave import ERROR, OK, Slave, SlaveWithTexts, worst
+from ..fmu.slave import ERROR, FATAL, OK, Slave, SlaveLost, SlaveWithTexts, worst
 from ..system.plan import End, Plan, with_whole_arrays
 from ..system.schedule import Action
 from ..system.values import start_value
@@ -150,6 +150,8 @@ class TextCalls:
         def call(*_arguments: Any) -> int:
             try:
                 return move(slave)
+            except SlaveLost:  # its messages say so
+                return FATAL
             except Exception as error:  # none can cross the loop
                 slave.messages.append((ERROR, f"{type(error).__name__}: {error}"))
                 return ERROR

@@ -3,6 +3,7 @@
 Nothing runs here. All problems of a system are found at once.
 """
 
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -25,7 +26,7 @@ from .names import expand, nearest, select, split_name
 from .plan import BondPlaces, End, Plan, PlannedScenario, Starts, with_whole_arrays
 from .renaming import present_name, renaming_warning
 from .scenario import ScenarioReader
-from .system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
+from .system import ALL, ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
 from .units import is_force, is_joule, unit_text, units_agree
 from .values import start_value, value_for
@@ -104,6 +105,7 @@ class _Planner:
         timing = make_timing(self.system, self.problems)
         parts = self._parts(timing)
         self._check_states()
+        self._check_isolation()
         if timing is not None and min(timing.output_every, timing.state_every) > 0:
             columns = 1 + len(parts.recorded) + 3 * len(parts.bonds)
             self.problems += amount_problems(self.system, timing, columns)
@@ -227,15 +229,30 @@ class _Planner:
         """Refuse two instances of an FMU that may be in a process only once."""
         users: dict[str, list[str]] = {}
         for name, description in self.descriptions.items():
-            if description.once_per_process:
+            if description.once_per_process and name not in self.system.isolated:
                 users.setdefault(description.guid, []).append(name)
         for names in users.values():
             if len(names) > 1:
                 self._refuse(
                     ", ".join(names),
                     "use one FMU that can be instantiated only once in a process",
-                    "export it under two names",
+                    "isolate them, or export it under two names",
                 )
+
+    def _check_isolation(self) -> None:
+        """Refuse names that nothing has, and what cannot be in a process of its own."""
+        for name in self.system.isolate:
+            if name != ALL and name not in self.system.components:
+                known = [*self.system.components, ALL]
+                self._refuse("isolate", f"there is no component {name!r}", nearest(name, known))
+        isolated = self.system.isolated
+        for name in isolated:
+            if not hasattr(self.sources[name], "path"):
+                what = "is no FMU file, and only those run in processes of their own"
+                self._refuse(f"{name}: isolate", what, "leave it out, or take an FMU")
+        if isolated and sys.platform == "win32":
+            what = "is for Linux and macOS: Windows has no such pipes"
+            self._refuse("isolate", what, "leave it out")
 
     def _order(self) -> tuple[str, ...]:
         known = self.system.components

@@ -81,6 +81,8 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 _DottedName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$")]
 """Name of a component, ``rock``, also of one inside a system of an SSP, ``shed.rock``."""
 
+ALL = "all"
+"""Stands for all components."""
 RESERVED = ("time", "coupling")
 """Names that a component cannot have: columns of the results begin with them."""
 
@@ -120,6 +122,10 @@ class ComponentSpec(_Data):
     extrapolation : int, optional
         Order, 0 to 2, of the polynomial through their newest values that its real inputs follow; in
         each step, an input has the mean of that. 0 holds them. Without it, that of the system.
+    isolate : bool
+        Run the FMU in a process of its own.
+    time_limit : float, optional
+        Longest time (s) of one call of an isolated FMU; without it, that of the system.
     """
 
     fmu: str
@@ -128,6 +134,8 @@ class ComponentSpec(_Data):
     record_states: bool = False
     tolerance: Tolerance | None = None
     extrapolation: Extrapolation | None = None
+    isolate: bool = False
+    time_limit: Seconds | None = None
 
 
 class Connection(_Data):
@@ -420,6 +428,11 @@ class SystemSpec(_Data):
         Order of the polynomials that inputs follow, of components that have none of their own.
     adaptive : Adaptive, optional
         The exchange step becomes longer where the error allows it.
+    isolate : list of str
+        Components whose FMUs run in processes of their own, besides those that say so themselves;
+        ``all`` stands for all.
+    time_limit : float
+        Longest time (s) of one call of an isolated FMU; then it is ended.
     scenario : Scenario
         Inputs over time, values that change, and faults of connections.
     """
@@ -443,6 +456,8 @@ class SystemSpec(_Data):
     tolerance: Tolerance | None = None
     extrapolation: Extrapolation = 0
     adaptive: Adaptive | None = None
+    isolate: list[str] = []
+    time_limit: Seconds = 600.0
     scenario: Scenario = Scenario()
 
     def step(self, component: str) -> float:
@@ -453,6 +468,15 @@ class SystemSpec(_Data):
         """Return the longest communication step (s) that a component may be asked for."""
         longest = self.adaptive.largest_step if self.adaptive else self.exchange_step
         return self.components[component].step or max(longest, self.exchange_step)
+
+    @property
+    def isolated(self) -> dict[str, float]:
+        """Return the longest time (s) of a call of each component with a process of its own."""
+        return {
+            name: spec.time_limit or self.time_limit
+            for name, spec in self.components.items()
+            if spec.isolate or name in self.isolate or ALL in self.isolate
+        }
 
 
 def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
