@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -156,9 +157,12 @@ def test_processes_that_the_code_has_started_end_with_it(tmp_path):
 
 def living(group):
     """Processes of a group that have not ended."""
-    files = [file for file in Path("/proc").glob("[0-9]*/stat") if file.is_file()]
-    words = [file.read_text().rpartition(")")[2].split() for file in files]
-    return [state for state, _, found, *_ in words if found == group and state != "Z"]
+    found = []
+    for file in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it ends meanwhile
+            state, _, its_group, *_ = file.read_text().rpartition(")")[2].split()
+            found += [state] if its_group == group and state != "Z" else []
+    return found
 
 
 def test_a_run_that_is_killed_leaves_no_process(tmp_path):
