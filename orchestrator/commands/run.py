@@ -80,7 +80,8 @@ _StateInterval = Annotated[float | None, _seconds("Time between two recorded sta
 _Master = Annotated[
     str | None,
     typer.Option(
-        metavar="sequential|jacobi", help="One component after the other, or all at once."
+        metavar="sequential|jacobi|implicit",
+        help="One component after the other, all at once, or each exchange until it fits together.",
     ),
 ]
 _Tolerance = Annotated[

@@ -116,7 +116,7 @@ def _component(system: SystemSpec, name: str, place: int) -> _Box:
     """Return the box of a component: name, FMU, step."""
     spec = system.components[name]
     step = system.step(name)
-    turn = f"{place + 1} " if system.master == "sequential" else ""
+    turn = "" if system.master == "jacobi" else f"{place + 1} "
     model = Path(spec.fmu).stem if spec.fmu.endswith(".fmu") else spec.fmu.partition(" (")[0]
     lines = [Text(_cut(f"{turn}{name}", 20), _NAME, bold=True)]
     lines += [Text(_cut(model, 22), colour=_GREY)] if model else []
@@ -278,6 +278,8 @@ class _Drawing:
         told = ["A row gives, a column takes."]
         if self.system.master == "sequential" and self.number > 1:
             told.append("Above the diagonal: values of this exchange, below: of the last.")
+        elif self.system.master == "implicit" and self.number > 1:
+            told.append("Values of one exchange, which is repeated until they fit together.")
         elif self.number > 1:
             told.append("All take the values of the beginning of an exchange.")
         lines = [Text(line, colour=_GREY) for text in told for line in _wrapped(text, width)]

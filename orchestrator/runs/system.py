@@ -205,8 +205,8 @@ class System:
         ----------
         **options
             Keys of a system file: ``stop_time``, ``exchange_step``, ``output_interval``,
-            ``state_interval`` (s), ``master`` (``sequential`` or ``jacobi``), ``order``,
-            ``record``, ``watch``, ``energy_alarm``, ...
+            ``state_interval`` (s), ``master`` (``sequential``, ``jacobi`` or ``implicit``),
+            ``iteration``, ``order``, ``record``, ``watch``, ``energy_alarm``, ...
 
         Returns
         -------

@@ -472,7 +472,7 @@ REFUSED = [
     (["lab-impact", "--stop-time", "-1"], ["--stop-time", "is not after start_time"]),
     (["lab-impact", "--stop-time", "nan"], ["--stop-time", "finite"]),
     (["lab-impact", "--coupling", "magic"], ["'magic' is unknown", "paper, impulse, jacobi"]),
-    (["lab-impact", "--master", "boss"], ["'sequential' or 'jacobi'"]),
+    (["lab-impact", "--master", "boss"], ["'sequential', 'jacobi' or 'implicit'"]),
     (["missing.toml"], ["missing.toml", "cannot be read"]),
 ]
 

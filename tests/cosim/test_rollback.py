@@ -11,8 +11,9 @@ from rockshed.core.fmu.fmu_slave import FmuFile
 from rockshed.core.loop.buses import Buses
 from rockshed.core.loop.exchange import ExchangeLoop
 from rockshed.core.loop.initialisation import free, initialise, instantiate
-from rockshed.core.masters.rollback import Rollback, prove_rollback, rollback_problems
+from rockshed.core.masters.rollback import Rollback, prove_rollback
 from rockshed.core.system.planning import make_plan
+from rockshed.core.system.rollback import rollback_problems
 from rockshed.core.system.system import system_from
 from rockshed.fmus.build import build
 from rockshed.fmus.parts import Fmi, Runtime
@@ -127,7 +128,7 @@ def test_a_slave_without_the_calls_is_refused_by_name():
 def test_an_fmu_that_says_it_cannot_is_named_before_anything_is_made():
     made = Mock([inp("u"), out("y")], serializes=False)
     plan = make_plan(*wired({"a": made, "b": mass()}, []))
-    (problem,) = rollback_problems(plan, "the implicit master")
+    (problem,) = rollback_problems(plan.descriptions, "the implicit master")
     assert problem.where == "a"
     assert "canGetAndSetFMUstate" in problem.what
 

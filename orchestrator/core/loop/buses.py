@@ -39,7 +39,8 @@ class Buses:
     ----------
     inputs, outputs : array of float
         Newest values of all connected inputs and of all exchanged outputs; behind these, the values
-        of the elements of inputs that nothing feeds.
+        of the elements of inputs that nothing feeds, and with the implicit master the values that
+        inputs have in a step.
     setters, getters : dict of str to list of Block
         Calls that move a component's values.
     channels : array of CHANNEL
@@ -66,7 +67,8 @@ class Buses:
     def __init__(self, plan: Plan, journal: IntegerTable | None = None) -> None:
         self.plan = plan
         self.inputs = np.zeros(len(plan.inputs))
-        self.outputs = np.concatenate((np.zeros(len(plan.outputs)), plan.held))
+        own = np.zeros(0 if plan.iteration is None else len(plan.inputs))
+        self.outputs = np.concatenate((np.zeros(len(plan.outputs)), plan.held, own))
         self.setters = make_blocks(plan.inputs)
         self.getters = make_blocks(plan.outputs)
         self.channels = _channels(plan)

@@ -6,6 +6,7 @@ from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..fmu.slave import BOOLEAN, Addresses, Slave
 from ..fmu.types import TYPES
@@ -132,7 +133,7 @@ class ExchangeLoop:
         """
         return self._call(exchange, 0)
 
-    def part(self, begin: int, end: int) -> "Excerpt":
+    def part(self, begin: int, end: int, source: NDArray[np.uint64] | None = None) -> "Excerpt":
         """Return a part of the loop, which forgets no state and enters nothing into the accounts.
 
         Parameters
@@ -140,6 +141,8 @@ class ExchangeLoop:
         begin, end : int
             The operations from the first up to before the second, by their places in
             :attr:`~.buses.Buses.operations`.
+        source : array of uint64, optional
+            For each input, the place that feeds it, where that is another one.
         """
         return Excerpt(
             self,
@@ -149,6 +152,7 @@ class ExchangeLoop:
                 first=np.array([begin, end], np.int64),
                 channels=np.zeros(0, CHANNEL),
                 watched=np.zeros(0, WATCHED),
+                source=self._tables.source if source is None else source,
             ),
         )
 
@@ -173,6 +177,11 @@ class ExchangeLoop:
             ),
         )
 
+    def accounts(self) -> "Excerpt":
+        """Return what ends an exchange, without its operations: accounts, a row if it is due."""
+        nothing = np.full(2, self._tables.first[-1], np.int64)
+        return Excerpt(self, self.with_tables(first=nothing))
+
     def with_tables(self, **others: Any) -> Tables:
         """Return the tables of the loop with some others, by field; they lie in the same memory."""
         return self._tables._replace(**others)
@@ -180,9 +189,12 @@ class ExchangeLoop:
     def _call(self, first: int, count: int) -> Fault | None:
         return self.carry_out(self._head, first, count)
 
-    def carry_out(self, head: IntegerTable, first: int, count: int) -> Fault | None:
-        """Carry out exchanges with the tables that a head points to; see :meth:`advance`."""
-        head[NUMBERS.index("row")] = len(self._waiting)
+    def carry_out(self, head: IntegerTable, first: int, count: int, rows: int = 0) -> Fault | None:
+        """Carry out exchanges with the tables that a head points to; see :meth:`advance`.
+
+        ``rows`` have been taken since the last ones that wait.
+        """
+        head[NUMBERS.index("row")] = len(self._waiting) + rows
         done, number, status = self._loop(head, first, count)
         if not status:
             return None
@@ -218,15 +230,20 @@ class Excerpt:
         self._tables = tables  # keeps alive what the head points to
         self._head = head(tables)
 
-    def carry_out(self, exchange: int) -> Fault | None:
+    def carry_out(self, exchange: int, rows: int = 0) -> Fault | None:
         """Carry them out; steps are those of the period that begins after so many exchanges.
+
+        Parameters
+        ----------
+        exchange, rows : int
+            Number of exchanges before, and of rows that wait for the master to count them.
 
         Returns
         -------
         Fault or None
             The operation that failed.
         """
-        return self._loop.carry_out(self._head, exchange, 1)
+        return self._loop.carry_out(self._head, exchange, 1, rows)
 
 
 def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) -> Tables:

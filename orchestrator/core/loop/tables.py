@@ -21,6 +21,8 @@ ENDED = 1 << 42
 """Status of a step in which an FMU of FMI 3.0 wants the run to end."""
 STUCK = 1 << 43
 """Status of a step that returned early again and again, and came no further."""
+UNCONVERGED = 1 << 44
+"""Status of an exchange whose values do not fit together after all iterations."""
 
 
 def _record(integers: str, reals: str = "") -> np.dtype[np.void]:

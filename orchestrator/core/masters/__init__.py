@@ -1,7 +1,8 @@
 """Ways of carrying out the exchanges of a run, which the plan of a system chooses.
 
 A way is a :class:`~rockshed.core.loop.driver.Driver`. The explicit masters ``sequential`` and
-``jacobi`` differ in their schedule only, and need nothing beyond the compiled loop.
+``jacobi`` differ in their schedule only, and need nothing beyond the compiled loop; ``implicit`` is
+:class:`~rockshed.core.masters.implicit.Implicit`.
 """
 
 from collections.abc import Mapping
@@ -11,6 +12,7 @@ from ..loop.buses import Buses
 from ..loop.driver import Driver
 from ..loop.exchange import ExchangeLoop
 from .adaptive import DoublingDriver, LedgerDriver
+from .implicit import Implicit
 
 
 def driver_of(buses: Buses, slaves: Mapping[str, Slave]) -> Driver:
@@ -22,7 +24,14 @@ def driver_of(buses: Buses, slaves: Mapping[str, Slave]) -> Driver:
         With the values after the initialisation, and the plan.
     slaves : mapping of str to Slave
         Initialised, by component.
+
+    Raises
+    ------
+    InputRefused
+        Components that the way asks too much of, by name.
     """
+    if buses.plan.iteration is not None:
+        return Implicit(buses, slaves)
     loop = ExchangeLoop(buses, slaves)
     adaptive = buses.plan.system.adaptive
     if adaptive is not None:

@@ -15,7 +15,6 @@ from ..errors import InputRefused, Problem
 from ..fmu.slave import FATAL, REAL, Slave, SlaveWithRollback
 from ..loop.buses import Buses
 from ..loop.exchange import Excerpt, ExchangeLoop
-from ..system.plan import Plan
 from ..system.schedule import Action
 
 _NUDGE = 2.0**-20
@@ -55,25 +54,6 @@ class Rollback:
         """
         for slave in self._slaves.values():
             slave.roll_back()
-
-
-def rollback_problems(plan: Plan, wanted_by: str) -> list[Problem]:
-    """Return which components say that they cannot go back.
-
-    Parameters
-    ----------
-    plan : Plan
-        Of the system.
-    wanted_by : str
-        What needs it: ``the implicit master``.
-    """
-    what = "its FMU cannot go back to an earlier state (canGetAndSetFMUstate), and {} needs that"
-    remedy = "choose another master, or export the FMU with it"
-    return [
-        Problem(name, what.format(wanted_by), remedy)
-        for name in plan.order
-        if not plan.descriptions[name].keeps_state
-    ]
 
 
 def prove_rollback(

@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from ..errors import Problem
 from ..fmu.description import Description
+from .iterated import iterated_schedule
 from .plan import PlannedScenario
-from .schedule import Schedule, make_schedule
+from .schedule import Schedule, Scheme, make_schedule
 from .system import Adaptive, SystemSpec
 from .timing import Timing
 
@@ -33,7 +34,9 @@ def make_schedules(
     tuple of Schedule
         One alone where the system is not adaptive.
     """
-    scheme = system.master
+    if system.master == "implicit":
+        return (iterated_schedule(order, timing.steps, timing.exchange),)
+    scheme: Scheme = system.master
     made = [make_schedule(order, timing.steps, timing.exchange, scheme, extrapolated)]
     for level in range(1, timing.longest.bit_length()):
         exchange = timing.exchange << level

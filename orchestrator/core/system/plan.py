@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fmu.description import Description, Port
+from .iteration import InputMoment
 from .schedule import Schedule
 from .signals import Signals
 from .system import SystemSpec
@@ -196,6 +197,25 @@ class PlannedScenario:
 
 
 @dataclass(frozen=True)
+class PlannedIteration:
+    """Moments and tolerances of all inputs, by place, for the implicit master.
+
+    Attributes
+    ----------
+    moments : tuple of str
+        InputMoment of the values that it gets for a step.
+    tolerances : array of float
+        Relative tolerance of its source.
+    absolutes : array of float
+        Difference of its source that is tolerated besides, in its unit.
+    """
+
+    moments: tuple[InputMoment, ...]
+    tolerances: NDArray[np.float64]
+    absolutes: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Plan:
     """A system ready to run.
 
@@ -247,6 +267,8 @@ class Plan:
         Inputs that do not hold between exchanges, by rising place.
     longer : tuple of Schedule
         Of exchanges of 2, 4, 8, ... exchange steps, where the system is adaptive.
+    iteration : PlannedIteration or None
+        For the implicit master; None with another one.
     """
 
     system: SystemSpec
@@ -272,6 +294,7 @@ class Plan:
     scenario: PlannedScenario = PlannedScenario()
     extrapolated: tuple[Extrapolated, ...] = ()
     longer: tuple[Schedule, ...] = ()
+    iteration: PlannedIteration | None = None
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:

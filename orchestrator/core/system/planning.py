@@ -20,11 +20,13 @@ from ..fmu.fmu_slave import UnusableError, read_description
 from ..fmu.slave import NUMBERS, REAL, STRING, Source
 from .adaptive import adaptive_problems, make_schedules
 from .extrapolation import Extrapolating, extrapolation_problems
+from .iterated import iteration_problems, plan_iteration
 from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
 from .names import expand, nearest, select, split_name
 from .plan import BondPlaces, End, Plan, PlannedScenario, Starts, with_whole_arrays
 from .renaming import present_name, renaming_warning
+from .rollback import rollback_problems
 from .scenario import ScenarioReader
 from .system import ALL, ComponentSpec, Connection, PowerBond, SystemSpec, Value
 from .timing import Timing, make_timing
@@ -105,6 +107,7 @@ class _Planner:
         timing = make_timing(self.system, self.problems)
         parts = self._parts(timing)
         self._check_states()
+        self._check_iteration(parts, timing)
         self._check_isolation()
         if timing is not None and min(timing.output_every, timing.state_every) > 0:
             columns = 1 + len(parts.recorded) + 3 * len(parts.bonds)
@@ -158,6 +161,7 @@ class _Planner:
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
         feeds = {target.name: place[source.name] for source, target in parts.links}
         unfed = [end for end in inputs if end.name not in feeds]
+        fed_by = [outputs[feeds[i.name]] if i.name in feeds else None for i in inputs]
         feeds |= {end.name: len(outputs) + i for i, end in enumerate(unfed)}
         source = [feeds[end.name] for end in inputs]
         extrapolating = Extrapolating(self.system, order, timing)
@@ -168,6 +172,7 @@ class _Planner:
             descriptions=self.descriptions,
             timing=timing,
             schedule=schedules[0],
+            iteration=plan_iteration(self.system, inputs, fed_by),
             starts=parts.starts,
             inputs=inputs,
             outputs=outputs,
@@ -281,6 +286,29 @@ class _Planner:
                 self._refuse(
                     f"{name}.record_states", "the FMU cannot serialize its state", "leave it out"
                 )
+
+    def _check_iteration(self, parts: _Parts, timing: Timing | None) -> None:
+        """Refuse what the implicit master cannot do, or what only it would understand."""
+        self.problems += iteration_problems(self.system.iteration, parts.links)
+        if self.system.master != "implicit":
+            return
+        self.problems += rollback_problems(self.descriptions, "the implicit master")
+        if parts.texts or parts.recorded_texts:
+            end = parts.texts[0][0] if parts.texts else parts.recorded_texts[0]
+            what = "is text, which the implicit master cannot take back"
+            self._refuse(end.name, what, "leave it out, or choose another master")
+        specs = self.system.components.values()
+        if self.system.extrapolation or any(spec.extrapolation for spec in specs):
+            what = "is for the other masters: the implicit one has the values of the end"
+            self._refuse("extrapolation", what, "leave it out, and choose iteration.input")
+        if self.system.adaptive is not None:
+            self._refuse("adaptive", "is for the other masters", "leave it out")
+        slow = [n for n in timing.steps if timing.steps[n] > timing.exchange] if timing else []
+        if slow and self.system.scenario:
+            what = f"with the implicit master, while {', '.join(slow)} steps over several exchanges"
+            self._refuse(
+                "scenario", what, "choose another master, or no step beyond the exchange's"
+            )
 
     # ------------------------------------------------------------------ names
 

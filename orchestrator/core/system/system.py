@@ -25,6 +25,7 @@ from ..errors import InputRefused, Problem, counted
 from ..form_faults import UNKNOWN_KEY, sentences
 from ..input_text import read_text, toml_content
 from .clock import seconds_in
+from .iteration import IteratedConnection, Iteration
 from .names import matches, nearest, split_name
 
 Value = bool | int | float | str
@@ -406,8 +407,11 @@ class SystemSpec(_Data):
     energy_alarm : EnergyAlarm
         Limit of the energy that couplings and components make; a warning beyond it.
     master : str
-        ``sequential`` (in ``order``, each component takes the newest values) or ``jacobi`` (all
-        take the values of the beginning of the exchange).
+        ``sequential`` (in ``order``, each component takes the newest values), ``jacobi`` (all
+        take the values of the beginning of the exchange), or ``implicit`` (each exchange is
+        repeated until all values fit together).
+    iteration : Iteration
+        How the implicit master repeats it.
     order : list of str
         Every component once; without it, as they are listed.
     start_time, stop_time, exchange_step : float
@@ -444,7 +448,8 @@ class SystemSpec(_Data):
     shared: dict[Name, SharedValue] = {}
     bonds: dict[Name, PowerBond] = {}
     energy_alarm: EnergyAlarm = EnergyAlarm()
-    master: Literal["sequential", "jacobi"] = "sequential"
+    master: Literal["sequential", "jacobi", "implicit"] = "sequential"
+    iteration: Iteration = Iteration()
     order: list[str] = []
     start_time: Time = 0.0
     stop_time: Time
@@ -661,6 +666,6 @@ def _one_value(key: str, given: Mapping[str, Value]) -> list[Problem]:
 
 _MODELS = (
     *(ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, SystemSpec),
-    *(Scenario, ValueSet, ConnectionFault, Adaptive),
+    *(Scenario, ValueSet, ConnectionFault, Adaptive, Iteration, IteratedConnection),
 )
 _KEYS = sorted({field.alias or key for m in _MODELS for key, field in m.model_fields.items()})
