@@ -61,7 +61,7 @@ def _turn(number: int, name: str, step: int, exchange: int) -> list[Operation]:
 
 
 def plan_iteration(
-    system: SystemSpec, inputs: Sequence[End], sources: Sequence[End | None]
+    system: SystemSpec, inputs: Sequence[End], outputs: Sequence[End], source: Sequence[int]
 ) -> PlannedIteration | None:
     """Replace names by places; return None with another master.
 
@@ -69,14 +69,15 @@ def plan_iteration(
     ----------
     system : SystemSpec
         Checked.
-    inputs : sequence of End
-        Inputs on the bus.
-    sources : sequence of End or None
-        Outputs that feed them; None where nothing does.
+    inputs, outputs : sequence of End
+        The buses.
+    source : sequence of int
+        Place among the outputs that feeds each input; one behind them feeds none.
     """
     if system.master != "implicit":
         return None
-    rules = [_rule(system.iteration, source, target) for source, target in zip(sources, inputs)]
+    feeding = [outputs[place] if place < len(outputs) else None for place in source]
+    rules = [_rule(system.iteration, end, target) for end, target in zip(feeding, inputs)]
     return PlannedIteration(
         tuple(moment for moment, _, _ in rules),
         np.array([tolerance for _, tolerance, _ in rules]),

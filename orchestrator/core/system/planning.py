@@ -152,16 +152,14 @@ class _Planner:
     def _resolved(self, order: tuple[str, ...], timing: Timing, parts: _Parts) -> Plan:
         """Replace ports by places on the buses."""
         at_bonds = [end for bond in parts.bonds for end in bond.force + bond.position]
-        sources = [source for source, _ in parts.links]
         targets = [*(target for _, target in parts.links), *parts.scenario.inputs.values()]
         inputs = _sorted(order, with_whole_arrays(self.descriptions, targets))
-        exchanged = [*sources, *parts.watched, *at_bonds, *parts.scenario.asked]
+        exchanged = [*(s for s, _ in parts.links), *parts.watched, *at_bonds, *parts.scenario.asked]
         outputs = _sorted(order, with_whole_arrays(self.descriptions, exchanged))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
         feeds = {target.name: place[source.name] for source, target in parts.links}
         unfed = [end for end in inputs if end.name not in feeds]
-        fed_by = [outputs[feeds[i.name]] if i.name in feeds else None for i in inputs]
         feeds |= {end.name: len(outputs) + i for i, end in enumerate(unfed)}
         source = [feeds[end.name] for end in inputs]
         extrapolating = Extrapolating(self.system, order, timing)
@@ -172,7 +170,7 @@ class _Planner:
             descriptions=self.descriptions,
             timing=timing,
             schedule=schedules[0],
-            iteration=plan_iteration(self.system, inputs, fed_by),
+            iteration=plan_iteration(self.system, inputs, outputs, source),
             starts=parts.starts,
             inputs=inputs,
             outputs=outputs,
