@@ -268,6 +268,8 @@ def describe_system(job: Job) -> Overview:
         parts.append(f"power bonds: {', '.join(bonds)}")
     if plan.scenario:
         parts.append(_scenario(plan))
+    for when, loops in (("", plan.loops), (" at the start", plan.loops_at_start)):
+        parts += [f"algebraic loop{when}: {loop}" for loop in loops]
     return Overview([*parts, *(f"warning: {text}" for text in undriven(plan))])
 
 

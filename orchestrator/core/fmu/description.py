@@ -11,6 +11,8 @@ from typing import Any
 from .annotations import NOTHING, Annotation
 from .slave import NUMBERS
 
+Dependencies = Mapping[str, tuple[str, ...]]
+
 UNIT_TOLERANCE = 1e-12
 """Relative difference between two conversion factors that counts as none."""
 
@@ -216,6 +218,8 @@ class Description:
     may_return_early: bool = False
     keeps_state: bool = False
     varies_step: bool = False
+    dependencies: Dependencies = field(default_factory=dict)
+    initial_dependencies: Dependencies = field(default_factory=dict)
 
     @property
     def is_fmi_3(self) -> bool:

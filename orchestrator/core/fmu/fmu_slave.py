@@ -13,7 +13,7 @@ import os
 import sys
 import weakref
 import zipfile
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -48,7 +48,7 @@ from ...temporary import TemporaryFolder
 from ..errors import InputRefused, Problem
 from .annotations import NOTHING, Annotation, read_annotations
 from .archive import MOST_DESCRIPTION, Archive, ArchiveError
-from .description import Description, Port, UnitDefinition
+from .description import Dependencies, Description, Port, UnitDefinition
 from .fmi3_slave import Fmi3Slave
 from .slave import (
     ERROR,
@@ -275,7 +275,18 @@ def _described(
         interface.mightReturnEarlyFromDoStep,
         bool(interface.canGetAndSetFMUstate),
         bool(interface.canHandleVariableCommunicationStepSize),
+        _dependencies(model.outputs),
+        _dependencies(model.initialUnknowns),
     )
+
+
+def _dependencies(unknowns: Iterable[Any]) -> Dependencies:
+    """Return what variables depend on, of those of which that is told."""
+    return {
+        unknown.variable.name: tuple(variable.name for variable in unknown.dependencies)
+        for unknown in unknowns
+        if unknown.dependencies is not None
+    }
 
 
 def _tolerance(experiment: Any) -> float | None:

@@ -25,6 +25,7 @@ from ..fmu.slave import (
     worst,
 )
 from ..system.limits import MOST_INTERNAL_STEPS
+from ..system.loops import told
 from ..system.plan import Plan
 from .buses import Buses
 from .start_values import set_values
@@ -176,9 +177,11 @@ def initialise(
     _refuse_lost(buses)
     warnings = [text for slave in slaves.values() for text in _warnings(slave)]
     if unsettled:
+        loops = list(plan.loops_at_start)
+        where = f"; the loop at the start does not converge: {told(loops)}" if loops else ""
         warnings.append(
             f"outputs at the start still change after {_ROUNDS} rounds of exchange, "
-            f"{unsettled} among them"
+            f"{unsettled} among them{where}"
         )
     endless = [problem for name in plan.order for problem in _too_many(plan, slaves[name])]
     if endless:

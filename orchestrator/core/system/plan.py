@@ -267,6 +267,8 @@ class Plan:
         Inputs that do not hold between exchanges, by rising place.
     longer : tuple of Schedule
         Of exchanges of 2, 4, 8, ... exchange steps, where the system is adaptive.
+    loops, loops_at_start : tuple of str
+        Algebraic loops of the run and of its initialisation, as chains of ports.
     iteration : PlannedIteration or None
         For the implicit master; None with another one.
     """
@@ -295,6 +297,8 @@ class Plan:
     extrapolated: tuple[Extrapolated, ...] = ()
     longer: tuple[Schedule, ...] = ()
     iteration: PlannedIteration | None = None
+    loops: tuple[str, ...] = ()
+    loops_at_start: tuple[str, ...] = ()
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:

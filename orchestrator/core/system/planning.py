@@ -6,7 +6,7 @@ Nothing runs here. All problems of a system are found at once.
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +23,7 @@ from .extrapolation import Extrapolating, extrapolation_problems
 from .iterated import iteration_problems, plan_iteration
 from .joining import Joiner
 from .limits import amount_problems, internal_step_problems
+from .loops import algebraic_loops, told
 from .names import expand, nearest, select, split_name
 from .plan import BondPlaces, End, Plan, PlannedScenario, Starts, with_whole_arrays
 from .renaming import present_name, renaming_warning
@@ -116,7 +117,21 @@ class _Planner:
         self.problems += adaptive_problems(self.system, self.descriptions, parts.scenario)
         if self.problems or timing is None:
             raise InputRefused(self.problems)
-        return self._resolved(order, timing, parts)
+        return self._with_loops(self._resolved(order, timing, parts), parts.links)
+
+    def _with_loops(self, plan: Plan, links: _Links) -> Plan:
+        """Return the plan with the algebraic loops, and a warning where they get a delay."""
+        loops = algebraic_loops(self.descriptions, links, at_start=False)
+        at_start = algebraic_loops(self.descriptions, links, at_start=True)
+        warnings = list(plan.warnings)
+        if loops and plan.iteration is None:
+            warnings.append(
+                f"algebraic loop: {told(loops)}: with the {self.system.master} master values go "
+                'round with a delay of an exchange; master = "implicit" finds those that fit'
+            )
+        return replace(
+            plan, warnings=tuple(warnings), loops=tuple(loops), loops_at_start=tuple(at_start)
+        )
 
     def _parts(self, timing: Timing | None) -> _Parts:
         links = self._links()
