@@ -224,7 +224,9 @@ def starting_problems(
         plan = make_plan(system, every)
         with losses_refused():
             slaves = instantiate(plan, every)
-            initialise(slaves, Buses(plan), allow_unstable)
+            buses = Buses(plan)
+            initialise(slaves, buses, allow_unstable)
+            driver_of(buses, slaves)
     except InputRefused as refusal:
         return refusal.problems
     finally:

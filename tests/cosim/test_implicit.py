@@ -9,7 +9,8 @@ import pytest
 from rockshed.core import continuing
 from rockshed.core.continuing import find_stopped
 from rockshed.core.errors import InputRefused, RunFailed
-from rockshed.core.run import simulate
+from rockshed.core.loop.changes import ValueChange, plan_change
+from rockshed.core.run import simulate, starting_problems
 from rockshed.core.system.planning import make_plan
 from rockshed.ssp.documents import as_bytes
 from rockshed.ssp.package import MAIN, Package
@@ -303,6 +304,29 @@ def test_what_cannot_be_iterated_is_refused_before_anything_runs():
     scenario = {"set": [{"port": "contact.stiffness", "value": 1.0, "at": 0.1}]}
     slow = pair(components={"a": {"step": 0.02}}, scenario=scenario)
     assert any("steps over several exchanges" in said for said in problems(slow))
+
+
+def test_a_change_within_a_window_is_refused():
+    plan = make_plan(*pair(components={"a": {"step": 0.02}}))
+    assert plan_change(plan, ValueChange(0.02, {})).exchange == 2
+    with pytest.raises(InputRefused) as refused:
+        plan_change(plan, ValueChange(0.03, {}))
+    assert "lies within a window of 0.02 s" in str(refused.value)
+
+
+def test_what_does_not_come_back_is_known_before_a_run():
+    spec, sources = pair()
+    step = sources["a"].step
+    count = iter(range(100))
+
+    def hidden(v, t, h):
+        step(v, t, h)
+        v["velocity"] += 1e-9 * next(count)
+
+    sources["a"].step = hidden
+    (problem,) = starting_problems(spec, sources)
+    assert problem.where == "a"
+    assert "does not come back to an earlier state" in problem.what
 
 
 def test_an_entry_that_names_no_connection_is_refused():

@@ -151,6 +151,10 @@ def _exchange(plan: Plan, at: float, problems: list[Problem]) -> int:
         end = timing.seconds(timing.exchanges)
         what = f"{at:g} s does not lie in the run, from {begin:g} s until before {end:g} s"
         problems.append(Problem("at", what, "give a time within it"))
+    if plan.iteration is not None and number % plan.schedule.period:
+        step = timing.lasts(timing.exchange * plan.schedule.period)
+        what = f"{at:g} s lies within a window of {step:g} s, which the implicit master iterates"
+        problems.append(Problem("at", what, "give a multiple of that after the start"))
     return number
 
 
