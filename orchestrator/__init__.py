@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .analyses.rockfall.run import rockfall
     from .analyses.study.factors import Interval, RandomValue
     from .analyses.study.run import StudyFailed, study
+    from .analyses.study.variants import branches
     from .checking.check import check_fmu
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunDoubted, RunFailed, UnknownName
@@ -72,6 +73,7 @@ _HOMES = {
     "read_run": "runs.run",
     "report": "reports.writing",
     "branch": "runs.continuing",
+    "branches": "analyses.study.variants",
     "resume": "analyses.resuming",
     "verify": "runs.verification",
     "rockfall": "analyses.rockfall.run",
@@ -100,6 +102,7 @@ __all__ = [
     "__version__",
     "alone",
     "branch",
+    "branches",
     "build_fmu",
     "calibrate",
     "calibrate_rockfall",

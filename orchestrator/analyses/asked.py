@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -125,7 +126,7 @@ def remembering(
     if place is None:
         yield
         return
-    missing = [parent for parent in (place, *place.parents) if not parent.exists()]
+    missing = [parent for parent in (place, *place.parents) if not os.path.exists(parent)]
     try:
         with _locked(place):
             before = _earlier(place)

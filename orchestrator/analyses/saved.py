@@ -1,6 +1,7 @@
 """Results of analyses that have been saved, of whichever analysis they are."""
 
 import json
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ def saved_result(folder: str | Path) -> Result | None:
         The files are damaged.
     """
     folder = Path(folder)
-    if not (folder / RUN).is_file():
+    if not os.path.isfile(folder / RUN):
         return None
     with undamaged(folder / RUN):
         content = json.loads((folder / RUN).read_text(encoding="utf-8"))

@@ -1,5 +1,6 @@
 """The check of an FMU: every probe of the table, each in processes of its own."""
 
+import os
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -124,8 +125,8 @@ def _chosen(names: Sequence[str]) -> list[Probe]:
 
 def _about(file: Path) -> _About:
     """Return what an FMU tells of itself; refuse what is none."""
-    if not file.is_file():
-        what = "is a folder" if file.is_dir() else "there is no such file"
+    if not os.path.isfile(file):
+        what = "is a folder" if os.path.isdir(file) else "there is no such file"
         raise InputRefused([Problem(str(file), what, "name an FMU, a file that ends in .fmu")])
     xml = _description(file)
     if xml is None:

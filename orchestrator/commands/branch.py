@@ -1,17 +1,22 @@
-"""The command ``rockshed branch``: a variant of a run, from one of its states."""
+"""The command ``rockshed branch``: variants of a run, from one of its states."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from ..analyses.study.result import StudyResult
+from ..analyses.study.variants import branches
 from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.input_text import shown
 from ..core.supervisor import announce
+from ..input_files.csv_table import CsvRow, CsvTable, read_csv
 from ..runs.continuing import branch
 from ..runs.run import Run, read_run
-from .analysis import options_named
+from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
-from .options import Json, NoFigures, Quiet, Strict, simulated_time
+from .options import Json, NoFigures, Quiet, Strict, Workers, simulated_time
 from .results_place import free_folder, provenance_in
 from .run import show_run
 from .screen import Screen, opened
@@ -41,26 +46,118 @@ _Every = Annotated[
 ]
 
 
+_Variants = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.csv",
+        help="Many variants from the start: the names of the values in the first line, then a line "
+        "for each variant. One table for all, in results/NAME-variants.",
+    ),
+]
+
+
 def command(
     run: _Parent,
     at: _At = None,
     set_: _Values = None,
+    variants: _Variants = None,
     output_dir: _Folder = None,
     checkpoint_every: _Every = None,
+    workers: Workers = None,
     strict: Strict = False,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Run a variant of a run from one of its states.
+    """Run variants of a run from one of its states.
 
     Sand that has settled does not settle again.
     """
+    if variants is not None:
+        alone = {"--at": at, "--set": set_, "--checkpoint-every": checkpoint_every}
+        others = [name for name, value in alone.items() if value is not None]
+        with opened(quiet, as_json) as screen:
+            show(screen, _many(run, variants, others, output_dir, workers, not no_figures, screen))
+        return
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
     with opened(quiet, as_json) as screen:
         asked = {"at": at, "checkpoint_every": checkpoint_every}
         done = _branched(run, set_ or [], output_dir, asked, screen)
         show_run(done, screen, not no_figures, strict)
+
+
+def _many(
+    folder: Path,
+    file: Path,
+    others: Sequence[str],
+    output_dir: Path | None,
+    workers: int | None,
+    pictures: bool,
+    screen: Screen,
+) -> StudyResult:
+    """Run the variants of a table.
+
+    Raises
+    ------
+    InputRefused
+        The table cannot be read, or options of a single variant are given too.
+    """
+    if others:
+        what = "is for a single variant, and --variants has many, from the start"
+        raise InputRefused([Problem(name, what, "leave one of them out") for name in others])
+    listed = _table(file)
+    parent = read_run(folder)
+    name = f"{parent.folder.resolve().name}-variants"
+    place = output_dir or free_folder(name, {"never": "the same"}, provenance_in, screen)
+    with (
+        kept_if_ended(screen, place),
+        options_named(("workers", "folder", "variants")),
+        stages(screen) as progress,
+    ):
+        return branches(
+            parent,
+            listed,
+            workers=workers,
+            folder=place,
+            pictures=pictures,
+            progress=progress,
+            note=screen.note,
+        )
+
+
+def _table(file: Path) -> list[dict[str, Any]]:
+    """Read variants: a mapping for each line of a table after the first.
+
+    Raises
+    ------
+    InputRefused
+        With every line that has more or fewer fields than there are names.
+    """
+    table = read_csv(file)
+    names = [field.text for field in table.rows[0].fields] if table.rows else []
+    problems = [
+        Problem(table.place(row), f"has {len(row.fields)} fields instead of {len(names)}")
+        for row in table.rows[1:]
+        if len(row.fields) != len(names)
+    ]
+    problems += [
+        Problem(f"{file}, line {table.rows[0].line}", f"has {shown(name)} twice", "keep one")
+        for name in sorted({name for name in names if names.count(name) > 1})
+    ]
+    if len(table.rows) < 2:
+        problems.append(Problem(str(file), "has no variant", "write a line for each"))
+    if problems:
+        raise InputRefused(problems)
+    return [dict(zip(names, _texts(table, row), strict=True)) for row in table.rows[1:]]
+
+
+def _texts(table: CsvTable, row: CsvRow) -> list[str]:
+    """Return the texts of a line; numbers with a decimal comma have a point."""
+    numbers = [table.number(field) if "," in field.text else None for field in row.fields]
+    return [
+        field.text if number is None else str(number)
+        for field, number in zip(row.fields, numbers, strict=True)
+    ]
 
 
 def _branched(

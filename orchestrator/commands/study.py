@@ -39,9 +39,9 @@ _Vary = Annotated[
 _Design = Annotated[
     str | None,
     typer.Option(
-        metavar="grid|oat|random|lhs|sobol",
-        help="Every combination, one at a time, independent samples, Latin hypercube, or Sobol "
-        "sequence; default grid, with a distribution random.",
+        metavar="grid|oat|listed|random|lhs|sobol",
+        help="Every combination, one at a time, the n-th values of all together, independent samples, "
+        "Latin hypercube, or Sobol sequence; default grid, with a distribution random.",
     ),
 ]
 _Samples = Annotated[

@@ -1,5 +1,6 @@
 """Runs that go on from a checkpoint in another process, whatever ended the first one."""
 
+import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -127,7 +128,7 @@ def find_stopped(folder: Path) -> Stopped | None:
 
 
 def _folders(place: Path) -> list[Path]:
-    return [path for path in (place, *leftovers(place)) if (path / RUN).is_file()]
+    return [path for path in (place, *leftovers(place)) if os.path.isfile(path / RUN)]
 
 
 def _run_of(provenance: Mapping[str, Any]) -> object:

@@ -1,6 +1,7 @@
 """Connections to the workers of a Dask scheduler: processes of this computer, or a cluster."""
 
 import logging
+import os
 import signal
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
@@ -135,7 +136,7 @@ def _certificate_problems(scheduler: str, certificates: Certificates | None) -> 
         text = "are for a scheduler at an address tls://HOST:PORT"
         yield Problem("certificates", text, "leave them out, or correct the address")
     for name, file in vars(certificates).items():
-        if not Path(file).is_file():
+        if not os.path.isfile(file):
             yield Problem(f"certificates: {name}", f"there is no file {file}", "correct the path")
 
 

@@ -1,6 +1,7 @@
 """Runs that go on from a checkpoint: continued, or as variants."""
 
-from collections.abc import Mapping
+import os
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -103,7 +104,7 @@ def _refuse_batch(folder: Path) -> None:
         A study, a calibration, a campaign, ... was or is in it.
     """
     kind = read_data(folder / RUN).get("kind")
-    if (folder / FINISHED).is_dir():
+    if os.path.isdir(folder / FINISHED):
         what = "holds runs of a calibration, convergence study or reproduction that was ended"
         remedy = "start the same command again: it goes on from these runs"
     elif kind:
@@ -206,13 +207,7 @@ def _from_start(
     parent: StoredRun, change: ValueChange, folder: Path, note: Note, conduct: Mapping[str, Any]
 ) -> None:
     """Run a system with other values from the settled states of a run."""
-    job = _job_with(parent, {}, note)
-    sources = {**sources_of(job.system), **job.sources}
-    make_plan(job.system, sources)  # reads the FMUs
-    continuing.refuse_others(parent, sources)
-    if job.system.model_dump(mode="json") != parent.provenance["system"]:
-        what = "is another system now: its case or project has changed"
-        raise InputRefused([Problem(str(parent.folder), what, continuing.AGAIN)])
+    _refuse_other_system(parent, note)
     varied = _job_with(parent, change.values, note)
     record = continuing.branch_record(parent.folder, change)
 
@@ -227,6 +222,51 @@ def _from_start(
         facts=facts,
         **conduct,
     )
+
+
+def _refuse_other_system(parent: StoredRun, note: Note) -> None:
+    """Refuse variants of a run whose system would be another one now.
+
+    Raises
+    ------
+    InputRefused
+        FMUs, kernels, versions, case or project are others.
+    """
+    job = _job_with(parent, {}, note)
+    sources = {**sources_of(job.system), **job.sources}
+    make_plan(job.system, sources)  # reads the FMUs
+    continuing.refuse_others(parent, sources)
+    if job.system.model_dump(mode="json") != parent.provenance["system"]:
+        what = "is another system now: its case or project has changed"
+        raise InputRefused([Problem(str(parent.folder), what, continuing.AGAIN)])
+
+
+def request_of(parent: StoredRun, varied: Collection[str], note: Note) -> Request:
+    """Return what was asked in a run, for variants of it in other processes.
+
+    Parameters
+    ----------
+    parent : StoredRun
+        The run.
+    varied : collection of str
+        Values that the variants have instead of those of the run.
+    note : callable
+        Called with a line for each FMU that is built.
+
+    Raises
+    ------
+    InputRefused
+        The run is none of a case or file, ran in its process, or would be another one now.
+    """
+    told = parent.provenance.get("request")
+    request = None if told is None else _request_of(parent, told)
+    if request is None or request.in_process:
+        what = "has components in its process, and variants run in processes of their own"
+        remedy = "run a case or a file with FMUs, or branch it once for each variant"
+        raise InputRefused([Problem(str(parent.folder), what, remedy)])
+    _refuse_other_system(parent, note)
+    kept = {name: value for name, value in request.values.items() if name not in varied}
+    return replace(request, values=kept)
 
 
 def _request_of(run: StoredRun, told: Any) -> Request:

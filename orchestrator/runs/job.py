@@ -3,6 +3,7 @@
 Everything that is wrong with a request is collected before it is refused.
 """
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -251,7 +252,7 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
-    if not is_ssp(request.target) and Path(request.target).is_file():
+    if not is_ssp(request.target) and os.path.isfile(request.target):
         read_toml(Path(request.target))  # what it is for is not known of one that is no TOML
     for argument, remedy, asked in (
         ("sizes", "build its FMUs in these sizes", request.sizes),

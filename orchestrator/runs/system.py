@@ -1,5 +1,6 @@
 """A co-simulation made in steps: from a case, a file or nothing, then changed, shown and run."""
 
+import os
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -76,7 +77,7 @@ class System:
             There is no such file, or its content is not in order; with every reason.
         """
         file = Path(path)
-        if file.is_dir() and not is_ssp(file):
+        if os.path.isdir(file) and not is_ssp(file):
             file = file / SYSTEM
         is_named = file.suffix == ".toml" or is_ssp(file)
         return cls.prepared(Request(str(file if is_named else file.absolute())))

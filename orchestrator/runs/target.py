@@ -1,5 +1,6 @@
 """Targets of commands that are neither a case nor a system file, and what they are instead."""
 
+import os
 from pathlib import Path
 
 from ..core.errors import Problem
@@ -38,9 +39,9 @@ def wrong_target(target: str) -> Problem | None:
         return Problem(target, f"is an FMU, and {_SYSTEMS}", remedy)
     if is_ssp(target):
         return None
-    if path.is_dir():
+    if os.path.isdir(path):
         return Problem(target, f"is a folder; {_SYSTEMS}", _remedy_in(path))
-    if path.is_file() and not Request(target).is_file:
+    if os.path.isfile(path) and not Request(target).is_file:
         what = f"is a file whose name does not end in .toml; {_SYSTEMS}"
         return Problem(target, what, f"write ./{target} if it is a system file")
     return None

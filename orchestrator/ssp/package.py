@@ -104,7 +104,7 @@ def is_ssp(target: str | Path) -> bool:
     path = Path(target)
     if path.suffix.lower() in (".ssp", ".ssd"):
         return True
-    return path.is_dir() and (path / MAIN).is_file()
+    return os.path.isfile(path / MAIN)  # Path.is_file raises where a name is too long
 
 
 def open_package(path: Path) -> Package:
@@ -124,12 +124,12 @@ def open_package(path: Path) -> Package:
     InputRefused
         There is none, it is damaged, or holds too much or anything outside of it.
     """
-    if path.is_dir():
+    if os.path.isdir(path):
         if not (path / MAIN).is_file():
             problem = Problem(str(path), f"has no {MAIN}", "name a folder of an SSP")
             raise InputRefused([problem])
         return Package(path, path.absolute())
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise InputRefused([Problem(str(path), "there is no such file", "correct the path")])
     if path.suffix.lower() == ".ssd":
         return Package(path, path.absolute().parent, path.name)

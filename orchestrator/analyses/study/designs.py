@@ -12,9 +12,11 @@ from ..frame import FloatArray
 from .factors import Factor
 
 GRID, ONE_AT_A_TIME, RANDOM, HYPERCUBE, SOBOL = "grid", "oat", "random", "lhs", "sobol"
+LISTED = "listed"
 DESIGNS: Mapping[str, str] = {
     GRID: "every combination of the levels",
     ONE_AT_A_TIME: "each factor alone through its levels, the others as they are",
+    LISTED: "the first values of all factors, the second ones, ...",
     RANDOM: "independent random samples",
     HYPERCUBE: "a Latin hypercube",
     SOBOL: "a Sobol sequence, with the runs that Sobol indices need",
@@ -71,6 +73,10 @@ def design_problems(design: str, factors: Sequence[Factor], samples: int | None)
         text = f"a design {design} has as many points as its levels make"
         problems.append(Problem("samples", text, "leave it out, or choose design=lhs"))
     problems += [_level_problem(design, f) for f in factors if _misfit(design, f)]
+    if design == LISTED and len(lengths := {len(factor.levels()) for factor in factors}) > 1:
+        told = " and ".join(map(str, sorted(lengths)))
+        text = f"{told} values do not go together: a design {design} has one of each in a run"
+        problems.append(Problem("vary", text, "give as many of all"))
     if not problems and (count := _count(design, factors, samples or 0)) > MOST_POINTS:
         text = f"makes {count:,} points, and {MOST_POINTS:,} are allowed"
         problems.append(Problem(f"design {design}", text, "give fewer levels or samples"))
@@ -105,6 +111,7 @@ def _count(design: str, factors: Sequence[Factor], samples: int) -> int:
     return {
         GRID: int(np.prod(levels, dtype=np.float64)),
         ONE_AT_A_TIME: 1 + sum(levels),
+        LISTED: max(levels, default=0),
         SOBOL: samples * (len(factors) + 2),
     }.get(design, samples)
 
@@ -132,6 +139,9 @@ def points(design: str, factors: Sequence[Factor], samples: int, seed: int) -> l
     if design == GRID:
         combined = itertools.product(*(factor.levels() for factor in factors))
         return [DesignPoint(dict(zip(names, values, strict=True))) for values in combined]
+    if design == LISTED:
+        together = zip(*(factor.levels() for factor in factors), strict=True)
+        return [DesignPoint(dict(zip(names, values, strict=True))) for values in together]
     if design == ONE_AT_A_TIME:
         alone = [DesignPoint({f.name: value}) for f in factors for value in f.levels()]
         return [DesignPoint({}, BASE), *alone]

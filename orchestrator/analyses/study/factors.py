@@ -33,6 +33,11 @@ class Levels:
 
 
 @dataclass(frozen=True)
+class Listed(Levels):
+    """A value for each of some variants, in their order; variants may have the same one."""
+
+
+@dataclass(frozen=True)
 class Interval:
     """Values between two bounds; in a random sample all are equally probable.
 
@@ -161,6 +166,7 @@ def varied_from(data: Mapping[str, Any]) -> Varied:
     """
     kinds: Mapping[str, Callable[..., Varied]] = {
         "levels": Levels,
+        "listed": Listed,
         "interval": Interval,
         "randomvalue": RandomValue,
     }
@@ -313,7 +319,7 @@ def _number(value: Value) -> float:
 
 def _with_numbers(varied: Varied, numbers: Sequence[Any]) -> Varied:
     if isinstance(varied, Levels):
-        return Levels(tuple(numbers))
+        return replace(varied, values=tuple(numbers))
     if isinstance(varied, Interval):
         return replace(varied, low=numbers[0], high=numbers[1])
     return replace(varied, parameters=tuple(numbers))
@@ -322,7 +328,8 @@ def _with_numbers(varied: Varied, numbers: Sequence[Any]) -> Varied:
 def _meaning_faults(varied: Varied) -> Iterator[str]:
     """Yield what is wrong with the numbers of a factor."""
     if isinstance(varied, Levels):
-        if len(set(varied.values)) < len(varied.values):
+        is_plain = not isinstance(varied, Listed)
+        if is_plain and len(set(varied.values)) < len(varied.values):
             yield "has a value twice"
         return
     content = (varied.low, varied.high) if isinstance(varied, Interval) else varied.parameters

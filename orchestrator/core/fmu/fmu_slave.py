@@ -119,11 +119,11 @@ class FmuFile:
         InputRefused
             No such file, not an FMU, or no binary for this platform.
         """
-        if self.path.is_dir():
+        if os.path.isdir(self.path):  # Path.is_dir raises where a name is too long
             raise self._refusal(
                 "is a folder, and no FMU", "name the FMU, or pack the folder as zip"
             )
-        if not self.path.is_file():
+        if not os.path.isfile(self.path):
             raise self._refusal("there is no such file", "build the FMU or correct the path")
         content = self.path.read_bytes()
         self.origin["sha256"] = hashlib.sha256(content).hexdigest()

@@ -4,6 +4,7 @@ The files are described in :mod:`rockshed.core.results.run_folder`.
 """
 
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -231,9 +232,9 @@ def read_run(folder: Path) -> StoredRun:
 def _place_of(folder: Path) -> Path:
     running = running_folder(folder)
     for place in (folder, running):
-        if (place / RUN).is_file():
+        if os.path.isfile(place / RUN):
             return place
-    if running.is_dir():
+    if os.path.isdir(running):
         what = f"a run was killed before it computed anything; it has left {running}"
         raise _refusal(folder, what, "run it again")
     raise _refusal(folder, f"is no folder of a run: there is no {RUN}", "give the folder of a run")

@@ -68,7 +68,8 @@ def exact(seconds: float) -> Fraction:
     margin = 2 * Decimal(ulp(seconds))
     picoseconds = Decimal(seconds) * PICOSECONDS
     whole = picoseconds.to_integral_value()
-    if abs(picoseconds - whole) <= margin * PICOSECONDS:
+    is_some = bool(whole) or not seconds  # 5e-324 s is not none
+    if is_some and abs(picoseconds - whole) <= margin * PICOSECONDS:
         return Fraction(int(whole), PICOSECONDS)
     simple = Fraction(seconds).limit_denominator(_DENOMINATOR)
     if simple and abs(simple - Fraction(seconds)) <= Fraction(margin):

@@ -3,6 +3,7 @@
 Everything that is wrong with a site is collected before it is refused.
 """
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -121,7 +122,7 @@ def _with_boulders(site: SlopeSite, source: SiteSource, problems: list[Problem])
     if site.rock.file is None:
         return site
     path = source.folder / site.rock.file
-    if not path.is_file():
+    if not os.path.isfile(path):
         place = source.places.of(("rock", "file"))
         problems.append(Problem(place, f"there is no file {path}", "correct the path"))
         return site
