@@ -40,8 +40,8 @@ _Design = Annotated[
     str | None,
     typer.Option(
         metavar="grid|oat|listed|random|lhs|sobol",
-        help="Every combination, one at a time, the n-th values of all together, independent samples, "
-        "Latin hypercube, or Sobol sequence; default grid, with a distribution random.",
+        help="Every combination, one at a time, the n-th values of all together, independent "
+        "samples, Latin hypercube, or Sobol sequence; default grid, with a distribution random.",
     ),
 ]
 _Samples = Annotated[
