@@ -21,6 +21,9 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = ROOT / "build" / "pages"
 SITE = ROOT / "build" / "site"
 
+IMPACT = "impact.html"
+"""The impact in the browser, made with the site."""
+
 READMES = {
     "README.md": "index.md",
     "orchestrator/README.md": "systems.md",
@@ -49,6 +52,7 @@ CONTENTS = {
         "checkpoints",
         "studies",
         "report",
+        "page",
         "check",
         "fmus",
         "security",
@@ -136,6 +140,14 @@ def lay_out() -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         copyfile(ROOT / place, target)
     copyfile(ROOT / "docs" / "conf.py", PAGES / "conf.py")
+    play()
+
+
+def play() -> None:
+    """Write the impact in the browser, to which the page about it links."""
+    import rockshed
+
+    rockshed.page("lab-impact", PAGES / IMPACT)
 
 
 def write(page: str, text: str) -> None:
@@ -219,6 +231,7 @@ def appendix(source: str) -> str:
         "docs/check.md": probes,
         "docs/command-line.md": commands,
         "docs/glossary.md": old_names,
+        "docs/page.md": lambda: f"\n## Try it\n\n[The laboratory impact]({IMPACT})\n",
     }
     if source in made:
         return "\n" + made[source]()

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .checking.check import check_fmu
     from .components.common.component import ComponentError
     from .core.errors import InputRefused, Problem, RunDoubted, RunFailed, UnknownName
+    from .pages.writing import page
     from .reports.writing import report
     from .runs.alone import alone
     from .runs.building import build_fmu
@@ -69,6 +70,7 @@ _HOMES = {
     "list_cases": "runs.catalogue",
     "list_components": "runs.catalogue",
     "match_pile": "analyses.pile_matching.run",
+    "page": "pages.writing",
     "pile": "analyses.pile.run",
     "read_run": "runs.run",
     "report": "reports.writing",
@@ -115,6 +117,7 @@ __all__ = [
     "list_cases",
     "list_components",
     "match_pile",
+    "page",
     "pile",
     "read_run",
     "report",

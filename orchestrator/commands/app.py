@@ -32,6 +32,7 @@ COMMANDS = {
     "plot": "Draw a run again, also one that failed; or variables of several.",
     "animate": "Animate rock, sand with its force chains, and beam of a run; trials of a campaign.",
     "report": "Write a report that a reviewer can check: HTML page and PDF.",
+    "page": "Write a page that computes an impact in the browser.",
     "bench": "Measure speed and price of the coupling.",
     "reproduce": "Carry out the studies of a paper.",
     "calibrate": "Find parameters from measurements, of a sand by default.",

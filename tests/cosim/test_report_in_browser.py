@@ -1,45 +1,17 @@
 """A report in headless Chromium, without network: no error, every figure, hover, slider."""
 
-import os
-import shutil
-
 import pytest
 
 import rockshed
+from tests.browser import PATIENCE, chromium
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-
-CHROMIUM = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
-)
-DRIVER = shutil.which("chromedriver")
-PATIENCE = 300
-"""Time (s) that a busy machine may take to draw a page."""
 
 
 @pytest.fixture(scope="module")
 def browser():
-    """Chromium that reaches no other machine and writes its log down."""
-    webdriver = pytest.importorskip("selenium.webdriver")
-    if not CHROMIUM or not DRIVER:
-        pytest.skip("there is no Chromium with chromedriver")
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for flag in (
-        "headless=new",
-        "disable-gpu",
-        "disable-dev-shm-usage",
-        "proxy-server=127.0.0.1:9",
-    ):
-        options.add_argument(f"--{flag}")
-    if hasattr(os, "geteuid") and os.geteuid() == 0:
-        options.add_argument("--no-sandbox")  # Chromium has none for root
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(options, webdriver.ChromeService(DRIVER))
-    driver.set_script_timeout(PATIENCE)
-    driver.set_page_load_timeout(PATIENCE)
-    yield driver
-    driver.quit()
+    with chromium() as driver:
+        yield driver
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,48 @@
+"""The command ``rockshed page``: an impact to play with, in a browser."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..core.errors import InputRefused, Problem
+from ..pages.writing import page
+from ..runs.request import Request
+from .analysis import options_named
+from .assignments import sizes_of, values_of
+from .options import Assignments, CaseSizes, CouplingScheme, ModelName, Quiet
+from .screen import opened
+
+_ARGUMENTS = ("file",)
+"""Arguments of the library that are options of the command."""
+_Target = Annotated[
+    str,
+    typer.Argument(
+        metavar="[CASE|PROJECT.toml]", help="A case of `rockshed list`, or the project of a shed."
+    ),
+]
+_Output = Annotated[
+    Path | None,
+    typer.Option("--output", metavar="FILE.html", help="Default: NAME.html in this folder."),
+]
+
+
+def command(
+    target: _Target = "lab-impact",
+    output: _Output = None,
+    set_: Assignments = None,
+    size: CaseSizes = None,
+    coupling: CouplingScheme = None,
+    model: ModelName = None,
+    quiet: Quiet = False,
+) -> None:
+    """Write a page that computes an impact in the browser."""
+    problems: list[Problem] = []
+    values = values_of("--set", set_ or [], problems)
+    asked = Request(target, values, sizes_of(size or [], problems), coupling, model=model)
+    with opened(quiet) as screen, options_named(_ARGUMENTS, target):
+        if problems:
+            raise InputRefused(problems)
+        with screen.progress("compiling"):
+            file = page(asked, output, note=screen.note)
+        screen.say(str(file))
