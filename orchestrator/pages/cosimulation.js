@@ -67,15 +67,15 @@ class Component {
 }
 
 class Cosimulation {
-  // plan: what all variants share; variant: start values; modules: by kind; values: of sliders
-  constructor(plan, variant, modules, values) {
+  // plan: what all offers share; offer: start values; modules: by kind; values: of sliders
+  constructor(plan, offer, modules, values) {
     this.plan = plan;
-    this.variant = variant;
+    this.offer = offer;
     this.components = {};
-    for (const [name, start] of Object.entries(variant.components))
+    for (const [name, start] of Object.entries(offer.components))
       this.components[name] = new Component(name, modules[plan.kinds[name]], start, plan.limits[name]);
     for (const [title, value] of Object.entries(values))
-      for (const [name, place] of variant.moved[title].places) this.components[name].w[place] = value;
+      for (const [name, place] of offer.moved[title].places) this.components[name].w[place] = value;
     this.exchange = 0;
     this.initialise();
   }
@@ -136,11 +136,11 @@ class Cosimulation {
     const { entry, row, sand, beam } = this.plan.body;
     const component = this.components[sand];
     const begin = Number(component.k[entry]);
-    const bodies = this.variant.discs + 1 + beam;
+    const bodies = this.offer.discs + 1 + beam;
     const body = new Float32Array(4 * bodies);
     for (let i = 0; i < bodies; i += 1) {
       const at = begin + row * i;
-      const angle = i < this.variant.discs ? 0 : component.x[at + 6];
+      const angle = i < this.offer.discs ? 0 : component.x[at + 6];
       body.set([component.x[at], component.x[at + 1], component.x[at + 5], angle], 4 * i);
     }
     return { time: this.time(), body, contacts: this.contacts(component) };
@@ -148,7 +148,7 @@ class Cosimulation {
 
   // Returns ends (m) and normal force (N) of each contact, the strongest last.
   contacts(component) {
-    const rows = 8 * this.variant.discs + 1000;
+    const rows = 8 * this.offer.discs + 1000;
     if (this.table === undefined) {
       this.table = component.room(9 * 8 * rows);
       component.look();

@@ -1,4 +1,4 @@
-"""What a page computes, as plain data: components, their start values, exchanges, what is moved."""
+"""The impact of a page as plain data: components, start values, exchanges, what sliders change."""
 
 import re
 from collections.abc import Mapping
@@ -96,7 +96,7 @@ def kinds_of(system: System) -> dict[str, str]:
 
 
 def computed(system: System) -> dict[str, Any]:
-    """Return exchanges and connections of a system, which all its variants share.
+    """Return exchanges and connections of a system, which all offers share.
 
     Parameters
     ----------
@@ -218,12 +218,12 @@ def _shared(spec: SystemSpec, name: str) -> list[tuple[str, Any]]:
 
 
 def start_of(system: System) -> dict[str, Any]:
-    """Return what differs from variant to variant of a system.
+    """Return what differs from offer to offer.
 
     Parameters
     ----------
     system : System
-        A variant.
+        Of an offer.
 
     Returns
     -------
@@ -265,10 +265,10 @@ def _moved(kinds: Mapping[str, str], instances: Mapping[str, Instance]) -> dict[
     """Return the places of the start values that sliders change, and their present value."""
     found = {}
     for title, targets in _MOVED.items():
-        places = []
-        for kind, variable in targets:
-            name = _named(kinds, kind)
-            places.append([name, instances[name].references[variable]])
-        name, place = places[0]
-        found[title] = {"places": places, "value": float(instances[name].w[place])}
+        owners = [(_named(kinds, kind), variable) for kind, variable in targets]
+        first, variable = owners[0]
+        found[title] = {
+            "places": [[name, instances[name].references[key]] for name, key in owners],
+            "value": float(instances[first][variable]),
+        }
     return found

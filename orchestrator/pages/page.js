@@ -21,14 +21,14 @@ class Sliders {
   // changed: called when one of them has been moved
   constructor(data, changed) {
     this.data = data;
-    this.models = [...new Set(data.variants.map((variant) => variant.model))];
+    this.models = [...new Set(data.offers.map((offer) => offer.model))];
     this.model = byId("model");
     for (const model of this.models) this.model.append(new Option(model || "as it is", model));
     byId("model-row").hidden = this.models.length < 2;
     this.scales = ["mass", "height", "modulus"].map(byId);
     this.thickness = byId("thickness");
-    this.fillThicknesses(data.variants[0].thickness);
-    this.model.addEventListener("change", () => this.fillThicknesses(this.variant().thickness));
+    this.fillThicknesses(data.offers[0].thickness);
+    this.model.addEventListener("change", () => this.fillThicknesses(this.offer().thickness));
     for (const control of [this.model, this.thickness, ...this.scales]) {
       control.addEventListener("input", () => this.show());
       control.addEventListener("change", () => changed());
@@ -41,33 +41,33 @@ class Sliders {
   }
 
   offered() {
-    const found = this.data.variants.filter((variant) => variant.model === this.model.value);
+    const found = this.data.offers.filter((offer) => offer.model === this.model.value);
     return found.sort((one, other) => one.thickness - other.thickness);
   }
 
   // Offers the thicknesses of the chosen model, the nearest to the one before.
   fillThicknesses(thickness) {
     const offered = this.offered();
-    const apart = offered.map((variant) => Math.abs(variant.thickness - thickness));
+    const apart = offered.map((offer) => Math.abs(offer.thickness - thickness));
     this.thickness.max = offered.length - 1;
     this.thickness.value = apart.indexOf(Math.min(...apart));
     byId("thickness-row").hidden = offered.length < 2;
     this.show();
   }
 
-  variant() {
+  offer() {
     return this.offered()[Math.min(Number(this.thickness.value), this.offered().length - 1)];
   }
 
   reset() {
     for (const scale of this.scales) scale.value = 0;
-    this.model.value = this.data.variants[0].model;
-    this.fillThicknesses(this.data.variants[0].thickness);
+    this.model.value = this.data.offers[0].model;
+    this.fillThicknesses(this.data.offers[0].thickness);
   }
 
-  // Start values that differ from those of the variant: at rest, the sliders change no bit.
+  // Start values that differ from those of the offer: at rest, the sliders change no bit.
   values() {
-    const { moved } = this.variant();
+    const { moved } = this.offer();
     const [mass, height, modulus] = this.scales.map((scale) => 2 ** Number(scale.value));
     const values = {};
     if (mass !== 1) {
@@ -81,7 +81,7 @@ class Sliders {
   }
 
   show() {
-    const { moved, thickness } = this.variant();
+    const { moved, thickness } = this.offer();
     const now = { ...Object.fromEntries(Object.entries(moved).map(([k, v]) => [k, v.value])), ...this.values() };
     const fall = (now.speed * now.speed) / (2 * this.data.gravity);
     byId("mass-value").textContent = `${rounded(now.mass)} kg, radius ${rounded(100 * now.radius)} cm`;
@@ -110,10 +110,10 @@ class Player {
     new ResizeObserver(() => this.draw()).observe(byId("sand").parentElement);
   }
 
-  begin(variant) {
-    Object.assign(this, { variant, rows: [], frames: [], peaks: null, largest: 1e-9, done: false });
-    this.seconds = (variant.exchanges * this.data.exchange) / this.data.rate;
-    this.slider.max = Math.floor(variant.exchanges / variant.frame_every);
+  begin(offer) {
+    Object.assign(this, { offer, rows: [], frames: [], peaks: null, largest: 1e-9, done: false });
+    this.seconds = (offer.exchanges * this.data.exchange) / this.data.rate;
+    this.slider.max = Math.floor(offer.exchanges / offer.frame_every);
     this.slider.value = 0;
     this.play();
   }
@@ -157,7 +157,7 @@ class Player {
     if (!this.frames || !this.frames.length) return;
     const number = Math.min(Number(this.slider.value), this.frames.length - 1);
     const frame = this.frames[number];
-    this.sand.draw(frame, this.variant.discs, this.largest);
+    this.sand.draw(frame, this.offer.discs, this.largest);
     const shown = this.rows.filter((row) => row[0] <= frame.time * (1 + 1e-9)).length;
     for (const picture of this.curves) picture.draw(this.rows, shown, this.seconds);
     byId("time").textContent = `${(1e3 * frame.time).toFixed(1)} ms`;
@@ -183,18 +183,18 @@ class Computation {
     this.address = URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" }));
   }
 
-  start(variant, values) {
+  start(offer, values) {
     if (this.worker && !this.idle) {
       this.worker.terminate();
       this.worker = null;
     }
     this.number += 1;
     this.idle = false;
-    this.request = { kind: "compute", number: this.number, variant, values };
+    this.request = { kind: "compute", number: this.number, offer, values };
     trouble("");
     byId("spent").textContent = "the sand comes to rest …";
     document.documentElement.dataset.done = "no";
-    this.player.begin(variant);
+    this.player.begin(offer);
     if (this.worker) this.worker.postMessage(this.request);
     else this.hire();
   }
@@ -245,8 +245,8 @@ const begin = async () => {
   const data = JSON.parse(await unpackedText("data"));
   const player = new Player(data);
   const computation = new Computation(data, player);
-  const sliders = new Sliders(data, () => computation.start(sliders.variant(), sliders.values()));
-  computation.start(sliders.variant(), sliders.values());
+  const sliders = new Sliders(data, () => computation.start(sliders.offer(), sliders.values()));
+  computation.start(sliders.offer(), sliders.values());
 };
 
 begin().catch((error) => {

@@ -36,9 +36,9 @@ const prepare = async ({ plan, packed, wanted }) => {
   postMessage({ kind: "ready", variant });
 };
 
-const compute = ({ number, variant, values }) => {
+const compute = ({ number, offer, values }) => {
   const begin = performance.now();
-  const run = new Cosimulation(known.plan, variant, known.modules, values);
+  const run = new Cosimulation(known.plan, offer, known.modules, values);
   const settled = performance.now() - begin;
   const shown = Object.keys(known.plan.read);
   const peaks = Object.fromEntries(shown.map((title) => [title, Math.abs(run.value(title))]));
@@ -49,11 +49,11 @@ const compute = ({ number, variant, values }) => {
   };
   tell(false); // the first picture comes at once
   let last = performance.now();
-  while (run.exchange < variant.exchanges) {
+  while (run.exchange < offer.exchanges) {
     run.advance();
     for (const title of shown) peaks[title] = Math.max(peaks[title], Math.abs(run.value(title)));
-    if (run.exchange % variant.row_every === 0) told.rows.push(row(run, shown));
-    if (run.exchange % variant.frame_every === 0) told.frames.push(run.frame());
+    if (run.exchange % offer.row_every === 0) told.rows.push(row(run, shown));
+    if (run.exchange % offer.frame_every === 0) told.frames.push(run.frame());
     if (performance.now() - last > BATCH && told.frames.length) {
       tell(false);
       last = performance.now();

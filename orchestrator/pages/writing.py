@@ -25,7 +25,7 @@ from ..runs.request import Request
 from ..runs.system import System
 from ..versions import version_of
 from .impact import SAND, computed, kinds_of, refuse_unfit, start_of
-from .variants import Variant, variants_of
+from .offers import Offer, offers_of
 
 _HERE = Path(__file__).parent
 GENERATOR = '<meta name="generator" content="rockshed page'
@@ -67,13 +67,13 @@ def page(
     """
     if file is not None:
         _refuse_misplaced(Path(file))
-    variants = _variants(system)
-    first = variants[0].system
+    offers = _offers(system)
+    first = offers[0].system
     place = Path(f"{first.name}.html") if file is None else Path(file)
     _refuse_misplaced(place)
     note("compiling the kernels for WebAssembly takes a minute the first time")
     try:
-        text = _page(first, variants)
+        text = _page(first, offers)
     except BuildError as error:
         raise InputRefused([Problem("WebAssembly", str(error))]) from None
     with refusing_unwritable(place, "name another file: file=..."):
@@ -81,14 +81,14 @@ def page(
     return place
 
 
-def _variants(system: str | Path | System | Request) -> list[Variant]:
+def _offers(system: str | Path | System | Request) -> list[Offer]:
     if isinstance(system, System):
         if system.request is None:
             refuse_unfit(system)
-            return [Variant("", 0.0, system)]
+            return [Offer("", 0.0, system)]
         system = system.request
     request = system if isinstance(system, Request) else Request(str(system))
-    found = variants_of(replace(request, in_process=True))
+    found = offers_of(replace(request, in_process=True))
     refuse_unfit(found[0].system)
     return found
 
@@ -110,7 +110,7 @@ def _refuse_misplaced(file: Path) -> None:
         raise InputRefused([Problem(str(file), what, "rename it or name another file")])
 
 
-def _page(first: System, variants: list[Variant]) -> str:
+def _page(first: System, offers: list[Offer]) -> str:
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(
@@ -124,7 +124,7 @@ def _page(first: System, variants: list[Variant]) -> str:
     return environment.get_template("page.html.j2").render(
         name=first.name,
         description=first.spec.description,
-        data=_packed(json.dumps(_data(first, variants))),
+        data=_packed(json.dumps(_data(first, offers))),
         modules=_modules(first),
         worker=_joined(_WORKER),
         script=script,
@@ -134,12 +134,12 @@ def _page(first: System, variants: list[Variant]) -> str:
     )
 
 
-def _data(first: System, variants: list[Variant]) -> dict[str, Any]:
+def _data(first: System, offers: list[Offer]) -> dict[str, Any]:
     """Return everything that the scripts of the page read."""
     return {
         **computed(first),
-        "variants": [
-            {"model": v.model, "thickness": v.thickness, **start_of(v.system)} for v in variants
+        "offers": [
+            {"model": v.model, "thickness": v.thickness, **start_of(v.system)} for v in offers
         ],
         "gravity": standard_gravity,
         "colours": {

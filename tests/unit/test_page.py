@@ -5,7 +5,7 @@ import pytest
 import rockshed
 from rockshed.core.errors import InputRefused
 from rockshed.pages.impact import computed, start_of
-from rockshed.pages.variants import variants_of
+from rockshed.pages.offers import offers_of
 from rockshed.runs.request import Request
 
 
@@ -49,7 +49,7 @@ def test_a_file_that_is_no_page_or_lies_in_no_folder_is_refused(tmp_path):
 
 def test_the_first_variant_is_what_was_asked_for_and_has_its_values():
     asked = Request("lab-impact", {"sand.modulus": 4e6}, in_process=True)
-    first, *others = variants_of(asked)
+    first, *others = offers_of(asked)
     assert (first.model, first.thickness) == ("calibrated", 0.1)
     start = start_of(first.system)
     assert start["moved"]["modulus"]["value"] == 4e6
@@ -59,13 +59,13 @@ def test_the_first_variant_is_what_was_asked_for_and_has_its_values():
 
 
 def test_a_mass_is_moved_wherever_the_system_has_it():
-    (first, *_) = variants_of(Request("lab-impact", in_process=True))
+    (first, *_) = offers_of(Request("lab-impact", in_process=True))
     places = start_of(first.system)["moved"]["mass"]["places"]
     assert sorted(name for name, _ in places) == ["rock", "sand"]
 
 
 def test_the_sand_is_initialised_after_those_that_it_lies_on():
-    (first, *_) = variants_of(Request("lab-impact", in_process=True))
+    (first, *_) = offers_of(Request("lab-impact", in_process=True))
     assert computed(first.system)["turns"][-1] == "sand"
 
 
@@ -74,7 +74,7 @@ def test_a_project_is_offered_with_other_thicknesses(tmp_path):
 
     example = files("rockshed") / "examples" / "trial-shed.toml"
     (tmp_path / "shed.toml").write_text(example.read_text())
-    found = variants_of(Request(str(tmp_path / "shed.toml"), in_process=True))
+    found = offers_of(Request(str(tmp_path / "shed.toml"), in_process=True))
     assert [round(variant.thickness, 6) for variant in found] == [1.2, 0.6, 0.9, 1.5, 1.8, 2.4]
 
 

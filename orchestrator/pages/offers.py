@@ -16,14 +16,14 @@ from .impact import SAND, instance_of, kinds_of
 _SHARES = (0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
 """Thicknesses that a page offers / that of the case."""
 _MOST_DISCS = 6000
-"""Discs of a variant, at most: a browser should be done within a minute or two."""
+"""Discs of an offer, at most: a browser should be done within a minute or two."""
 _ROUNDING = 1e-9
 _DEFAULT = "calibrated"
 """Model of a case that names none."""
 
 
 @dataclass(frozen=True)
-class Variant:
+class Offer:
     """A system that a page has ready.
 
     Attributes
@@ -41,8 +41,8 @@ class Variant:
     system: System
 
 
-def variants_of(request: Request) -> list[Variant]:
-    """Return the variants of a case or project; the first is what was asked for.
+def offers_of(request: Request) -> list[Offer]:
+    """Return the offers of a case or project; the first is what was asked for.
 
     Parameters
     ----------
@@ -51,29 +51,29 @@ def variants_of(request: Request) -> list[Variant]:
 
     Returns
     -------
-    list of Variant
+    list of Offer
         One alone where the thickness of the layer is no number that can be changed.
 
     Raises
     ------
     InputRefused
-        What was asked for is refused. Other variants that are refused are left out.
+        What was asked for is refused. Other offers that are refused are left out.
     """
     system = System.prepared(request)
     chosen = choose(request, []).case  # of a project: the case that is made of it
     if chosen is None:
-        return [Variant("", 0.0, system)]
+        return [Offer("", 0.0, system)]
     if "project" in chosen.facts:
         height = float(chosen.facts["project"]["derived"]["cushion"]["thickness"])
         own = str(chosen.model or "")
-        return [Variant(own, height, system), *_of_project(request, own, height)]
+        return [Offer(own, height, system), *_of_project(request, own, height)]
     if chosen.layer is None:
-        return [Variant("", 0.0, system)]
+        return [Offer("", 0.0, system)]
     own = request.model or chosen.model or _DEFAULT
-    return [Variant(own, chosen.layer.height, system), *_of_case(request, own, chosen.layer)]
+    return [Offer(own, chosen.layer.height, system), *_of_case(request, own, chosen.layer)]
 
 
-def _of_project(request: Request, own: str, height: float) -> Iterator[Variant]:
+def _of_project(request: Request, own: str, height: float) -> Iterator[Offer]:
     """Yield a project with other thicknesses of its cushion than its own (m)."""
     for share in _SHARES:
         other = {**request.values, "cushion.thickness": share * height}
@@ -81,7 +81,7 @@ def _of_project(request: Request, own: str, height: float) -> Iterator[Variant]:
             yield from _prepared(replace(request, values=other), own, share * height)
 
 
-def _of_case(request: Request, own: str, layer: SandLayer) -> Iterator[Variant]:
+def _of_case(request: Request, own: str, layer: SandLayer) -> Iterator[Offer]:
     """Yield a case with all models of the sand and thicknesses of its layer but its own."""
     for model in (own, *(name for name in MODELS if name != own)):
         for share in _SHARES:
@@ -110,12 +110,12 @@ def _of_height(request: Request, layer: SandLayer, model: str, height: float) ->
     return replace(request, model=model, sizes=sizes)
 
 
-def _prepared(request: Request, model: str, height: float) -> Iterator[Variant]:
-    """Yield a variant, unless it is refused or too large for a browser."""
+def _prepared(request: Request, model: str, height: float) -> Iterator[Offer]:
+    """Yield an offer, unless it is refused or too large for a browser."""
     try:
         system = System.prepared(request)
     except InputRefused:
         return
     sand = next(name for name, kind in kinds_of(system).items() if kind == SAND)
     if instance_of(system, sand).sizes["discs"] <= _MOST_DISCS:
-        yield Variant(model, height, system)
+        yield Offer(model, height, system)
