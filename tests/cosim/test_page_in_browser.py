@@ -130,7 +130,9 @@ def test_a_small_window_needs_no_scrolling_sideways(browser, file):
 
 
 def test_a_browser_without_webassembly_is_told_so_in_words(file):
-    with chromium("js-flags=--noexpose-wasm") as driver:
+    with chromium() as driver:
+        without = {"source": "delete globalThis.WebAssembly"}
+        driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", without)
         driver.get(file.as_uri())
         wait_for(driver, "!document.getElementById('trouble').hidden")
         words = driver.execute_script("return document.getElementById('trouble').textContent")
