@@ -54,6 +54,7 @@ CONTENTS = {
         "report",
         "page",
         "check",
+        "impact-systems",
         "fmus",
         "security",
         "limits",

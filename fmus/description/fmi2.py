@@ -3,7 +3,7 @@
 That of FMI 3.0, :mod:`rockshed.fmus.description.fmi3`, shares what does not differ.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from importlib.metadata import version
 
 from lxml import etree
@@ -144,7 +144,9 @@ def used_units(component: Component) -> list[str]:
     return [unit for unit in UNITS if unit in used]
 
 
-def unit_definitions(root: etree._Element, component: Component) -> None:
+def unit_definitions(
+    root: etree._Element, component: Component, others: Collection[str] = ()
+) -> None:
     """Append the element UnitDefinitions to the root.
 
     Parameters
@@ -153,9 +155,12 @@ def unit_definitions(root: etree._Element, component: Component) -> None:
         Root of the description, which grows.
     component : Component
         The component.
+    others : collection of str
+        Units that are defined besides those of its variables.
     """
     definitions = etree.SubElement(root, "UnitDefinitions")
-    for name in used_units(component):
+    used = used_units(component)
+    for name in [unit for unit in UNITS if unit in used or unit in others]:
         exponents = {base: str(exponent) for base, exponent in UNITS[name].base.items()}
         factor = {} if UNITS[name].factor == 1.0 else {"factor": repr(UNITS[name].factor)}
         etree.SubElement(

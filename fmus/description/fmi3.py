@@ -32,6 +32,7 @@ INTERNAL_STEP = "internal_step"
 """Name of the parameter that has the length of internal steps."""
 TIME = "time"
 """Name of the independent variable."""
+_TIME_UNIT = "s"
 
 _CAPABILITIES = {
     "needsExecutionTool": "false",
@@ -84,7 +85,7 @@ def model_description(component: Component, sizes: Sizes, token: str) -> bytes:
     etree.SubElement(
         root, "CoSimulation", {"modelIdentifier": component.name, **_CAPABILITIES, **more}
     )
-    unit_definitions(root, component)
+    unit_definitions(root, component, [_TIME_UNIT])
     _type_definitions(root, component)
     log_categories_and_experiment(root, component)
     references = value_references(component, sizes)
@@ -185,7 +186,7 @@ def _model_variables(
         description="time",
         causality="independent",
         variability="continuous",
-        unit="s",
+        unit=_TIME_UNIT,
     )
 
 

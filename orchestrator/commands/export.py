@@ -13,14 +13,14 @@ from ..runs.system import System
 from .analysis import options_named
 from .assignments import sizes_of, values_of
 from .options import Assignments, CaseSizes, CouplingScheme, ModelName
-from .screen import opened
+from .screen import Screen, opened
 
 _Target = Annotated[
     str,
     typer.Argument(
-        metavar="CASE|FILE.toml|SSP|RUN",
+        metavar="CASE|FILE.toml|SSP|RUN|systems",
         help="A case of `rockshed list`, a project, a system file or an SSP; with --format the "
-        "folder of a run.",
+        "folder of a run; `systems`: the impact systems, for other masters.",
     ),
 ]
 _Folder = Annotated[
@@ -63,6 +63,8 @@ _Output = Annotated[
     ),
 ]
 
+SYSTEMS = "systems"
+"""Target that is the suite of impact systems."""
 _MOST_TOLD = 3
 """Files of an export that are listed; of more, the first names the others."""
 _FAULT_OF_SYSTEM = Problem(
@@ -99,6 +101,10 @@ def command(
             return
         if folder is None or output is not None:
             raise InputRefused([_FAULT_OF_SYSTEM])
+        if target == SYSTEMS:
+            options = (set_, size, coupling, model, ssp, runtime if runtime != AUTO else None)
+            _export_systems(folder, any(options), screen)
+            return
         values = values_of("--set", set_ or [], problems)
         sizes = sizes_of(size or [], problems)
         request = Request(target, values, sizes, coupling, model=model, runtime=runtime)
@@ -107,6 +113,17 @@ def command(
             system = System.prepared(request, screen.note, problems)
             made = system.save(folder, ssp=ssp)
         screen.say(str(made))
+
+
+def _export_systems(folder: Path, has_options: bool, screen: Screen) -> None:
+    """Write the suite of impact systems, which has every kind of FMUs and no options."""
+    from ..systems.catalogue import impact_systems  # the components of all of them
+    from ..systems.files import export_systems
+
+    if has_options:
+        what = "has all kinds of FMUs and no options"
+        raise InputRefused([Problem(SYSTEMS, what, "leave the options out")])
+    screen.say(str(export_systems(impact_systems(), folder, screen.note)))
 
 
 def _check_run(folder: Path | None, of_systems: Mapping[str, object]) -> None:

@@ -13,7 +13,7 @@ from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.fmu.description import Description, Port, UnitDefinition
 from ..core.fmu.slave import BOOLEAN, INTEGER, REAL, STRING
 from ..core.fmu.types import TYPES, TYPES_2
-from ..core.system.plan import Plan
+from ..core.system.plan import End, Plan
 from ..core.system.system import Connection, SystemSpec
 from ..files import whole_file
 from ..versions import version_of
@@ -37,7 +37,11 @@ _NAMES = {"ssd": SSD, "ssc": SSC, "ssv": SSV, "osp": OSP, "oms": OMS}
 
 
 def write_ssp(
-    plan: Plan, files: Mapping[str, Path], file: Path, ssp_version: str = VERSIONS[0]
+    plan: Plan,
+    files: Mapping[str, Path],
+    file: Path,
+    ssp_version: str = VERSIONS[0],
+    shown: Sequence[End] = (),
 ) -> None:
     """Write a system as an SSP.
 
@@ -51,6 +55,9 @@ def write_ssp(
         A new file.
     ssp_version : str
         ``1.0`` or ``2.0``.
+    shown : sequence of End
+        Outputs that become connectors though nothing is connected with them, for tools that show
+        connectors alone.
 
     Raises
     ------
@@ -59,8 +66,8 @@ def write_ssp(
     """
     names = resource_names(files)
     contents = {
-        MAIN: as_bytes(description(plan, names, ssp_version)),
-        MULTI_RATE: as_bytes(description(plan, names, ssp_version, is_multi_rate=True)),
+        MAIN: as_bytes(description(plan, names, ssp_version, shown=shown)),
+        MULTI_RATE: as_bytes(description(plan, names, ssp_version, True, shown)),
     }
     copied = {f"{RESOURCES}/{names[component]}": files[component] for component in files}
     write_archive(file, contents, copied)
@@ -125,7 +132,11 @@ def resource_names(files: Mapping[str, Path]) -> dict[str, str]:
 
 
 def description(
-    plan: Plan, names: Mapping[str, str], ssp_version: str, is_multi_rate: bool = False
+    plan: Plan,
+    names: Mapping[str, str],
+    ssp_version: str,
+    is_multi_rate: bool = False,
+    shown: Sequence[End] = (),
 ) -> etree._Element:
     """Return the system structure description of a system.
 
@@ -139,6 +150,8 @@ def description(
         ``1.0`` or ``2.0``.
     is_multi_rate : bool
         Components get libcosim's annotation of their steps.
+    shown : sequence of End
+        Outputs that become connectors without a connection.
 
     Returns
     -------
@@ -158,9 +171,10 @@ def description(
     if system.description:
         inner.set("description", system.description)
     links = linked(plan, ssp_version)
+    ends = [*(end for link in links for end in (link.source, link.target)), *shown]
     elements = etree.SubElement(inner, f"{{{SSD}}}Elements")
     for name in plan.system.components:
-        made = _component(plan, name, names[name], links, ssp_version)
+        made = _component(plan, name, names[name], ends, ssp_version)
         if is_multi_rate:
             step = repr(plan.system.step(name))
             hint = _annotation(OSP_TYPE, f"{{{OSP}}}StepSizeHint", value=step)
@@ -169,7 +183,7 @@ def description(
     if links:
         inner.append(_connections(links))
     inner.append(_annotations(plan))
-    units = _units(plan)
+    units = _units(ends)
     if units is not None:
         root.append(units)
     root.append(_experiment(plan, is_multi_rate))
@@ -183,7 +197,7 @@ def description(
 
 
 def _component(
-    plan: Plan, name: str, file: str, links: Sequence[Joint], ssp_version: str
+    plan: Plan, name: str, file: str, ends: Sequence[End], ssp_version: str
 ) -> etree._Element:
     made = etree.Element(
         f"{{{SSD}}}Component",
@@ -191,7 +205,7 @@ def _component(
         type="application/x-fmu-sharedlibrary",
         source=f"{RESOURCES}/{file}",
     )
-    if connectors := _connectors(links, name, plan.descriptions[name]):
+    if connectors := _connectors(ends, name, plan.descriptions[name]):
         made.append(_group("Connectors", connectors))
     if plan.starts[name]:
         starts = whole_arrays(plan.descriptions[name], plan.starts[name])
@@ -199,9 +213,8 @@ def _component(
     return made
 
 
-def _connectors(links: Iterable[Joint], component: str, known: Description) -> list[etree._Element]:
-    """Return the connected ports of a component, in the order of its description."""
-    ends = [end for link in links for end in (link.source, link.target)]
+def _connectors(ends: Iterable[End], component: str, known: Description) -> list[etree._Element]:
+    """Return those of some ports that a component has, in the order of its description."""
     own = {end.port.array: end.port for end in ends if end.component == component}
     order = {port.array: turn for turn, port in enumerate(known.ports.values())}
     return [_connector(own[name]) for name in sorted(own, key=lambda name: order[name])]
@@ -336,10 +349,10 @@ def _more(connection: Connection) -> dict[str, Any]:
     return connection.model_dump(mode="json", exclude_defaults=True, exclude={"factor", "offset"})
 
 
-def _units(plan: Plan) -> etree._Element | None:
+def _units(ends: Iterable[End]) -> etree._Element | None:
     """Return the definitions of the units of all connectors."""
     used: dict[str, UnitDefinition] = {}
-    for end in (end for _, *ends in plan.fed for end in ends):
+    for end in ends:
         if end.port.kind == REAL and end.port.unit is not None and _is_defined(end.port.unit):
             used.setdefault(end.port.unit.name, end.port.unit)
     if not used:

@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 from rockshed.core.fmu.fmu_slave import UnusableError, read_description
 from rockshed.core.fmu.terminals import BUS, SEQUENCE, Terminal, TerminalMember, matched
 from rockshed.core.fmu.types import TYPES, TYPES_3
+from rockshed.fmus.description.fmi3 import model_description
+from rockshed.systems.parts.spring import COMPONENT as SPRING
 from tests.cosim.fmi3_fmus import SIMPLE, XML
 
 
@@ -107,3 +109,9 @@ def test_members_of_terminals_are_matched_as_their_rule_says():
 def test_terminals_that_do_not_fit_say_why(one, other, reason):
     with pytest.raises(ValueError, match=reason):
         matched(one, other)
+
+
+def test_the_unit_of_time_is_defined_where_no_variable_has_it():
+    xml = model_description(SPRING, SPRING.with_sizes(), "{0}")
+    assert b'<Unit name="s">' in xml
+    assert read_description(xml).ports["compression"].unit_name == "m"
