@@ -13,8 +13,6 @@ from .assignments import sizes_of, values_of
 from .options import Assignments, CaseSizes, CouplingScheme, ModelName, Quiet
 from .screen import opened
 
-_ARGUMENTS = ("file",)
-"""Arguments of the library that are options of the command."""
 _Target = Annotated[
     str,
     typer.Argument(
@@ -40,7 +38,7 @@ def command(
     problems: list[Problem] = []
     values = values_of("--set", set_ or [], problems)
     asked = Request(target, values, sizes_of(size or [], problems), coupling, model=model)
-    with opened(quiet) as screen, options_named(_ARGUMENTS, target):
+    with opened(quiet) as screen, options_named((), target):
         if problems:
             raise InputRefused(problems)
         with screen.progress("compiling"):

@@ -49,7 +49,7 @@ def refuse_unfit(system: System) -> None:
     """
     kinds = kinds_of(system)
     problems = [
-        Problem(name, f"is a {kind}, which a page does not compute", _REMEDY)
+        Problem(name, f"{kind} is a component that a page does not compute", _REMEDY)
         for name, kind in kinds.items()
         if kind not in (SAND, ROCK, BEAM)
     ]

@@ -76,7 +76,7 @@ def page(
         text = _page(first, offers)
     except BuildError as error:
         raise InputRefused([Problem("WebAssembly", str(error))]) from None
-    with refusing_unwritable(place, "name another file: file=..."):
+    with refusing_unwritable(place, "name another file"):
         write_file(place, text)
     return place
 
@@ -96,9 +96,7 @@ def _offers(system: str | Path | System | Request) -> list[Offer]:
 def _refuse_misplaced(file: Path) -> None:
     """Refuse a file that is no page, lies in no folder, or is somebody else's."""
     if file.suffix.lower() not in (".html", ".htm"):
-        raise InputRefused(
-            [Problem("file", f"{file.name} is no page", "let its name end in .html")]
-        )
+        raise InputRefused([Problem(str(file), "is no page", "let its name end in .html")])
     if not file.parent.is_dir():
         raise InputRefused([Problem(str(file.parent), "is no folder", "make it, or name another")])
     if not file.exists():

@@ -18,7 +18,7 @@ def refusal(*arguments, **options):
 @pytest.mark.parametrize(
     ("case", "words"),
     [
-        ("slope-to-cushion", "is a SlopeRockfall, which a page does not compute"),
+        ("slope-to-cushion", "SlopeRockfall is a component that a page does not compute"),
         ("spt", "has no FallingRock"),
         ("static-test", "is driven"),
         ("lab-impakt", "lab-impact"),
