@@ -242,7 +242,7 @@ def test_states_of_a_component_that_cannot_serialize_them():
 def test_an_fmu_that_a_process_can_hold_only_once():
     single = Mock([out("x")], once=True)
     assert problems(mocks={"a": single, "b": single}) == [
-        "a, b: use one FMU that can be instantiated only once in a process; export it under two names"
+        "a, b: use one FMU that can be instantiated only once in a process; isolate them, or export it under two names"
     ]
 
 

@@ -221,7 +221,7 @@ def _unpacked(data: bytes) -> Checkpoint:
     content = data[begin:]
     if not data.startswith(_FORMAT):
         raise ValueError("is no checkpoint of this version of the program")
-    if data[len(_FORMAT) : begin - 1] != hashlib.sha256(content).hexdigest().encode():
+    if data[len(_FORMAT) : begin] != hashlib.sha256(content).hexdigest().encode() + b"\n":
         raise ValueError("is damaged: its hash is that of other content")
     with np.load(io.BytesIO(content), allow_pickle=False) as stored:
         facts = json.loads(stored[_FACTS].tobytes())
