@@ -55,6 +55,7 @@ CONTENTS = {
         "page",
         "check",
         "impact-systems",
+        "experiments",
         "fmus",
         "security",
         "limits",

@@ -55,7 +55,8 @@ def _plate(
     mass = _mass(_FALLEN)
     rise = 2.0 * impulse / (_R0 + _R1)
     steps = 24
-    step = rise / 20.0 if push == 0.0 else 0.95 * rise / steps
+    # whole microseconds: past the end of the motion, or short of it where a force goes on pushing
+    step = round(rise / 20.0 if push == 0.0 else 0.95 * rise / steps, 6)
     t = np.minimum(rows(step, steps), rise)
     speed = (impulse + (push - _R0) * t - (_R1 - _R0) * t**2 / (2.0 * rise)) / mass
     way = (impulse * t + (push - _R0) * t**2 / 2.0 - (_R1 - _R0) * t**3 / (6.0 * rise)) / mass

@@ -1,20 +1,19 @@
 """Experiments on the pile rod: travelling waves, St. Venant's ram, Smith's soil at the toe."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from rockshed.components.common.ports import Sizes
 from rockshed.components.pile_rod.st_venant import StVenant
 
-from .declaration import Expected, Experiment, Given, Purpose, near, rows
+from .declaration import Expected, Experiment, Purpose, near, rows
 
 _LENGTH, _AREA, _MODULUS, _DENSITY = 10.0, 0.00058, 205783040000.0, 7850.0
 """Rod of the start values: m, m2, Pa, kg/m3."""
 _IMPEDANCE = _AREA * float(np.sqrt(_MODULUS * _DENSITY))
 _TRAVEL = _LENGTH * float(np.sqrt(_DENSITY / _MODULUS))
-_PARTS = 20
-"""Communication steps in the travel time of a wave."""
+_PARTS = 5
+"""Communication steps in the travel time of a wave: 390625 ns each, which tools that count time in
+whole nanoseconds can make."""
 _STEP = _TRAVEL / _PARTS
 _FORCE = 1e4
 _ROUNDING = 1e-9
@@ -39,7 +38,7 @@ def experiments(sizes: Sizes) -> tuple[Experiment, ...]:
         _ram(segments),
         _soil(segments),
         _repaired(),
-        *(_other_rod(area, modulus) for area in (0.95, 1.05) for modulus in (0.98, 1.02)),
+        *(_other_rod(area) for area in (0.9, 0.95, 1.05)),
     )
 
 
@@ -231,32 +230,26 @@ def _repaired() -> Experiment:
     )
 
 
-def _other_rod(area: float, modulus: float) -> Experiment:
-    steps = _PARTS // 2
-    stiffer = float(np.sqrt(modulus))
-    impedance = _IMPEDANCE * area * stiffer
-    step = _STEP / stiffer
-    t = rows(step, steps, 1)
-    parameters: Mapping[str, Given] = {
-        "toe.condition": "matched",
-        "section.area": (area * _AREA,),
-        "section.modulus": (modulus * _MODULUS,),
-    }
+def _other_rod(area: float) -> Experiment:
+    steps = 2 * _PARTS
+    impedance = _IMPEDANCE * area
+    t = rows(_STEP, steps, 1)
+    inside = np.minimum(t, _TRAVEL)
     return Experiment(
-        f"area-{100 * area:.0f}-modulus-{100 * modulus:.0f}",
+        f"area-{100 * area:.0f}",
         Purpose.UNCERTAINTY,
-        "Area known to 5 %, modulus to 2 %: the impedance goes with A sqrt(E), so the velocity of "
-        "the head has a spread of -6 to +6 %, the travel time of 1 %.",
-        step,
+        "Area known as 90 to 105 %: the impedance goes with it, so the velocity of the head has a "
+        "spread of -5 to +11 %.",
+        _STEP,
         steps,
         {
             "head.impedance": near(impedance, _ROUNDING),
-            "travel_time": near(_TRAVEL / stiffer, _ROUNDING),
+            "travel_time": near(_TRAVEL, _ROUNDING),
             "head.velocity": near(_FORCE / impedance, _ROUNDING),
             "head.position": near(_FORCE / impedance * t, _ROUNDING),
-            "energy.kinetic": near(_FORCE**2 / impedance * t / 2.0, _ROUNDING),
+            "energy.kinetic": near(_FORCE**2 / impedance * inside / 2.0, _ROUNDING),
         },
-        parameters,
+        {"toe.condition": "matched", "section.area": (area * _AREA,)},
         {"head.force": _FORCE},
         first=1,
     )

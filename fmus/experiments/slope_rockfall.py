@@ -33,6 +33,7 @@ def experiments(sizes: Sizes) -> tuple[Experiment, ...]:
         _flight(cells),
         _roll(cells),
         _slide(cells),
+        _slip_ends(cells),
         _bounce(cells, 0.4, Purpose.VALIDATION),
         _soil(cells),
         *(_bounce(cells, share, Purpose.UNCERTAINTY) for share in (0.3, 0.35, 0.45)),
@@ -167,6 +168,43 @@ def _slide(cells: int) -> Experiment:
             **_energies(speed**2, spin**2, y),
         },
         {**_plane(cells, angle, friction=friction), "on_slope": 1.0, **_standing(0.0)},
+    )
+
+
+def _slip_ends(cells: int) -> Experiment:
+    """Rock without spin that slides until it rolls."""
+    angle, friction, speed0, step, steps = 0.2, 0.3, 6.0, 0.1, 20
+    t = rows(step, steps)
+    down, held = _g * np.sin(angle), friction * _g * np.cos(angle)
+    turn = speed0 / (3.5 * held - down)
+    slides = np.minimum(t, turn)
+    rolls = np.maximum(t - turn, 0.0)
+    at_turn = speed0 + (down - held) * turn
+    speed = speed0 + (down - held) * slides + 5.0 / 7.0 * down * rolls
+    way = speed0 * slides + (down - held) * slides**2 / 2.0
+    way += at_turn * rolls + 5.0 / 7.0 * down * rolls**2 / 2.0
+    spin = np.where(t < turn, -2.5 * held * slides, -speed) / _RADIUS
+    return Experiment(
+        "slip-ends",
+        Purpose.VALIDATION,
+        "A sphere without spin slides down a plane of 0.2 rad; friction turns it until it rolls, "
+        "at u0/(7/2 mu g cos - g sin). To rounding, and times to a picosecond.",
+        step,
+        steps,
+        {
+            "position.x": near(way * np.cos(angle), _PICOSECOND),
+            "position.y": near(_RADIUS / np.cos(angle) - way * np.sin(angle), _PICOSECOND),
+            "velocity.x": near(speed * np.cos(angle), _PICOSECOND),
+            "angular_velocity": near(spin, _PICOSECOND),
+            "mode": Expected(np.where(t < turn, _SLIDING, _ROLLING), 0.0),
+            **_energies(speed**2, spin**2, _RADIUS / np.cos(angle) - way * np.sin(angle)),
+        },
+        {
+            **_plane(cells, angle, friction=friction),
+            "on_slope": 1.0,
+            **_standing(speed0 * np.cos(angle)),
+            "velocity0.y": -speed0 * np.sin(angle),
+        },
     )
 
 

@@ -9,6 +9,7 @@ from .probes import (
     dependencies,
     description,
     environment,
+    experiments,
     library,
     life,
     state,
@@ -68,6 +69,9 @@ SAFE = "archive/names"
 """Probe without which nothing is unpacked."""
 READS = "description/readable"
 """Probe without which nobody knows the variables."""
+
+MANIFEST = "experiments/manifest"
+"""Probe of the manifest of FMI-LS-REF."""
 
 PROBES = (
     _probe(SAFE, "names of members stay inside the FMU", archive.names, needs=""),
@@ -135,6 +139,11 @@ PROBES = (
     _probe("environment/process", "the process stays as it was", environment.process),
     _probe("environment/messages", "a refusal has a reason", environment.messages),
     _probe("environment/logging", "log categories", environment.logging),
+    _probe(MANIFEST, "experiments inside are there", experiments.manifest, needs=READS),
+    _probe("experiments/smoke-test", "they give what is expected", experiments.smoke_test),
+    _probe("experiments/validation", "so do validations", experiments.validation),
+    _probe("experiments/uncertainty-analysis", "and other parameters", experiments.uncertainty),
+    _probe("experiments/state", "states inside are taken", experiments.state),
 )
 """All probes, in the order in which they run."""
 

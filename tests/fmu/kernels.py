@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from rockshed.components.common.component import ComponentError, Instance
-
 
 def _put(instance, experiment, time):
     for name, stimulus in experiment.inputs.items():
@@ -17,7 +15,7 @@ def _put(instance, experiment, time):
 
 def course(component, sizes, experiment):
     """Values of the outputs that are expected, a row for each time of comparison."""
-    instance = Instance(component, sizes)
+    instance = component.instance(**sizes)
     for name, value in experiment.parameters.items():
         instance[name] = value
     rows = {name: [] for name in experiment.expected}
@@ -37,7 +35,9 @@ def missed(component, sizes, experiment):
     """Outputs that are not within their tolerances, with the largest deviation over the tolerance; or what was refused."""
     try:
         rows = course(component, sizes, experiment)
-    except ComponentError as error:
+    except Exception as error:
+        if type(error).__name__ != "ComponentError":  # there are several, of copies of the package
+            raise
         return {"refused": str(error)}
     found = {}
     for name, expected in experiment.expected.items():

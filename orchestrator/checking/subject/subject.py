@@ -113,6 +113,17 @@ class Subject:
             return _NO_STEP
         return (self.stop - self.start) / _STEPS_OF_EXPERIMENT
 
+    @property
+    def has_step(self) -> bool:
+        """Tell whether a communication step was asked for or stands in the description."""
+        fixed = self.can.fixedInternalStepSize
+        return bool(self._step or self._experiment("stepSize") or float(fixed or 0.0))
+
+    @property
+    def platform3(self) -> str:
+        """Name of this machine's platform in FMI 3.0."""
+        return str(fmpy.platform_tuple)
+
     @cached_property
     def steps(self) -> int:
         """Number of steps of an ordinary simulation."""
