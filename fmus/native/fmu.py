@@ -1,8 +1,9 @@
 """Native FMUs: kernels of a component as machine code behind a slave in C, without Python.
 
 ``slave.h`` is that slave, ``shim_fmi2.c`` and ``shim_fmi3.c`` are the functions of FMI 2.0 and 3.0
-around it. Kernels are compiled by numba and LLVM for the processor :data:`CPU`, the shim by a C
-compiler for any x86-64; it looks at the processor before it makes an instance. The model
+around it. Kernels are compiled by numba and LLVM for the processor of a platform, on x86-64
+:data:`CPU`; the shim by a C compiler for any processor of the platform's kind: on x86-64 it looks
+at the processor before it makes an instance. The model
 description of FMI 2.0 differs from that of the FMU with Python in GUID, tool and one flag.
 """
 
@@ -15,7 +16,7 @@ import shutil
 import subprocess
 import sys
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -71,7 +72,7 @@ CPU = Baseline(
 
 @dataclass(frozen=True)
 class Platform:
-    """A platform of FMI 2.0.
+    """A platform.
 
     Parameters
     ----------
@@ -79,29 +80,78 @@ class Platform:
         Its name in FMI 3.0.
     suffix : str
         Suffix of its libraries.
-    zig : str
-        Its name for zig.
+    triple : str
+        Its name for LLVM.
+    processor : str
+        LLVM's name of the processor that kernels are compiled for.
+    zig : tuple of str
+        Its name for zig, with the C library, and that of the processor of the shim.
     options : tuple of str
         Options of the linker.
     """
 
     in_fmi3: str
     suffix: str
-    zig: str
+    triple: str
+    processor: str
+    zig: tuple[str, str]
     options: tuple[str, ...] = ()
 
 
+_OF_LINUX = ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread")
 PLATFORMS: Mapping[str, Platform] = {
     "linux64": Platform(
         "x86_64-linux",
         ".so",
-        "x86_64-linux-gnu.2.17",
-        ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread"),
+        "x86_64-unknown-linux-gnu",
+        CPU.name,
+        ("x86_64-linux-gnu.2.17", "x86_64"),
+        _OF_LINUX,
     ),
-    "win64": Platform("x86_64-windows", ".dll", "x86_64-windows-gnu"),
-    "darwin64": Platform("x86_64-darwin", ".dylib", "x86_64-macos.11.0"),
+    "win64": Platform(
+        "x86_64-windows",
+        ".dll",
+        "x86_64-w64-windows-gnu",
+        CPU.name,
+        ("x86_64-windows-gnu", "x86_64"),
+    ),
+    "darwin64": Platform(
+        "x86_64-darwin",
+        ".dylib",
+        "x86_64-apple-macosx11.0",
+        CPU.name,
+        ("x86_64-macos.11.0", "x86_64"),
+    ),
+    "aarch64-linux": Platform(
+        "aarch64-linux",
+        ".so",
+        "aarch64-unknown-linux-gnu",
+        "generic",  # ARMv8-A, vectors of two numbers
+        ("aarch64-linux-gnu.2.17", "generic"),
+        _OF_LINUX,
+    ),
+    "aarch64-darwin": Platform(
+        "aarch64-darwin",
+        ".dylib",
+        "arm64-apple-macosx11.0",
+        "apple-m1",  # the oldest one with macOS
+        ("aarch64-macos.11.0", "apple_m1"),
+    ),
 }
-"""All platforms that there can be native FMUs for."""
+"""All platforms that there can be native FMUs for, by their names in FMI 2.0.
+
+FMI 2.0.4 has names of its own for x86-64, and takes those of FMI 3.0 for other processors.
+"""
+ALL_PLATFORMS = "all"
+"""Stands for all platforms."""
+_OWN = {
+    ("Linux", "x86_64"): "linux64",
+    ("Windows", "x86_64"): "win64",
+    ("Darwin", "x86_64"): "darwin64",
+    ("Linux", "aarch64"): "aarch64-linux",
+    ("Darwin", "aarch64"): "aarch64-darwin",
+}
+_SAME_MACHINE = {"amd64": "x86_64", "arm64": "aarch64"}
 
 _OPTIONS = (
     "-std=gnu11",
@@ -115,6 +165,12 @@ _OPTIONS = (
 _PYTHON_REMAINS = 'FMUs with Python inside, runtime="python", need no compiler'
 
 
+def _platform_here() -> str | None:
+    """Return the platform of this machine; None where there are no native FMUs for it."""
+    processor = machine.machine().lower()
+    return _OWN.get((machine.system(), _SAME_MACHINE.get(processor, processor)))
+
+
 def own_platform() -> str:
     """Return the platform of this machine in the words of FMI 2.0.
 
@@ -123,11 +179,12 @@ def own_platform() -> str:
     BuildError
         There are no native FMUs for it.
     """
-    name = {"Linux": "linux64", "Windows": "win64", "Darwin": "darwin64"}.get(machine.system(), "")
-    if not name or machine.machine().lower() not in ("x86_64", "amd64"):
+    name = _platform_here()
+    if name is None:
         raise BuildError(
-            "native FMUs are made for x86-64 processors under Linux, Windows and macOS; this is "
-            f"{machine.machine()} under {machine.system()}. {_PYTHON_REMAINS}"
+            "native FMUs are made for x86-64 processors under Linux, Windows and macOS, and for "
+            f"64-bit ARM under Linux and macOS; this is {machine.machine()} under "
+            f"{machine.system()}. {_PYTHON_REMAINS}"
         )
     return name
 
@@ -161,6 +218,8 @@ def native_files(
         A kernel needs Python, there is no compiler, or it fails.
     """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
+    if ALL_PLATFORMS in platforms:
+        platforms = tuple(PLATFORMS)
     compilers = {name: compiler(name) for name in platforms}
     guid = stamp(component, sizes, fmi)
     files = _described(component, sizes, guid, fmi)
@@ -304,9 +363,9 @@ def _versions(*packages: str) -> list[str]:
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Return the object code of the kernels by platform; it is kept with the compiled kernels."""
     made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
-    stamp = digest(
-        made_from | {"for": repr([CPU.name, dict(sizes), *_versions("numba", "llvmlite")]).encode()}
-    )[:24]
+    versions = _versions("numba", "llvmlite")
+    made_from["for"] = repr([_targets(PLATFORMS), dict(sizes), *versions]).encode()
+    stamp = digest(made_from)[:24]
     files = _object_files(f"{component.name}-%s-{stamp}.o", platforms)
     found = {name: kept(path) for name, path in files.items()}
     sound = {name: content for name, content in found.items() if content is not None}
@@ -319,6 +378,17 @@ def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> di
         with suppress(OSError):  # then it is compiled again next time
             keep(path, objects[name])
     return objects
+
+
+def _targets(platforms: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Return LLVM's names of platforms and their processors."""
+    return {name: (PLATFORMS[name].triple, PLATFORMS[name].processor) for name in platforms}
+
+
+def _processor_here() -> str:
+    """Return the processor of this machine's kind that numba compiles for."""
+    here = _platform_here()
+    return PLATFORMS[here].processor if here else "generic"
 
 
 def _object_files(name: str, platforms: Sequence[str]) -> dict[str, Path]:
@@ -352,8 +422,7 @@ def _compile(
     order = {
         "folder": str(component.folder),
         "sizes": dict(sizes),
-        "platforms": list(platforms),
-        "cpu": CPU.name,
+        "targets": _targets(platforms),
     }
     return compiled_apart(f"{__package__}.kernels", component, order, work, **environment)
 
@@ -390,7 +459,7 @@ def compiled_apart(
     """
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     settings = {
-        "NUMBA_CPU_NAME": CPU.name,
+        "NUMBA_CPU_NAME": _processor_here(),
         "NUMBA_CPU_FEATURES": "",
         "PYTHONPATH": os.pathsep.join(_import_folders()),
     }
@@ -429,6 +498,9 @@ def _import_folders() -> list[str]:
 
 # --- the C compiler
 
+_SHIM_FOR = {"linux64": "-march=x86-64", "aarch64-linux": "-march=armv8-a"}
+"""Option of compilers of Linux for any processor of the platform's kind."""
+
 
 def compiler(platform: str) -> list[str]:
     """Return the command of a compiler for a platform.
@@ -451,16 +523,18 @@ def compiler(platform: str) -> list[str]:
     BuildError
         There is none.
     """
-    is_own = platform == "linux64" and machine.system() == "Linux"
+    is_own = machine.system() == "Linux" and _platform_here() == platform
+    baseline = _SHIM_FOR.get(platform, "")
     if is_own and (chosen := os.environ.get("CC")):
-        return [*shlex.split(chosen), "-march=x86-64"]
+        return [*shlex.split(chosen), baseline]
     if find_spec("ziglang"):
-        target = ("-target", PLATFORMS[platform].zig, "-mcpu=x86_64")
-        return [sys.executable, "-m", "ziglang", "cc", *target]
+        target, processor = PLATFORMS[platform].zig
+        words = ("-target", target, f"-mcpu={processor}")
+        return [sys.executable, "-m", "ziglang", "cc", *words]
     found = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
     if is_own and found:
-        return [found, "-march=x86-64"]
-    others = "environment variable CC, cc, gcc, clang, " if platform == "linux64" else ""
+        return [found, baseline]
+    others = "environment variable CC, cc, gcc, clang, " if is_own else ""
     raise BuildError(
         f"no compiler for {platform} was found ({others}Python package ziglang). Remedy: `pip "
         f"install ziglang`. {_PYTHON_REMAINS}"

@@ -10,6 +10,7 @@ besides is checked against a list of functions that every C library has.
 """
 
 import json
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -27,13 +28,8 @@ from rockshed.components.common.component import Component, Instance
 
 from .subset import error_problem, symbol_problems
 
-TRIPLES = {
-    "linux64": "x86_64-unknown-linux-gnu",
-    "win64": "x86_64-w64-windows-gnu",
-    "darwin64": "x86_64-apple-macosx11.0",
-}
-"""Names that LLVM has for the platforms of FMI."""
-
+_OF_PROCESSOR = re.compile(r'"(?:target-cpu|target-features|tune-cpu)"="[^"]*" ?')
+"""Attributes of functions that name the processor for which numba has compiled."""
 ENTRIES = {name: f"rockshed_{name}" for name in ("initialise", "evaluate", "step")}
 """Names of the C functions by kernel."""
 
@@ -51,8 +47,8 @@ def main() -> None:
     if not problems:
         llvm.initialize_all_targets()
         llvm.initialize_all_asmprinters()
-        for platform in order["platforms"]:
-            _write(Path(f"{platform}.o"), emitted(module, TRIPLES[platform], order["cpu"]))
+        for platform, target in order["targets"].items():
+            _write(Path(f"{platform}.o"), emitted(module, *target))
     json.dump(problems, sys.stdout)
 
 
@@ -290,7 +286,7 @@ def emitted(module: Any, triple: str, cpu: str) -> bytes:
     machine = llvm.Target.from_triple(triple).create_target_machine(
         cpu=cpu, features="", opt=3, reloc="pic", codemodel="default"
     )
-    copy = module.clone()
+    copy = llvm.parse_assembly(_OF_PROCESSOR.sub("", str(module)))
     copy.triple = triple
     copy.data_layout = str(machine.target_data)
     code = machine.emit_object(copy)

@@ -1,10 +1,12 @@
 /* The slave of native FMUs around the kernels of one component, for every version of FMI. model.h, generated from the component's
    declarations and from the rules of conduct of both runtimes (python/conduct.py), has the tables of its variables, when a call is
    legal, and the sentences in which it refuses one. It takes and gives the serialized states of the slave in Python; but a call that
-   is refused returns an error itself. Compiled for every x86-64 processor: it looks whether the kernels can run on this one. The file
+   is refused returns an error itself. Compiled for every processor of its kind; on x86-64 it looks whether the kernels can run on this one. The file
    that includes it has the functions of one version of FMI, and defines the words of that version before:
    TOKEN, TYPE_NAMES, TO_INITIALISE, CALL_OF(type of a variable): the type whose call moves it, HAS_TIME: whether that can be read. */
+#ifdef __x86_64__
 #include <cpuid.h>
+#endif
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -209,6 +211,7 @@ static int is_lost(Slave *m) { /* whether a value is no finite number; tells the
 
 /* --- life cycle */
 
+#ifdef __x86_64__
 static int cpu_fits(void) {
   unsigned a, b, c, d, low, high;
   if (!__get_cpuid(1, &a, &b, &c, &d) || (c & CPU_1C) != CPU_1C) return 0; /* OSXSAVE is among them */
@@ -217,6 +220,9 @@ static int cpu_fits(void) {
   if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || (b & CPU_7B) != CPU_7B) return 0;
   return __get_cpuid(0x80000001, &a, &b, &c, &d) && (c & CPU_81C) == CPU_81C;
 }
+#else
+static int cpu_fits(void) { return 1; } /* kernels keep to what every processor of this kind has */
+#endif
 
 static void start_anew(Slave *m) {
   memset(&m->s, 0, sizeof m->s);

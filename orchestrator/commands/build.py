@@ -37,7 +37,7 @@ _Fmi = Annotated[
 _Platforms = Annotated[
     list[str] | None,
     typer.Option(
-        metavar="linux64|win64|darwin64",
+        metavar="linux64|win64|darwin64|aarch64-linux|aarch64-darwin|all",
         help="Of native FMUs; by default this machine's. May be repeated.",
     ),
 ]

@@ -403,7 +403,8 @@ def build_fmu(
         ``python``: with Python inside, which every processor runs; ``native``: needs no Python.
         By default Python, with FMI 3 native.
     platforms : sequence of str
-        Of native FMUs, ``linux64``, ``win64``, ``darwin64``; by default this machine's.
+        Of native FMUs, ``linux64``, ``win64``, ``darwin64``, ``aarch64-linux``,
+        ``aarch64-darwin``, or ``all``; by default this machine's.
     fmi : int
         Version of FMI, 2 or 3; that of 3 is for native FMUs only.
 
@@ -447,13 +448,14 @@ def build_fmu(
 
 def _export_problems(export: Export) -> list[Problem]:
     from rockshed.fmus.build import ONLY_NATIVE
-    from rockshed.fmus.native.fmu import PLATFORMS
+    from rockshed.fmus.native.fmu import ALL_PLATFORMS, PLATFORMS
 
+    known = [*PLATFORMS, ALL_PLATFORMS]
     runtime = export.chosen_runtime
     problems = [
-        Problem(f"platforms {name}", "there is no such platform", nearest(name, PLATFORMS))
+        Problem(f"platforms {name}", "there is no such platform", nearest(name, known))
         for name in export.platforms
-        if name not in PLATFORMS
+        if name not in known
     ]
     if runtime not in (*Runtime, BOTH):
         choice = f"choose one of {', '.join(Runtime)}, {BOTH}"

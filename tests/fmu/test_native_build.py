@@ -146,13 +146,20 @@ def dll_exports(content):
     }
 
 
-def dylib_symbols(content):
+X86_64, ARM64 = 0x01000007, 0x0100000C
+"""Processors of libraries of macOS."""
+CODE_SIGNATURE = 0x1D
+"""Load command without which macOS loads no library on Apple silicon."""
+
+
+def dylib_symbols(content, processor=X86_64):
     """(needed from outside, offered) of a library of macOS, by its symbol table."""
     magic, cpu, _, _, number, _ = struct.unpack_from("<IIIIII", content)
-    assert (magic, cpu) == (0xFEEDFACF, 0x01000007)
-    at, found = 32, []
+    assert (magic, cpu) == (0xFEEDFACF, processor)
+    at, found, commands = 32, [], set()
     for _ in range(number):
         command, length = struct.unpack_from("<II", content, at)
+        commands.add(command)
         if command == 2:  # LC_SYMTAB
             table, count, names, _ = struct.unpack_from("<IIII", content, at + 8)
             rows = [struct.unpack_from("<IBBHQ", content, table + 16 * i) for i in range(count)]
@@ -162,6 +169,7 @@ def dylib_symbols(content):
                 if row[1] & 1
             ]
         at += length
+    assert processor == X86_64 or CODE_SIGNATURE in commands
     return {name for name, kind in found if not kind & 14}, {
         name for name, kind in found if kind & 14
     }
@@ -230,6 +238,24 @@ def test_zig_builds_what_runs_here(monkeypatch, probe, tmp_path):
     with Host(build_component(probe, destination=tmp_path, runtime=Runtime.NATIVE)) as host:
         host.start(inflow=1.0).steps(3, 0.1)
         assert not host.messages
+
+
+@pytest.mark.slow
+@needs_zig
+@pytest.mark.parametrize("fmi", list(Fmi))
+def test_libraries_for_arm_offer_fmi_and_need_the_c_library_only(monkeypatch, fmi):
+    monkeypatch.delenv("CC", raising=False)
+    rock = component("FallingRock")
+    files = native_files(rock, rock.with_sizes(), ("aarch64-linux", "aarch64-darwin"), fmi)
+    linux64 = files["binaries/aarch64-linux/FallingRock.so"]
+    assert struct.unpack_from("<H", linux64, 18)[0] == 183  # ARM of 64 bits
+    assert newest_c_library(linux64) <= (2, 28)
+    needed, offered = elf_symbols(linux64)
+    assert offered == FUNCTIONS[fmi]
+    assert needed - C_LIBRARY - ALSO_IN_FMI_3 == set()
+    needed, offered = dylib_symbols(files["binaries/aarch64-darwin/FallingRock.dylib"], ARM64)
+    assert offered - {"_mh_dylib_header", "__dso_handle"} == FUNCTIONS[fmi]
+    assert needed - C_LIBRARY - ALSO_IN_FMI_3 <= MACOS_ONLY
 
 
 def newest_c_library(library):
@@ -384,8 +410,8 @@ def test_other_platforms_need_zig(monkeypatch):
 
 
 def test_a_processor_of_another_kind_is_refused(monkeypatch):
-    monkeypatch.setattr(native_fmu.machine, "machine", lambda: "aarch64")
-    with pytest.raises(BuildError, match=r"made for x86-64 processors.*this is aarch64"):
+    monkeypatch.setattr(native_fmu.machine, "machine", lambda: "riscv64")
+    with pytest.raises(BuildError, match=r"made for x86-64 processors.*this is riscv64"):
         native_files(component("FallingRock"), {})
 
 
