@@ -47,6 +47,7 @@ CONTENTS = {
         "ssp",
         "fmi",
         "scenarios",
+        "masters",
         "adaptive",
         "results",
         "checkpoints",
