@@ -46,8 +46,8 @@ C_LIBRARY = set(
     __memcpy_chk __snprintf_chk __strcpy_chk __vsnprintf_chk""",
     )
 )
-MACOS_ONLY = {"__stack_chk_guard", "dyld_stub_binder", "__bzero", "__sincos_stret"}
-"""What its C library has besides; the last is its sincos."""
+MACOS_ONLY = {"__stack_chk_guard", "dyld_stub_binder", "__bzero", "bzero", "__sincos_stret"}
+"""What its C library has besides: on ARM bzero for __bzero; the last is its sincos."""
 FUNCTIONS = {
     Fmi.TWO: set(
         re.findall(
