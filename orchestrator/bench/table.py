@@ -20,6 +20,7 @@ from . import coupling, discs, rockfall
 from .exchange import BARE, OURS, PEERS, Pair
 from .interleave import interleave
 from .peer import Peer, answers
+from .residuals import LADDERS, measured, of_logarithms
 
 
 @dataclass(frozen=True)
@@ -208,6 +209,18 @@ def cluster_rows(rounds: int) -> Iterator[BenchmarkRow]:
     )
 
 
+def residual_rows(_rounds: int) -> Iterator[BenchmarkRow]:
+    """Correlate the energy residuals of runs with their errors."""
+    pairs = measured()
+    for case in LADDERS:
+        value = of_logarithms([pair for pair in pairs if pair.case == case])
+        name = f"energy residual and error of the peak transmitted force, {case}"
+        yield BenchmarkRow(name, value, "correlation of logarithms")
+    value = 1.0 - of_logarithms(pairs)
+    name = f"the same, all {len(pairs)} runs"
+    yield BenchmarkRow(name, value, "1 - correlation of logarithms", goal=0.1)
+
+
 PARTS: Mapping[str, Callable[[int], Iterator[BenchmarkRow]]] = {
     "discs": disc_rows,
     "coupling": coupling_rows,
@@ -215,5 +228,6 @@ PARTS: Mapping[str, Callable[[int], Iterator[BenchmarkRow]]] = {
     "start": start_rows,
     "rockfall": rockfall_rows,
     "cluster": cluster_rows,
+    "residuals": residual_rows,
 }
 """Parts of the benchmark. Contestants that are compared take turns in every round."""

@@ -20,7 +20,7 @@ SYSTEMS = "systems"
 _Parts = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="discs|coupling|exchange|start|rockfall|cluster|systems",
+        metavar="discs|coupling|exchange|start|rockfall|cluster|residuals|systems",
         help="All of them by default, but systems, which is asked for alone.",
     ),
 ]

@@ -9,7 +9,7 @@ from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.system.planning import make_plan
 from rockshed.runs.job import Job
 from rockshed.runs.simulation import simulate
-from rockshed.runs.system import System
+from rockshed.runs.system import System, case
 from tests.cosim.mocks import Mock, inp, mass, out, spring, wired
 
 CONTROLS = ("doubling", "ledger")
@@ -240,3 +240,27 @@ def test_a_step_that_is_discarded_is_made_in_halves():
     sources["mass"].step = lambda v, t, h: (2, "too long") if h > 4 * UNIT else step(v, t, h)
     found = run(spec, sources)
     assert found.metrics["largest_exchange_step"].value <= 4 * UNIT
+
+
+@pytest.mark.slow
+def test_an_impact_takes_a_fifth_of_the_exchanges_of_a_fixed_step_with_held_inputs():
+    """With inputs that follow lines, and against the coupling `paper`."""
+
+    def metrics(coupling, step, values=None, **options):
+        times = {"stop_time": 0.0384, "output_interval": 1.28e-3, "state_interval": 1.28e-2}
+        system = case(
+            "lab-impact", coupling=coupling, values=values, exchange_step=step, **times, **options
+        )
+        return simulate(system).metrics
+
+    def error(found):
+        names = ("peak_transmitted_force", "penetration")
+        return max(abs(found[name].value / finest[name].value - 1.0) for name in names)
+
+    finest = metrics("paper", 1e-6)
+    fixed = metrics("paper", 2e-5)
+    made = {"tolerance": 1e-2, "largest_step": 2.56e-4, "control": "ledger"}
+    linear = {"sand.kinematics": "linear"}
+    found = metrics("jacobi", 1e-6, linear, extrapolation=1, adaptive=made)
+    assert error(found) < error(fixed)
+    assert 5 * found["exchanges"].value <= fixed["exchanges"].value
