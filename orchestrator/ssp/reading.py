@@ -35,6 +35,8 @@ _KINDS = {
 }
 """Families of FMI calls by the type of a connector."""
 _NO_LETTER = re.compile(r"[^A-Za-z0-9_]")
+_PLACE = re.compile(r"[0-9]{1,9}")
+"""Number of an element of an array, from 1."""
 
 Describe = Callable[[Path], bytes]
 """Returns the ``modelDescription.xml`` of an FMU file, or refuses it with InputRefused."""
@@ -180,7 +182,7 @@ class _Import:
             return name
         array, _, number = name.rpartition("[")
         elements = known.arrays[array].names if array in known.arrays else ()
-        place = int(number[:-1]) if number[:-1].isdigit() else 0
+        place = int(number[:-1]) if _PLACE.fullmatch(number[:-1]) else 0
         return elements[place - 1] if 0 < place <= len(elements) else None
 
     def _check_connectors(self, element: Element) -> None:

@@ -280,6 +280,8 @@ KINDS = {
     ),
 }
 """What is made, how it is read, what damages it, and what is damaged: file and member."""
+FOUND = {"system file": (511, 7653), "description of an SSP": (428,)}
+"""Damages that ended in something else than a refusal once."""
 
 
 @pytest.fixture(scope="module", params=KINDS)
@@ -290,7 +292,7 @@ def kind(request, tmp_path_factory):
     return request.param, place
 
 
-def attack(kind, numbers: range, folder: Path, monkeypatch) -> None:
+def attack(kind, numbers, folder: Path, monkeypatch) -> None:
     """Damage, read and look around; any other end than a reading or a refusal is an error."""
     name, made = kind
     _, read, damage, targets = KINDS[name]
@@ -322,7 +324,7 @@ def attack(kind, numbers: range, folder: Path, monkeypatch) -> None:
 
 
 def test_a_damaged_system_is_read_or_refused_in_words(kind, tmp_path, monkeypatch):
-    attack(kind, range(20), tmp_path, monkeypatch)
+    attack(kind, [*range(20), *FOUND.get(kind[0], ())], tmp_path, monkeypatch)
 
 
 @pytest.mark.slow
