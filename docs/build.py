@@ -57,6 +57,7 @@ CONTENTS = {
         "check",
         "impact-systems",
         "experiments",
+        "compatibility",
         "fmus",
         "security",
         "limits",

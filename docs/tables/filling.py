@@ -8,9 +8,16 @@ from .convergence import TABLES as CONVERGENCE
 from .kept import NotKeptError
 from .other_papers import TABLES as OTHERS
 from .sonoda1993 import TABLES as SONODA
+from .systems import TABLES as SYSTEMS
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ("README.md", "docs/sonoda1993.md", "docs/convergence.md")
+PAGES = (
+    "README.md",
+    "docs/sonoda1993.md",
+    "docs/convergence.md",
+    "docs/impact-systems.md",
+    "docs/compatibility.md",
+)
 """Pages with blocks."""
 BLOCK = re.compile(r"^<!-- table: ([\w.-]+)/([\w-]+) -->\n(.*?)^<!-- end -->$", re.M | re.S)
 """Paper, name, text."""
@@ -19,6 +26,7 @@ TABLES: Mapping[str, Mapping[str, Callable[[], str]]] = {
     "sonoda1993": SONODA,
     "others": OTHERS,
     "convergence": CONVERGENCE,
+    "systems": SYSTEMS,
 }
 """Functions that write a block, by paper and name."""
 

@@ -1,10 +1,12 @@
 """The figure of the impact systems: error over exchange step, a panel for each system."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter
 
 from ..analyses.drawing import drawn
 from ..pictures.style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH
@@ -16,6 +18,8 @@ from .measuring import MasterRun, SuiteRuns
 _COLUMNS = 2
 _COLOURS = (TRANSMITTED, ROCK, BEAM, INK, SAND, GREY)
 _MARKERS = "osD^v<>pPX*hd+x"
+_ROOM = 0.16
+"""Part of an axis that the label of a step needs."""
 _SHOWN = (1e-7, 3.0)
 """Errors that are drawn; runs beyond them have lost the way, or show rounding."""
 
@@ -56,6 +60,16 @@ def draw(measured: SuiteRuns, file: Path) -> Path:
     return file
 
 
+def _apart(steps: Sequence[float]) -> list[float]:
+    """Return the steps whose labels do not run into one another, the finest among them."""
+    room = _ROOM * math.log(steps[0] / steps[-1])
+    chosen = [steps[-1]]
+    for step in reversed(steps):
+        if math.log(step / chosen[-1]) > room:
+            chosen.append(step)
+    return chosen
+
+
 def _panel(axes: Axes, name: str, rows: Sequence[MasterRun]) -> None:
     """Draw one system; markers are open and of different size, as many curves are the same."""
     system = impact_system(name)
@@ -77,7 +91,9 @@ def _panel(axes: Axes, name: str, rows: Sequence[MasterRun]) -> None:
             )
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xticks(system.steps, [f"{1e3 * step:g}" for step in system.steps])
+    places = _apart(system.steps)
+    axes.set_xticks(places, [f"{1e3 * step:g}" for step in places])
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.minorticks_off()
     axes.set_title(name, fontsize="small")
     axes.set_xlabel("exchange step (ms)")

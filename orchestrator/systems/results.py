@@ -87,7 +87,9 @@ def error_at(rows: Sequence[MasterRun], cost: float | None) -> float | None:
     None where all cost more.
     """
     points = sorted(
-        (math.log(row.cost), math.log(row.error)) for row in rows if row.cost and row.error
+        (math.log(row.cost), math.log(row.error))
+        for row in rows
+        if row.cost and row.error and row.error < 1.0
     )
     if cost is None or len(points) < 2 or math.log(cost) < points[0][0]:
         return None

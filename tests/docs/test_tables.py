@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from docs.tables import convergence, kept
+from docs.tables import convergence, kept, systems
 from docs.tables.filling import BLOCK, PAGES, TABLES, filled
 from docs.tables.forms import beside, number
 from docs.tables.kept import Kept, NotKeptError, outdated, take
@@ -51,6 +51,11 @@ def test_pictures_of_pages_are_drawn_with_the_present_kernels(picture):
 def test_the_kept_study_of_convergence_comes_from_the_present_kernels():
     """Otherwise: `rockshed converge`, then `python -m docs.tables.convergence FOLDER`."""
     assert convergence.trial()[convergence.STAMP] == convergence.stamp()
+
+
+def test_the_kept_measurement_of_the_impact_systems_has_their_present_steps():
+    """Otherwise: `rockshed bench systems`, then `python -m docs.tables.systems results/systems`."""
+    assert systems.outdated(systems.kept()) == []
 
 
 def test_every_picture_of_a_run_of_the_sand_has_a_stamp():

@@ -331,6 +331,8 @@ def with_container(job: JobData) -> ToolAnswer:
     if not (folder / "answer.json").is_file():
         raise RuntimeError(said[-300:])
     found: ToolAnswer = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
+    if "reason" in found:
+        return found
     begin = "container.shown."
     found["values"] = {k.removeprefix(begin): v for k, v in found["values"].items()}
     return found
