@@ -16,6 +16,7 @@ INPUTS: Mapping[str, tuple[str, int, Mapping[str, Any]]] = {
     "hold (jacobi)": ("jacobi", 0, {}),
     "lines (jacobi)": ("jacobi", 1, {}),
     "lines, and sand.kinematics": ("jacobi", 1, LINEAR),
+    "parabolas, and sand.kinematics": ("jacobi", 2, LINEAR),
     "coupling impulse": ("impulse", 0, {}),
 }
 """Coupling, order of extrapolation and values of the sand, by what inputs do."""
