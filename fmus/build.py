@@ -312,8 +312,7 @@ def fmu_files(component: Component, sizes: Mapping[str, int]) -> Files:
     files = {f"resources/{library_name}/{path}": content for path, content in library.items()}
     files |= (
         dict(_binaries(component))
-        | documentation(component, sizes)
-        | experiment_files(component, sizes)
+        | documentation(component, sizes, experiment_files(component, sizes))
         | picture(component, "model.png")
     )
     files |= license_files() | needed_by_python()

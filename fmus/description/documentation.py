@@ -16,8 +16,12 @@ _STYLE = (
 )
 
 
-def documentation(component: Component, sizes: Sizes) -> Files:
-    """Return the files of the documentation inside an FMU.
+EXPERIMENTS_PAGE = "documentation/fmi-ls-ref.html"
+"""Place of the page about the experiments inside an FMU."""
+
+
+def documentation(component: Component, sizes: Sizes, others: Files) -> Files:
+    """Return the files of the documentation inside an FMU: its page with the others.
 
     Parameters
     ----------
@@ -25,11 +29,14 @@ def documentation(component: Component, sizes: Sizes) -> Files:
         Declarations and README.
     sizes : mapping of str to int
         Sizes with which the FMU is built.
+    others : Files
+        Files of the FMU that the page shows or leads to, where they are among them.
     """
-    return {"documentation/index.html": index_html(component, sizes).encode()}
+    page = index_html(component, sizes, others).encode()
+    return {"documentation/index.html": page} | others
 
 
-def index_html(component: Component, sizes: Sizes) -> str:
+def index_html(component: Component, sizes: Sizes, others: Files) -> str:
     """Return the page ``documentation/index.html``.
 
     Parameters
@@ -38,10 +45,17 @@ def index_html(component: Component, sizes: Sizes) -> str:
         The component.
     sizes : mapping of str to int
         Sizes that the FMU is built with.
+    others : Files
+        Files beside the page.
     """
     from markdown_it import MarkdownIt
 
     body = MarkdownIt("commonmark").enable("table").render(component.documentation())
+    if EXPERIMENTS_PAGE in others:
+        body += (
+            f'<h2>Experiments</h2>\n<p><a href="{_beside(EXPERIMENTS_PAGE)}">What is done with '
+            "this FMU, and what has to come out</a></p>\n"
+        )
     body += "<h2>Variables</h2>\n" + table(
         ("name", "causality", "unit", "start", "range", "description", "source"),
         (_row(variable, sizes) for variable in component.layout.ordered),
@@ -55,6 +69,11 @@ def index_html(component: Component, sizes: Sizes) -> str:
             ),
         )
     return page(component.title, body)
+
+
+def _beside(path: str) -> str:
+    """Return a file's address as seen from the page."""
+    return path.removeprefix("documentation/")
 
 
 def page(title: str, body: str) -> str:

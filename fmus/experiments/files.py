@@ -16,11 +16,12 @@ from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Kind, Sizes, Variable
 
 from ..description.annotations import TOOL
+from ..description.documentation import EXPERIMENTS_PAGE
 from ..description.fmi2 import literal
 from ..parts import Files, Fmi
 from .declaration import Experiment, Given, Purpose, Stimulus, rows
 from .found import experiments_of
-from .page import PAGE, experiments_html
+from .page import experiments_html
 
 FOLDER = "extra/org.fmi-standard.fmi-ls-ref"
 """Folder of FMI-LS-REF inside an FMU."""
@@ -86,7 +87,7 @@ def experiment_files(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> 
             related.append(writer.experiments_file(purpose, chosen))
     files = {f"{FOLDER}/{file.name}": file.content for file in related}
     page = experiments_html(component, experiments).encode()
-    return files | {MANIFEST: _manifest(related), PAGE: page}
+    return files | {MANIFEST: _manifest(related), EXPERIMENTS_PAGE: page}
 
 
 def _manifest(related: Sequence[_Related]) -> bytes:
@@ -96,7 +97,7 @@ def _manifest(related: Sequence[_Related]) -> bytes:
         f"{{{_LS}}}fmi-ls-description": _LS_DESCRIPTION,
     }
     root = etree.Element("fmiReferences", names, nsmap={"fmi-ls": _LS})
-    page = ("text/html", f"../../{PAGE}", "document", "what the experiments show")
+    page = ("text/html", f"../../{EXPERIMENTS_PAGE}", "document", "what the experiments show")
     entries = [page, *((f.type, f.name, f.role, f.description) for f in related)]
     for kind, source, role, description in entries:
         etree.SubElement(

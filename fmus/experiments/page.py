@@ -1,4 +1,4 @@
-"""The page about the experiments inside an FMU, ``documentation/fmi-ls-ref.html``."""
+"""The page about the experiments inside an FMU."""
 
 from collections.abc import Sequence
 from html import escape
@@ -7,8 +7,6 @@ from rockshed.components.common.component import Component
 
 from ..description.documentation import page, table
 from .declaration import Experiment
-
-PAGE = "documentation/fmi-ls-ref.html"
 
 
 def experiments_html(component: Component, experiments: Sequence[Experiment]) -> str:

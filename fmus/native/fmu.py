@@ -343,7 +343,7 @@ def _described(component: Component, sizes: Sizes, guid: str, fmi: Fmi) -> Files
     from ..description import fmi3 as description3
     from ..experiments.files import experiment_files
 
-    files = documentation(component, sizes) | experiment_files(component, sizes, fmi)
+    files = documentation(component, sizes, experiment_files(component, sizes, fmi))
     files |= license_files()
     if fmi is Fmi.THREE:
         own = {DESCRIPTION: description3.model_description(component, sizes, guid)}

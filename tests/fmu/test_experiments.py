@@ -43,7 +43,7 @@ def test_each_component_has_experiments_of_all_purposes(name):
     assert len(set(names)) == len(names)
 
 
-@pytest.mark.parametrize("sizes", [{"elements": 13}, {"elements": 20}])
+@pytest.mark.parametrize("sizes", [{"elements": n} for n in (8, 13, 30, 48, 120)])
 def test_the_beams_experiments_hold_for_other_numbers_of_discs(sizes):
     made = component("RBSMBeam")
     chosen = made.with_sizes(sizes)
@@ -100,6 +100,12 @@ def test_arrays_are_elements_in_fmi_2_and_whole_in_fmi_3():
 def test_the_same_experiments_give_the_same_bytes():
     made = component("Hammer")
     assert archive(fmu_files(made, {})) == archive(fmu_files(made, {}))
+
+
+def test_the_documentation_inside_an_fmu_leads_to_its_experiments():
+    files = fmu_files(component("Hammer"), {})
+    assert b'<a href="fmi-ls-ref.html">' in files["documentation/index.html"]
+    assert b"rigid-ram" in files["documentation/fmi-ls-ref.html"]
 
 
 def test_an_fmu_has_licenses_and_says_what_it_needs():
