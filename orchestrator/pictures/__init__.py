@@ -9,6 +9,7 @@ from tempfile import TemporaryFile
 from rockshed.components.common.roles import Role
 
 from ..core.errors import InputRefused, refusing_unwritable
+from ..core.results.facts import table_of
 from ..core.results.own_files import is_foreign_picture
 from ..core.results.reading import StoredRun
 from ..metrics.comparison import known_of
@@ -140,12 +141,18 @@ def pictures_of(run: StoredRun) -> list[RunPicture]:
 
 
 def _of_exchanges(run: StoredRun) -> list[RunPicture]:
-    """Return the picture of the exchange steps of an adaptive run; none of another one."""
-    if run.provenance["system"].get("adaptive") is None or len(run.time) < 2:
-        return []
-    from .exchange_step import COLUMN, exchange_step  # matplotlib is imported when it is drawn
+    """Return the pictures of how exchanges were made: their steps, their iterations."""
+    from .exchange_step import exchange_step  # matplotlib is imported when something is drawn
+    from .iterations import iterations
 
-    return [RunPicture("exchange_step", partial(exchange_step, run), [COLUMN])]
+    system = run.provenance["system"]
+    made = []
+    if system.get("adaptive") is not None and len(run.time) > 1:
+        made.append(RunPicture("exchange_step", partial(exchange_step, run), ["coupling.step"]))
+    kept = table_of(run.provenance, "iteration").get("windows")
+    if system.get("master") == "implicit" and (len(run.time) > 1 or kept):
+        made.append(RunPicture("iterations", partial(iterations, run), ["coupling.iterations"]))
+    return made
 
 
 def _of_slope(run: StoredRun) -> list[RunPicture]:

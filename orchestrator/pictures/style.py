@@ -21,6 +21,8 @@ WIDTH = 7.2
 """Width (inch) of a picture of curves."""
 INK, GREY, FAINT = "#222222", "#767676", "#d9d9d9"
 TRANSMITTED, ROCK, BEAM, SAND = "#1f5a94", "#c0561a", "#3d7d3f", "#c9a66b"
+COLOURS = (TRANSMITTED, ROCK, BEAM, "#8a6d4b", "#6a4c93", "#2a9d8f", "#c04d7e", "#7a7a2a")
+"""Colours of curves that are no body; where there are more, it takes a scale of colours."""
 REFERENCE_DASHES = "--"
 """Dashes of a line at a value that somebody else has found."""
 _LONGEST_NAME = 80

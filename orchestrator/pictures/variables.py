@@ -15,12 +15,10 @@ from rockshed.components.common.units import UNITS, ms
 
 from ..core.results.series import Series
 from ..metrics.measured import MeasuredCurve
-from .style import BEAM, INK, ROCK, TRANSMITTED, WIDTH, legend, literal, styled
+from .style import COLOURS, INK, WIDTH, legend, literal, styled
 
 _PANEL = 2.2
 """Height of a panel (inch)."""
-_COLOURS = (TRANSMITTED, ROCK, BEAM, "#8a6d4b", "#6a4c93", "#2a9d8f", "#c04d7e", "#7a7a2a")
-"""Colours of a panel; more variables than that have a scale of colours."""
 _DASHES = ("-", "--", ":", "-.")
 """Dashes of the runs, in turn."""
 _MOST_NAMED = 60
@@ -120,8 +118,8 @@ def _panel(
 
 
 def _colours(number: int) -> Sequence[str] | np.ndarray:
-    if number <= len(_COLOURS):
-        return _COLOURS
+    if number <= len(COLOURS):
+        return COLOURS
     return colormaps["viridis"](np.linspace(0.0, 1.0, number))
 
 

@@ -166,6 +166,7 @@ class Implicit(Driver):
             self._left_open += 1
             self._accept(exchange)
             return None
+        self._history.end(exchange)
         residuals = self._history.of_window[-1]
         source, targets = self._residuals.interfaces.names[int(np.argmax(residuals))]
         first = float(np.max(self._history.of_window[0]))
