@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from rockshed.core.masters.acceleration import acceleration_of
@@ -35,8 +35,14 @@ def solved(method, matrix, constant, start, most, scale=None):
 
 @pytest.mark.parametrize("name", ["anderson", "quasi_newton"])
 @given(loops())
+@example((np.array([[-1.7, 0.5], [-1.1, 1.0]]), np.array([0.0, 1.0])))
+@example((np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [-2.0, 0.0, 1.0]]), -2.0 * np.eye(3)[2]))
+@example((np.roll(np.eye(6), 1, axis=0) * -1.5, np.eye(6)[0]))
 def test_a_linear_loop_of_n_values_is_solved_in_n_plus_1_iterations(name, drawn):
-    """Whether it contracts or not; the next iteration shows that it is solved."""
+    """Whether it contracts or not; the next iteration shows that it is solved.
+
+    In the examples some differences, of the last one all but one, make the residual no smaller.
+    """
     matrix, constant = drawn
     size = constant.size
     found, iterations = solved(
@@ -44,7 +50,7 @@ def test_a_linear_loop_of_n_values_is_solved_in_n_plus_1_iterations(name, drawn)
     )
     expected = np.linalg.solve(np.eye(size) - matrix, constant)
     assert found == pytest.approx(expected, rel=1e-6, abs=1e-6)
-    assert iterations <= size + 4  # rounding in stiff loops may ask for one or two more
+    assert iterations <= size + 2
 
 
 @given(st.integers(1, 4000), st.floats(-10.0, 10.0))

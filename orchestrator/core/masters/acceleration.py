@@ -19,6 +19,8 @@ _REUSED = 6
 """Windows whose differences are kept."""
 _DEPENDENT = 1e-7
 """Part of a difference that has to be new, else it is left out."""
+_STANDING = 1e-6
+"""Part by which the residual that is left has to change, else the method stands."""
 _LARGEST_RELAXATION = 1.0
 _SMALLEST_RELAXATION = 1e-4
 
@@ -98,6 +100,10 @@ class LeastSquares(Accelerator):
     differences of earlier windows it is the interface quasi-Newton method IQN-ILS [2]_. Columns
     that depend on newer ones are left out [3]_.
 
+    Where the newest difference makes r - V c no smaller, the next guess would be one that was made
+    before, and teach nothing: the method would stand there for ever, as GMRES only does for a step
+    [4]_. Then the next guess is G(z), whose difference is a new one.
+
     Parameters
     ----------
     size : int
@@ -114,6 +120,8 @@ class LeastSquares(Accelerator):
        793-801.
     .. [3] Haelterman et al., Improving the performance of the partitioned QN-ILS procedure for
        fluid-structure interaction problems: filtering, Computers & Structures 171 (2016), 9-17.
+    .. [4] Potra and Engler, A characterization of the behavior of the Anderson acceleration on
+       linear problems, Linear Algebra and its Applications 438 (2013), 1002-1011.
     """
 
     def __init__(self, size: int, windows: int) -> None:
@@ -122,10 +130,12 @@ class LeastSquares(Accelerator):
         self._results = np.zeros((_MOST_COLUMNS, size))
         self._ages = np.full(_MOST_COLUMNS, -1, np.int64)
         self._before: tuple[FloatTable, FloatTable] | None = None
+        self._left: FloatTable | None = None
 
     def begin(self) -> None:
         """Begin a window; what is too old is forgotten."""
         self._before = None
+        self._left = None
         self._ages[self._ages >= 0] += 1
         self._ages[self._ages >= self._windows] = -1
 
@@ -137,7 +147,10 @@ class LeastSquares(Accelerator):
         self._before = residual, result
         known = int(np.count_nonzero(self._ages >= 0))
         weights, places = _combination(self._residuals[:known] / scale, residual / scale)
-        return result - weights @ self._results[places]
+        left = (residual - weights @ self._residuals[places]) / scale
+        stands = self._left is not None and _is_same(left, self._left, residual / scale)
+        self._left = left
+        return result if stands else result - weights @ self._results[places]
 
     def _learn(self, residual: FloatTable, result: FloatTable) -> None:
         """Put a pair of differences in front of the others."""
@@ -158,6 +171,13 @@ class LeastSquares(Accelerator):
         self._residuals = memory["residuals"].copy()
         self._results = memory["results"].copy()
         self._ages = memory["ages"].copy()
+
+
+def _is_same(left: FloatTable, before: FloatTable, residual: FloatTable) -> bool:
+    """Tell whether a residual that combinations leave is that of before, and not rounding."""
+    size = float(np.linalg.norm(left))
+    is_rounding = size <= _DEPENDENT * float(np.linalg.norm(residual))
+    return not is_rounding and float(np.linalg.norm(left - before)) <= _STANDING * size
 
 
 def _combination(
