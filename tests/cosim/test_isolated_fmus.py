@@ -219,6 +219,25 @@ def test_all_types_texts_arrays_sizes_and_early_returns_give_the_same_bits(thing
     assert here.provenance["early_returns"]["a"] > 10
 
 
+def test_steps_that_return_early_are_iterated_alike_here_and_apart(thing, tmp_path):
+    """Two in a loop; only the early returns of the last iteration count."""
+    a, b = {"n": 3, "period": 0.03}, {"n": 3, "period": 0.07, "end": 0.96}
+    given = {"connections": ["a.y -> b.u", "b.y -> a.u"], "record": ["*.y*"]}
+    given["components"] = {
+        name: {"fmu": str(thing), "parameters": part} for name, part in {"a": a, "b": b}.items()
+    }
+    iterated = {**given, "master": "implicit"}
+    here = simulate(things(thing, **iterated), tmp_path / "here")
+    apart = simulate(things(thing, **iterated, isolate=["a"]), tmp_path / "apart")
+    assert first_difference(here, apart) is None
+    assert here.provenance["iteration"] == apart.provenance["iteration"]
+    assert max(map(int, here.provenance["iteration"]["iterations"])) > 1
+    once = simulate(things(thing, **given), tmp_path / "once")
+    for other in (apart, once):
+        assert here.provenance["early_returns"] == other.provenance["early_returns"]
+    assert here.provenance["early_returns"]["a"] > 10
+
+
 def test_a_run_goes_on_from_a_checkpoint_in_a_new_process_with_the_same_bits(thing, tmp_path):
     system = things(thing, isolate=["all"])
     whole = simulate(things(thing), tmp_path / "whole")
