@@ -75,23 +75,25 @@ def component_sources(component: Component) -> Files:
     return {name: path.read_bytes() for name, path in paths.items()}
 
 
-def picture(component: Component, name: str) -> Files:
-    """Return the component's icon under a name, if it has one.
+def picture(component: Component, name: str, file: str = "icon.png") -> Files:
+    """Return a picture of the component's folder, its icon, under a name, if it has one.
 
     Parameters
     ----------
     component : Component
         The component.
     name : str
-        Path that the icon gets.
+        Path that the picture gets.
+    file : str
+        Its name in the component's folder.
 
     Returns
     -------
     dict of str to bytes
-        Content by path; empty without an icon.
+        Content by path; empty without the picture.
     """
-    icon = component.folder / "icon.png"
-    return {name: icon.read_bytes()} if icon.is_file() else {}
+    path = component.folder / file
+    return {name: path.read_bytes()} if path.is_file() else {}
 
 
 def digest(files: Files) -> str:

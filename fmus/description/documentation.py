@@ -6,7 +6,7 @@ from html import escape
 from rockshed.components.common.component import Component
 from rockshed.components.common.ports import Causality, Kind, Sizes, Variable
 
-from ..parts import Files
+from ..parts import Files, picture
 
 _STYLE = (
     "body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
@@ -18,6 +18,8 @@ _STYLE = (
 
 EXPERIMENTS_PAGE = "documentation/fmi-ls-ref.html"
 """Place of the page about the experiments inside an FMU."""
+DIAGRAM = "documentation/diagram.png"
+"""Place of the diagram of the ports inside an FMU, as FMI 3.0 names it."""
 
 
 def documentation(component: Component, sizes: Sizes, others: Files) -> Files:
@@ -32,8 +34,8 @@ def documentation(component: Component, sizes: Sizes, others: Files) -> Files:
     others : Files
         Files of the FMU that the page shows or leads to, where they are among them.
     """
-    page = index_html(component, sizes, others).encode()
-    return {"documentation/index.html": page} | others
+    files = others | picture(component, DIAGRAM, "diagram.png")
+    return files | {"documentation/index.html": index_html(component, sizes, files).encode()}
 
 
 def index_html(component: Component, sizes: Sizes, others: Files) -> str:
@@ -51,6 +53,11 @@ def index_html(component: Component, sizes: Sizes, others: Files) -> str:
     from markdown_it import MarkdownIt
 
     body = MarkdownIt("commonmark").enable("table").render(component.documentation())
+    if DIAGRAM in others:
+        body += (
+            f'<h2>Ports</h2>\n<p><img src="{_beside(DIAGRAM)}" style="max-width:100%" '
+            'alt="Inputs on the left, outputs on the right, with units and signs"></p>\n'
+        )
     if EXPERIMENTS_PAGE in others:
         body += (
             f'<h2>Experiments</h2>\n<p><a href="{_beside(EXPERIMENTS_PAGE)}">What is done with '
