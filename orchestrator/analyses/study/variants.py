@@ -67,7 +67,7 @@ def branches(
     --------
     >>> import rockshed
     >>> run = rockshed.simulate(rockshed.case("lab-impact", stop_time=0.001))
-    >>> found = rockshed.branches(run, [{"rock.velocity0.y": v} for v in (-4, -6)], workers=1)
+    >>> found = rockshed.branches(run, [{"rock.velocity0.y": v} for v in (-4.0, -6.0)], workers=1)
     >>> found.to_arrow().column("rock.velocity0.y").to_pylist()
     [-4.0, -6.0]
     """
