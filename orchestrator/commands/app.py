@@ -1,5 +1,6 @@
 """The command line ``rockshed``: its commands are loaded when they are used."""
 
+import atexit
 import gc
 import sys
 from functools import partial
@@ -11,7 +12,7 @@ import typer
 from ..core.supervisor import Ending, supervised
 from .lazy import STYLE, LazyCommands
 
-_OBJECTS_BEFORE_COLLECTION = 100_000
+_OBJECTS_BEFORE_COLLECTION = 200_000
 """Objects after which garbage is looked for. Imports make many objects and no garbage.
 
 Every 700 objects, as Python does by itself, takes a twentieth of the start.
@@ -92,6 +93,7 @@ def _every_command(
 def main() -> None:
     """Run the command ``rockshed`` of the words that it was started with."""
     gc.set_threshold(_OBJECTS_BEFORE_COLLECTION)
+    atexit.register(gc.freeze)  # the end would look for garbage among all that was imported
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a terminal that knows no Greek shows ? in its place
             stream.reconfigure(errors="replace")

@@ -48,7 +48,7 @@ class UnformedError(Exception):
 class Data(BaseModel):
     """A part of an input file: no other keys, never changed."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     if not TYPE_CHECKING:  # else any name would do
 

@@ -3,7 +3,6 @@
 import struct
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -139,6 +138,8 @@ class SignalSource:
 </ModelStructure></fmiModelDescription>""".encode()
 
     def _variable(self, number: int) -> str:
+        from xml.sax.saxutils import quoteattr  # late: it imports a client of the web
+
         port = self.ports[number]
         unit = f" unit={quoteattr(port.unit.name)}" if port.unit and port.kind == REAL else ""
         is_continuous = port.kind == REAL and port.name not in self.held
@@ -156,6 +157,8 @@ class SignalSource:
 
 def _unit(unit: UnitDefinition) -> str:
     """Return a unit in the words of FMI."""
+    from xml.sax.saxutils import quoteattr
+
     if unit.base is None:
         return f"<Unit name={quoteattr(unit.name)}/>"
     powers = "".join(f' {base}="{power}"' for base, power in unit.base.items())

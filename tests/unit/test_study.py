@@ -437,7 +437,7 @@ def test_a_study_on_a_full_disk_says_so_and_what_goes_on(monkeypatch, tmp_path):
     note = f"runs that have ended cannot be kept in {folder / '.finished-runs'}: No space left"
     assert said.count("".join(note.split())) == 1
     assert "Nospaceleftondevice" in said
-    assert said.endswith("runsthatarekeptarenotrunagainbythesamecommand")
+    assert said.endswith(f"`rockshedresume{folder}`goesonfromwhathasended")
 
 
 @pytest.mark.parametrize(

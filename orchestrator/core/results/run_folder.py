@@ -214,6 +214,7 @@ class RunFolder:
         self._states = _Stream(
             self.running / STATES_STREAM,
             pa.schema([("component", pa.string()), ("time", pa.float64()), ("state", pa.binary())]),
+            compression="zstd",
         )
 
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
@@ -476,17 +477,28 @@ def recover(folder: Path) -> None:
 
 
 class _Stream:
-    """An Arrow stream in a file. Each batch goes to the operating system at once."""
+    """An Arrow stream in a file. Each batch goes to the operating system at once.
 
-    def __init__(self, path: Path, schema: Any) -> None:
+    Parameters
+    ----------
+    path : Path
+        The file.
+    schema : pyarrow.Schema
+        Columns of a batch.
+    compression : str or None
+        Codec. Rows have none: a batch of a few rows would get no smaller, and each of hundreds of
+        columns would take its time.
+    """
+
+    def __init__(self, path: Path, schema: Any, compression: str | None = None) -> None:
         import pyarrow as pa
 
         self._schema = schema
         self._path = path
         with naming(path):
             self._file = path.open("wb")
-            compressed = pa.ipc.IpcWriteOptions(compression="zstd")
-            self._writer = pa.ipc.new_stream(self._file, schema, options=compressed)
+            options = pa.ipc.IpcWriteOptions(compression=compression)
+            self._writer = pa.ipc.new_stream(self._file, schema, options=options)
             self._file.flush()
         self._whole = self._file.tell()
 

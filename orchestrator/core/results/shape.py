@@ -13,7 +13,7 @@ _Positive = Annotated[float, Field(gt=0.0, lt=1e30)]
 
 
 class _Shape(BaseModel):
-    model_config = ConfigDict(strict=True, extra="ignore")
+    model_config = ConfigDict(strict=True, extra="ignore", defer_build=True)
 
 
 class _Parameter(_Shape):

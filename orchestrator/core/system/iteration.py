@@ -10,7 +10,7 @@ _Share = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 
 
 class _Data(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class IteratedConnection(_Data):

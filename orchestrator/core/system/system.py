@@ -100,7 +100,7 @@ ComponentName = Annotated[_DottedName, AfterValidator(_not_reserved)]
 
 
 class _Data(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class ComponentSpec(_Data):
@@ -309,7 +309,7 @@ class ConnectionFault(_Data):
         Of the noise, whose values follow from seed, input and exchange alone.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, defer_build=True)
 
     port: str
     kind: Literal["frozen", "noise", "cut"]
