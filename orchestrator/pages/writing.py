@@ -64,6 +64,18 @@ def page(
     InputRefused
         There is no such system, it is no impact of a falling rock on sand, the file cannot be
         written or is no page of this program, or zig is missing.
+
+    Examples
+    --------
+    ``rockshed.page("lab-impact", "impact.html")`` takes a minute the first time. A page is for a
+    rock that strikes sand; other systems are refused before that:
+
+    >>> import rockshed
+    >>> rockshed.page("spt")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+        ...
+    rockshed.core.errors.InputRefused: 5 problems:
+    ...
     """
     if file is not None:
         _refuse_misplaced(Path(file))

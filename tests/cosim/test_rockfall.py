@@ -217,7 +217,7 @@ def test_a_campaign_is_no_run_and_plot_draws_it_all_the_same(rockshed, finished)
     assert {file.name for file in Path("drawn").iterdir()} >= {"envelopes.png", "ends.png"}
 
 
-def test_ctrl_c_leaves_nothing(tmp_path):
+def test_ctrl_c_leaves_trials_to_go_on_from_and_nothing_else(tmp_path):
     command = [
         sys.executable,
         "-m",
@@ -241,8 +241,10 @@ def test_ctrl_c_leaves_nothing(tmp_path):
     assert run.stderr is not None
     assert any("trials: " in line for line in run.stderr)
     run.send_signal(signal.SIGINT)
+    told = " ".join(run.stderr.read().split())
     assert run.wait(120) == 130
-    assert not list(tmp_path.iterdir())
+    assert [path.name for path in tmp_path.iterdir()] == [".out-finished-trials"]
+    assert f"`rockshed resume {tmp_path / 'out'}` goes on from what has ended" in told
 
 
 def test_without_further_packages_there_are_gif_files(rockshed, monkeypatch):
