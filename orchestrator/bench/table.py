@@ -132,7 +132,7 @@ def exchange_rows(rounds: int) -> Iterator[BenchmarkRow]:
                 continue
             yield BenchmarkRow(f"{what}: {tool}", times.median(tool) / pair.steps * 1e6, "us")
             if tool != BARE and BARE in pair.contestants:
-                goal = 0.4 if (tool, runtime) == (OURS, Runtime.NATIVE) else None
+                goal = 0.25 if (tool, runtime) == (OURS, Runtime.NATIVE) else None
                 yield BenchmarkRow(
                     f"{what}: {tool}", times.ratio(tool, BARE), "ratio", "bare ctypes loop", goal
                 )
