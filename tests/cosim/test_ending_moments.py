@@ -36,6 +36,7 @@ MINE = {
 RESUMED = {
     "reproduce": {f"in results: {FINISHED}"},
     "rockfall": {f".{RESULTS}-finished-trials"},
+    "rockfall on Dask": {f".{RESULTS}-finished-trials"},
 }
 """What an ended command leaves, by its name, for the next one to go on from and to remove."""
 DISK = 48 << 20
