@@ -1,6 +1,7 @@
 """Requests to end: Ctrl-C, and the signals by which schedulers, containers and terminals end."""
 
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,6 +19,9 @@ SIGNALS = tuple(
 closed SIGHUP, a limit of the time on a processor SIGXCPU."""
 HEARD = "heard"
 """Word by which a supervisor learns that a request has reached Python code."""
+
+_AGAIN = 0.05
+"""Time (s) after which a request that Python has lost is made again."""
 
 Handler = Callable[[int, FrameType | None], Any]
 """Called with the number of a signal and the frame that it hits."""
@@ -90,3 +94,39 @@ def interrupt(number: int, frame: FrameType | None) -> None:
         Always.
     """
     raise KeyboardInterrupt(signal.Signals(number).name)
+
+
+@contextmanager
+def lost_requests_repeated() -> Iterator[None]:
+    """Make a request to end again if Python has lost the exception that it became.
+
+    In a finalizer or in a callback of a weak reference, Python prints an exception and goes on.
+    """
+    before = sys.unraisablehook
+    again: list[threading.Timer] = []
+
+    def heard(lost: "sys.UnraisableHookArgs") -> None:
+        if not issubclass(lost.exc_type, KeyboardInterrupt):
+            before(lost)
+            return
+        name = str(lost.exc_value) or signal.Signals.SIGINT.name
+        # not here: the exception would come up in this function, and be lost too
+        again.append(threading.Timer(_AGAIN, _ask_main_thread, [signal.Signals[name]]))
+        again[-1].daemon = True
+        again[-1].start()
+
+    sys.unraisablehook = heard
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+        for timer in again:
+            timer.cancel()
+
+
+def _ask_main_thread(number: int) -> None:
+    """Send a signal to the main thread, so that what it waits for ends; Windows has no such way."""
+    if sys.platform == "win32":
+        signal.raise_signal(number)
+    else:
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
