@@ -20,8 +20,16 @@ PAGES = (
 )
 QUOTED = re.compile(r"`([^`\n]+)`")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
-OF_OTHERS = {"--version", "--dist", "--max-worker-restart", "--path", "--stepSize", "--stopTime"}
-"""Options of the program itself, of pytest and of the command line of ecos."""
+OF_OTHERS = {
+    "--version",
+    "--dist",
+    "--max-worker-restart",
+    "--hypothesis-profile",
+    "--path",
+    "--stepSize",
+    "--stopTime",
+}
+"""Options of the program itself, of pytest, of hypothesis and of the command line of ecos."""
 
 
 def options(name):

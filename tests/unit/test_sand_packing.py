@@ -172,13 +172,19 @@ def test_a_prepared_layer_has_the_solid_fraction_that_was_asked_for(share):
 def test_a_levelled_layer_ends_near_the_thickness_that_its_discs_give(
     width, thickness, share, seed
 ):
-    """Lengths in mean radii. As settled, single discs stand out by up to 4."""
+    """Lengths in mean radii. As settled, single discs stand out by up to 4.
+
+    The radii are drawn, so the discs' own area gives the thickness, not the mean one: it differs by
+    up to 1.2. Of 500 layers drawn, the highest discs were 0.1 under to 1.3 over it, the levels 0.1
+    to 0.9 under it.
+    """
     discs = round(share * width * thickness / (math.pi * (1.0 + 0.25**2 / 3.0)))
     given = {"box.width": width * RADIUS, "solid_fraction": share, "seed": seed}
     sand = cushion({**PREPARED, **given, "surface": "levelled"}, discs=discs)
-    highest = (rows(sand)[:, 1] + rows(sand)[:, 5]).max() / RADIUS
-    assert highest < thickness + 1.5
-    assert abs(sand["surface_level"] / RADIUS - thickness) < 1.2
+    radii = rows(sand)[:, 5]
+    given_by_discs = math.pi * (radii**2).sum() / (width * share * RADIUS**2)
+    assert -0.5 < (rows(sand)[:, 1] + radii).max() / RADIUS - given_by_discs < 1.6
+    assert -1.2 < sand["surface_level"] / RADIUS - given_by_discs < 0.0
 
 
 def test_levelling_is_for_prepared_layers_only():
