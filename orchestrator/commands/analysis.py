@@ -10,6 +10,7 @@ from typing import Any
 import typer
 
 from ..analyses.frame import Result, StageProgress
+from ..core.ending import true_cause
 from ..core.errors import AnalysisFailed, InputRefused, Problem
 from .screen import INTERRUPTED, RUN_FAILED, Screen
 
@@ -32,7 +33,8 @@ def kept_if_ended(screen: Screen, folder: Path) -> Iterator[None]:
     """
     again = f"`rockshed resume {quote(str(folder))}` goes on from what has ended"
     try:
-        yield
+        with true_cause(AnalysisFailed, InputRefused, OSError, MemoryError):
+            yield
     except AnalysisFailed as failure:
         screen.fail(str(failure))
         raise typer.Exit(RUN_FAILED) from None

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..core.ending import true_cause
 from ..core.errors import Problem, RunFailed, counted
 from ..core.supervisor import announce
 from ..core.system.clock import seconds_in
@@ -295,8 +296,9 @@ def show_run(done: Run, screen: Screen, with_figures: bool, strict: bool = False
     pictures: list[Path] = []
     drawn = True
     try:
-        if with_figures:
-            pictures = draw(done, done.folder / "figures", screen)
+        with true_cause(OSError, MemoryError):
+            if with_figures:
+                pictures = draw(done, done.folder / "figures", screen)
     except KeyboardInterrupt:
         again = f"rockshed plot {quote(str(done.folder))}"
         screen.warn(f"drawing was interrupted; `{again}` draws the pictures")

@@ -22,7 +22,7 @@ from rich.text import Text
 
 from rockshed.components.common.cache import cache_problem
 
-from ..core.ending import asked_to_end, interrupt, lost_requests_repeated
+from ..core.ending import asked_to_end, interrupt, lost_requests_repeated, true_cause
 from ..core.errors import ComponentLost, InputRefused, Problem
 from ..tables import Table
 
@@ -169,7 +169,12 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
     """
     screen = Screen(quiet, as_json)
     try:
-        with asked_to_end(interrupt), lost_requests_repeated(), without_warnings_of_libraries():
+        with (
+            asked_to_end(interrupt),
+            lost_requests_repeated(),
+            true_cause(typer.Exit, InputRefused, OSError, MemoryError),
+            without_warnings_of_libraries(),
+        ):
             yield screen
     except ComponentLost as lost:
         for problem in lost.problems:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from ..core.ending import true_cause
+from ..core.errors import InputRefused
 from ..core.supervisor import announce
 from ..runs.verification import Verification, verify
 from .options import Json, Quiet
@@ -23,7 +25,11 @@ def command(run: _CompleteRun, as_json: Json = False, quiet: Quiet = False) -> N
     announce(quiet=quiet, as_json=as_json)
     with opened(quiet, as_json) as screen:
         try:
-            with stdout_for_results(), screen.progress("preparing") as progress:
+            with (
+                true_cause(InputRefused, OSError),
+                stdout_for_results(),
+                screen.progress("preparing") as progress,
+            ):
                 found = verify(run, progress=progress)
         except KeyboardInterrupt:
             screen.warn("interrupted: nothing has been compared")

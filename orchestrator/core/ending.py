@@ -20,6 +20,9 @@ closed SIGHUP, a limit of the time on a processor SIGXCPU."""
 HEARD = "heard"
 """Word by which a supervisor learns that a request has reached Python code."""
 
+_raised: list[str] = []
+"""Names of the signals that became an exception in this process, oldest first."""
+
 _AGAIN = 0.05
 """Time (s) after which a request that Python has lost is made again."""
 
@@ -93,7 +96,36 @@ def interrupt(number: int, frame: FrameType | None) -> None:
     KeyboardInterrupt
         Always.
     """
-    raise KeyboardInterrupt(signal.Signals(number).name)
+    _raised.append(signal.Signals(number).name)
+    raise KeyboardInterrupt(_raised[-1])
+
+
+@contextmanager
+def true_cause(*told: type[Exception]) -> Iterator[None]:
+    """Raise the exception of Ctrl-C again where a library made another one of it.
+
+    Code in C and C++ that calls Python may take any exception for a wrong argument: matplotlib's
+    ends with "ValueError: Invalid bounding box" where a request to end hits it.
+
+    Parameters
+    ----------
+    *told : type of exception
+        That are told by themselves even if a request came before, as a full disk is.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        The block failed after a request to end had been made in it.
+    """
+    before = len(_raised)
+    try:
+        yield
+    except told:
+        raise
+    except Exception as error:
+        if len(_raised) > before:
+            raise KeyboardInterrupt(_raised[-1]) from error
+        raise
 
 
 @contextmanager
