@@ -6,11 +6,15 @@ from typing import NamedTuple
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
 from ..core.system.plan import End, Plan
+from ..core.system.units import units_agree
 from ..core.system.values import start_value
 
 
 class Joint(NamedTuple):
-    """A connection: of arrays, the first element of each; ``way``: factor and offset, if any."""
+    """A connection: of arrays, the first element of each.
+
+    way: factor and offset in the place of a conversion of units; None where both units are one.
+    """
 
     source: End
     target: End
@@ -45,7 +49,7 @@ def linked(plan: Plan, ssp_version: str) -> list[Joint]:
     groups: dict[tuple[str, ...], list[Joint]] = {}
     for place, target, source in plan.fed:
         ends = (source.component, source.port.array, target.component, target.port.array)
-        groups.setdefault(ends, []).append(Joint(source, target, plan.linear.get(place)))
+        groups.setdefault(ends, []).append(Joint(source, target, _way(plan, place, source, target)))
     for group in groups.values():
         if not _is_whole(group):
             first = group[0]
@@ -55,6 +59,16 @@ def linked(plan: Plan, ssp_version: str) -> list[Joint]:
     if problems:
         raise InputRefused(problems)
     return [group[0] for group in groups.values()]
+
+
+def _way(plan: Plan, place: int, source: End, target: End) -> tuple[float, float] | None:
+    """Return factor and offset of a connection.
+
+    A factor of 1 between two units, which changes nothing here, has to be told: others would
+    convert the value.
+    """
+    is_one_unit = units_agree(source.port.unit, target.port.unit)
+    return plan.linear.get(place, None if is_one_unit else (1.0, 0.0))
 
 
 def _is_whole(group: list[Joint]) -> bool:

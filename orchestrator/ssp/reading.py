@@ -332,7 +332,7 @@ class _Import:
                 f"{self.names[name]}.{port}" for name, port in (wire.source, wire.target)
             )
             entry = {**more.get((source, target), {}), "source": source, "target": target}
-            if wire.way != UNCHANGED:
+            if wire.is_told:
                 entry |= {"factor": wire.way.factor, "offset": wire.way.offset}
             connections.append(entry)
         return connections

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from ..core.errors import Problem
 from ..core.fmu.description import UnitDefinition
 from ..core.system.names import nearest
+from ..core.system.units import units_agree
 from .conversion import UNCHANGED, Way, between
 from .structure import Connector, ConnectorKey, Element, FmuElement, Link, SystemElement
 
@@ -40,6 +41,8 @@ class Wire:
         Input or parameter of a component.
     way : Way
         What becomes of the number.
+    is_told : bool
+        The way has to be told, also where it changes nothing: both units are not known to be one.
     from_component : bool
         The source is that of a component.
     place : str
@@ -49,6 +52,7 @@ class Wire:
     source: ConnectorKey
     target: ConnectorKey
     way: Way
+    is_told: bool
     from_component: bool
     place: str
 
@@ -184,10 +188,10 @@ class Wiring:
     def _wire(self, target: ConnectorKey, chain: list[_Feed]) -> Wire | None:
         source = chain[-1].source
         element, connector = self.connectors[source]
-        unit, own = self.units_of(element, connector)
-        way = between(own, unit)
+        unit, first = self.units_of(element, connector)
+        way = between(first, unit)
         for feed, reached in zip(reversed(chain), self._reached(target, chain)):
-            told, own = self.units_of(*self.connectors[reached])
+            told, last = self.units_of(*self.connectors[reached])
             try:
                 step = between(unit, told) if feed.link.converts else UNCHANGED
             except ValueError as error:
@@ -196,9 +200,12 @@ class Wiring:
                 return None
             way = way.then(step).then(Way(feed.link.factor, feed.link.offset))
             unit = told or unit
-        way = way.then(between(unit, own))
+        way = way.then(between(unit, last))
+        agree = units_agree(first, last)
+        is_suppressed = not all(feed.link.converts for feed in chain)
+        is_told = way != UNCHANGED or agree is False or (agree is None and is_suppressed)
         from_component = isinstance(element, FmuElement)
-        return Wire(source, target, way, from_component, chain[0].link.place)
+        return Wire(source, target, way, is_told, from_component, chain[0].link.place)
 
     def _reached(self, target: ConnectorKey, chain: list[_Feed]) -> Iterator[ConnectorKey]:
         """Yield the connectors that a value comes to, behind its source."""

@@ -172,9 +172,12 @@ def description(
         inner.set("description", system.description)
     links = linked(plan, ssp_version)
     ends = [*(end for link in links for end in (link.source, link.target)), *shown]
+    units = _units(ends)
     elements = etree.SubElement(inner, f"{{{SSD}}}Elements")
     for name in plan.system.components:
-        made = _component(plan, name, names[name], ends, ssp_version)
+        made = _component(plan, name, names[name], ssp_version)
+        if connectors := _connectors(ends, name, plan.descriptions[name], units):
+            made.insert(0, _group("Connectors", connectors))
         if is_multi_rate:
             step = repr(plan.system.step(name))
             hint = _annotation(OSP_TYPE, f"{{{OSP}}}StepSizeHint", value=step)
@@ -183,9 +186,8 @@ def description(
     if links:
         inner.append(_connections(links))
     inner.append(_annotations(plan))
-    units = _units(ends)
-    if units is not None:
-        root.append(units)
+    if units:
+        root.append(_group("Units", [_unit(units[name]) for name in sorted(units)]))
     root.append(_experiment(plan, is_multi_rate))
     etree.indent(root)
     problems = schema_problems(root, system.name, ssp_version)
@@ -196,34 +198,36 @@ def description(
 # ---------------------------------------------------------------------- components
 
 
-def _component(
-    plan: Plan, name: str, file: str, ends: Sequence[End], ssp_version: str
-) -> etree._Element:
+def _component(plan: Plan, name: str, file: str, ssp_version: str) -> etree._Element:
     made = etree.Element(
         f"{{{SSD}}}Component",
         name=name,
         type="application/x-fmu-sharedlibrary",
         source=f"{RESOURCES}/{file}",
     )
-    if connectors := _connectors(ends, name, plan.descriptions[name]):
-        made.append(_group("Connectors", connectors))
     if plan.starts[name]:
         starts = whole_arrays(plan.descriptions[name], plan.starts[name])
         made.append(_bindings(starts, ssp_version))
     return made
 
 
-def _connectors(ends: Iterable[End], component: str, known: Description) -> list[etree._Element]:
+def _connectors(
+    ends: Iterable[End], component: str, known: Description, units: Mapping[str, UnitDefinition]
+) -> list[etree._Element]:
     """Return those of some ports that a component has, in the order of its description."""
     own = {end.port.array: end.port for end in ends if end.component == component}
     order = {port.array: turn for turn, port in enumerate(known.ports.values())}
-    return [_connector(own[name]) for name in sorted(own, key=lambda name: order[name])]
+    return [_connector(own[name], units) for name in sorted(own, key=lambda name: order[name])]
 
 
-def _connector(port: Port) -> etree._Element:
+def _connector(port: Port, units: Mapping[str, UnitDefinition]) -> etree._Element:
+    """Return the connector of a port.
+
+    It has no unit where another FMU means something else by its name: the unit is that of the FMU.
+    """
     made = etree.Element(f"{{{SSD}}}Connector", name=port.array, kind=port.causality)
     told = etree.SubElement(made, f"{{{SSC}}}{_type_of(port)}")
-    if port.kind == REAL and _is_defined(port.unit):
+    if port.kind == REAL and port.unit is not None and units.get(port.unit.name) == port.unit:
         told.set("unit", port.unit_name)
     for size in port.shape:
         etree.SubElement(made, f"{{{SSC}}}Dimension", size=str(size))
@@ -349,19 +353,14 @@ def _more(connection: Connection) -> dict[str, Any]:
     return connection.model_dump(mode="json", exclude_defaults=True, exclude={"factor", "offset"})
 
 
-def _units(ends: Iterable[End]) -> etree._Element | None:
-    """Return the definitions of the units of all connectors."""
+def _units(ends: Iterable[End]) -> dict[str, UnitDefinition]:
+    """Return the units of all connectors by name; of two with one name, the first."""
     used: dict[str, UnitDefinition] = {}
     for end in ends:
-        if end.port.kind == REAL and end.port.unit is not None and _is_defined(end.port.unit):
-            used.setdefault(end.port.unit.name, end.port.unit)
-    if not used:
-        return None
-    return _group("Units", [_unit(used[name]) for name in sorted(used)])
-
-
-def _is_defined(unit: UnitDefinition | None) -> bool:
-    return unit is not None and unit.base is not None
+        unit = end.port.unit
+        if end.port.kind == REAL and unit is not None and unit.base is not None:
+            used.setdefault(unit.name, unit)
+    return used
 
 
 def _unit(unit: UnitDefinition) -> etree._Element:

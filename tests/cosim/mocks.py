@@ -16,6 +16,9 @@ _UNITS = {
     "kg": "kg='1'",
     "m/s": "m='1' s='-1'",
     "N/m": "kg='1' s='-2'",
+    "K": "K='1'",
+    "degC": "K='1' offset='273.15'",
+    "mm": "m='1' factor='0.001'",
 }
 
 Values = dict[str, float]
@@ -69,7 +72,8 @@ def par(name: str, start: float, unit: str = "", **rest: Any) -> Port:
 class Mock:
     """A source: step(values, time, step) advances; start(values) is called when the outputs at the start are wanted.
 
-    Either may return a (status, text) to log and return. Calls are noted in ``calls``.
+    Either may return a (status, text) to log and return. Calls are noted in ``calls``. ``units`` are those that mean
+    something else than elsewhere.
     """
 
     ports: list[Port]
@@ -79,13 +83,15 @@ class Mock:
     serializes: bool = True
     varies: bool = True
     types: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
     origin: dict[str, str] = field(default_factory=lambda: {"mock": "yes"})
     calls: list[tuple[Any, ...]] = field(default_factory=list)
 
     def model_description(self) -> bytes:
-        used = sorted({port.unit for port in self.ports} & set(_UNITS))
+        meanings = {**_UNITS, **self.units}
+        used = sorted({port.unit for port in self.ports} & set(meanings))
         units = "".join(
-            f"<Unit name={quoteattr(unit)}><BaseUnit {_UNITS[unit]}/></Unit>" for unit in used
+            f"<Unit name={quoteattr(unit)}><BaseUnit {meanings[unit]}/></Unit>" for unit in used
         )
         variables = "".join(port.xml(i) for i, port in enumerate(self.ports))
         outputs = "".join(

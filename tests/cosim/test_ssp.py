@@ -436,6 +436,61 @@ def test_a_system_comes_back_from_its_ssp_and_is_the_same_xml_again(made, ssp_ve
     assert back == expected
 
 
+UNITS_OF_PORTS = ("", "N", "kN", "m", "mm", "K", "degC", "nobody knows", "nor this")
+OTHERS = {"kN": "kg='1' m='1' s='-2' factor='9.80665'", "nor this": "m='1'"}
+"""Units that the FMU at the other end defines otherwise."""
+WAYS = st.none() | st.sampled_from([0.0, 1.0, 0.001, -1.0]) | REALS
+
+
+@st.composite
+def connected_units(draw):
+    """Two mocks, connected through units of all kinds, as far as a system file may connect them."""
+    number = draw(st.integers(1, 6))
+    units = [[draw(st.sampled_from(UNITS_OF_PORTS)) for _ in range(number)] for _ in range(2)]
+    gives = Mock([out(f"y{i}", unit) for i, unit in enumerate(units[0])])
+    takes = Mock([inp(f"u{i}", unit) for i, unit in enumerate(units[1])], units=OTHERS)
+    connections = []
+    for i in range(number):
+        way = {"factor": draw(WAYS), "offset": draw(WAYS)}
+        one = {"source": f"a.y{i}", "target": f"b.u{i}"}
+        told = {key: value for key, value in way.items() if value is not None}
+        try:
+            make_plan(*wired({"a": gives, "b": takes}, [one | told]))
+        except InputRefused:
+            told = {"factor": 1.0}
+        connections.append(one | told)
+    return wired({"a": gives, "b": takes}, connections)
+
+
+@settings(max_examples=150, deadline=None)
+@given(connected_units(), st.sampled_from(["1.0", "2.0"]))
+def test_whatever_is_exported_is_read_with_the_same_factors_whatever_the_units(made, ssp_version):
+    spec, sources = made
+    by_name = {f"{name}.fmu": source for name, source in sources.items()}
+
+    def describe(file):
+        return by_name[file.name].model_description()
+
+    files = {name: f"{name}.fmu" for name in sources}
+    plan = make_plan(spec, sources)
+    first = as_bytes(description(plan, files, ssp_version))
+    package = _InMemory(Path("x.ssp"), Path("/nowhere"), content=first)
+    again = make_plan(read_structure(package, {}, describe).system, sources)
+    assert again.linear == plan.linear
+    assert [(t.name, s.name) for _, t, s in again.fed] == [(t.name, s.name) for _, t, s in plan.fed]
+    assert same_xml(first, as_bytes(description(again, files, ssp_version)))
+
+
+def test_a_factor_that_undoes_a_conversion_leaves_a_connection_between_two_units(read):
+    """3 kN are 3000 N, and the factor makes 3 of them: nothing changes, and the units still differ."""
+    undone = '<ssc:LinearTransformation factor="0.001"/>'
+    found = read(
+        document(system(PUSH + MASS, link(("push", "force"), ("mass", "force"), undone)))
+    ).system
+    (connection,) = found.connections
+    assert (connection.way, connection.is_linear) == ((1.0, 0.0), True)
+
+
 class _InMemory(Package):
     """A package whose description is in memory."""
 
