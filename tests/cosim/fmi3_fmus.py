@@ -199,13 +199,17 @@ TERMINALS = """<?xml version='1.0'?><fmiTerminalsAndIcons fmiVersion='3.0'><Term
 </Terminals></fmiTerminalsAndIcons>"""
 
 
-def library(folder, status="0"):
-    """Compile the library into a folder and return its path; every step ends with a status."""
+def library(folder, status="0", getters=()):
+    """Compile the library into a folder and return its path; every step ends with a status.
+
+    ``getters`` by type get outputs otherwise.
+    """
     fields = "".join(f"{kind} of_{name};" for name, kind in SIMPLE.items())
     source = HEAD.replace("FIELDS", fields).replace("STATUS", status)
     for name, kind in SIMPLE.items():
         plain = (f"t->of_{name} = v[i];", f"v[i] = t->of_{name};")
         setter, getter = SPECIAL.get(name, plain)
+        getter = dict(getters).get(name, getter)
         source += f"MOVES({name}, {kind}, {setter}, {getter})\n"
     source += "".join(f"int fmi3{name}(void *c) {{ return 0; }}\n" for name in REST)
     (folder / "thing.c").write_text(source)

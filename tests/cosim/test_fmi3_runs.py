@@ -133,6 +133,38 @@ def test_a_value_that_a_type_cannot_hold_ends_the_run_and_is_named(thing, tmp_pa
         simulate(system, tmp_path / "run")
 
 
+GROWING = "if (r[i] == 2) v[i] = t->n; else v[i] = t->of_UInt64 << (int)(100 * t->time + 0.5);"
+"""The UInt64 that is shown doubles every 0.01 s."""
+
+
+@pytest.fixture(scope="module")
+def growing(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("growing")
+    return pack(library(folder, getters={"UInt64": GROWING}), folder / "Growing.fmu")
+
+
+@pytest.mark.parametrize("way", ["direct", "back", "isolated"])
+@pytest.mark.parametrize("is_exchanged", [True, False], ids=["exchanged", "recorded"])
+@pytest.mark.parametrize(("start", "at"), [(0.0, 0.4), (0.5, 0.5)], ids=["later", "at-once"])
+def test_a_whole_number_of_more_than_53_bits_is_refused_with_variable_and_time(
+    growing, tmp_path, way, is_exchanged, start, at
+):
+    """2**20 in the beginning, and 2**60 at 0.4 s."""
+    more = {"isolate": ["a"]} if way == "isolated" else {}
+    connections = ["a.UInt64_out -> b.UInt64_in"] if is_exchanged else ["a.y -> b.u"]
+    given = {"UInt64_in": 2**20 if start == 0.0 else 9}
+    times = {"start_time": start, "stop_time": 1.0}
+    system = things(growing, connections, given, record=["a.UInt64_out"], **times, **more)
+    sources = called_back(system) if way == "back" else None
+    with pytest.raises((RunFailed, InputRefused)) as refused:
+        simulate(system, tmp_path / "run", sources=sources)
+    said = str(refused.value)
+    assert "UInt64_out = " in said
+    assert said.startswith("a")
+    assert f"at t = {at:g} s" in said
+    assert "more than 53 bits" in said
+
+
 @pytest.mark.parametrize(
     ("connection", "reason"),
     [

@@ -40,7 +40,7 @@ from .slave import (
     counts_of,
     status_name,
 )
-from .types import LARGEST_WHOLE, TYPES, TYPES_3
+from .types import LARGEST_WHOLE, MORE_BITS, TYPES, TYPES_3
 
 ROUNDING = 2.0**-51
 """Part of its time by which a step may end before its end without that being an early return."""
@@ -159,6 +159,7 @@ class Fmi3Slave(StepsInParts):
                     unzipDirectory=self._folder.name,
                 )
             self._instantiate(description)
+            self._elements = _elements(description)
         except Exception as error:  # the loader raises many kinds
             self._unload()
             said = "; ".join(text for _, text in self.messages)
@@ -210,11 +211,17 @@ class Fmi3Slave(StepsInParts):
         """Read variables of one type into ``out``."""
         passed = np.zeros(out.size, TYPES[kind].number)
         status = self._move(self._getters[kind], references, passed)
-        if TYPES[kind].is_whole and passed.size and not _is_exact(passed):
-            self.messages.append((ERROR, f"a value of {kind} has more than 53 bits"))
-            return ERROR
         out[:] = passed
+        if TYPES[kind].is_whole and (unfit := _inexact(passed)) is not None:
+            name = self._variable(references, unfit)
+            self.messages.append((ERROR, f"{name} = {passed[unfit]}, {MORE_BITS}"))
+            return ERROR
         return status
+
+    def _variable(self, references: ValueReferences, place: int) -> str:
+        """Return the name of the variable whose value is at a place among those of references."""
+        elements = [name for reference in references for name in self._elements[int(reference)]]
+        return elements[place]
 
     def _move(self, function: Any, references: ValueReferences, values: Any) -> int:
         return int(
@@ -396,9 +403,20 @@ class Fmi3Slave(StepsInParts):
         return status
 
 
-def _is_exact(values: Any) -> bool:
-    """Tell whether a float64 holds these whole numbers exactly."""
-    return int(values.max()) <= LARGEST_WHOLE and int(values.min()) >= -LARGEST_WHOLE
+def _inexact(values: Any) -> int | None:
+    """Return the place of the first whole number that a float64 does not hold exactly."""
+    if not values.size or max(int(values.max()), -int(values.min())) <= LARGEST_WHOLE:
+        return None
+    return next(i for i, value in enumerate(values) if abs(int(value)) > LARGEST_WHOLE)
+
+
+def _elements(description: Description) -> dict[int, list[str]]:
+    """Return the names of the variables and of the elements of arrays by value reference."""
+    named: dict[int, list[str]] = {}
+    for port in description.ports.values():
+        if not port.is_alias:
+            named.setdefault(port.reference, []).append(port.name)
+    return named
 
 
 def is_reached(time: float, end: float) -> bool:

@@ -13,6 +13,8 @@ from .slave import BOOLEAN, INTEGER, REAL
 
 LARGEST_WHOLE = 2.0**53 - 1.0
 """Largest whole number that no other one is rounded to in a float64."""
+MORE_BITS = "a whole number of more than 53 bits, which an exchange cannot hold exactly"
+"""Why a larger one is refused."""
 
 
 @dataclass(frozen=True)

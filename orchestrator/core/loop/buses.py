@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from ..fmu.slave import OK, Slave, worst
-from ..fmu.types import TYPES
+from ..fmu.types import LARGEST_WHOLE, MORE_BITS, TYPES
 from ..system.plan import End, Plan
 from ..system.schedule import Action, Operation
 from .blocks import Block, make_blocks
@@ -219,6 +219,22 @@ class Buses:
         table["value"] = values
         table["newest"] = self.plan.timing.start
         table["known"] = 1
+
+
+def unfit_text(end: End, value: float) -> str:
+    """Return why a value cannot be that of a port, or cannot be on the bus.
+
+    Parameters
+    ----------
+    end : End
+        The port.
+    value : float
+        What :meth:`Buses.unfit` has found.
+    """
+    held = TYPES[end.port.type]
+    if held.is_whole and abs(value) > LARGEST_WHOLE:
+        return f"{end.name} = {value:.17g}, {MORE_BITS}"
+    return f"{end.name} is of the type {end.port.type}, which cannot hold {value:.17g}"
 
 
 def _channels(plan: Plan) -> Records:

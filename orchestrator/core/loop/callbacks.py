@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu.slave import ERROR, FATAL, Addresses, Slave, SlaveLost, SlaveOfFmi3
+from ..fmu.slave import ERROR, FATAL, WARNING, Addresses, Slave, SlaveLost, SlaveOfFmi3
 from ..fmu.types import TYPES, NumberType
 
 _MOVE = ctypes.CFUNCTYPE(
@@ -99,7 +99,8 @@ class Callbacks:
             return self._slave.get(references, values, name)
         out = np.zeros(values.size)
         status = self._slave.get(references, out, name)
-        values[:] = out
+        if status <= WARNING:  # what is refused may not fit here
+            values[:] = out
         return status
 
     def _step(self, _instance: Any, time: float, step: float, forgets: int) -> int:

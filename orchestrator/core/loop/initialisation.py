@@ -26,8 +26,9 @@ from ..fmu.slave import (
 )
 from ..system.limits import MOST_INTERNAL_STEPS
 from ..system.loops import told
-from ..system.plan import Plan
-from .buses import Buses
+from ..system.plan import End, Plan
+from ..system.schedule import Action
+from .buses import Buses, unfit_text
 from .start_values import set_values
 
 _ROUNDS = 20
@@ -306,10 +307,19 @@ def _pass_on(buses: Buses, slave: Slave, taken: set[int], said: dict[str, int]) 
             _forget_warnings(slave, said[name])
         refusals += _refusals(slave, buses.give(slave))
     said[name] = len(slave.messages)
-    refused = _refusals(slave, buses.take(slave))
+    status = buses.take(slave)
+    unfit = buses.unfit(name, Action.GET) if status > WARNING else None
+    refused = _unfit(buses, *unfit) if unfit else _refusals(slave, status)
     if not refused:
         taken |= buses.shows[name]
     return refusals + refused
+
+
+def _unfit(buses: Buses, end: End, value: float) -> list[_Refusal]:
+    """Return the refusal of an output that the bus cannot hold."""
+    start = buses.plan.timing.seconds(0)
+    what = f"{unfit_text(end, value)}, at t = {start:.9g} s"
+    return [_Refusal(Problem(end.component, what, "leave it out of the system"), False)]
 
 
 def _forget_warnings(slave: Slave, since: int) -> None:

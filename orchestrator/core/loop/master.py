@@ -11,7 +11,7 @@ from ..ending import asked_to_end
 from ..errors import RunFailed
 from ..fmu.slave import DISCARD, FATAL, Slave, status_name
 from ..system.schedule import Action
-from .buses import Buses
+from .buses import Buses, unfit_text
 from .driver import Driver
 from .exchange import Fault
 from .recording import Recorder, last_words
@@ -354,7 +354,7 @@ class Master:
         """Return the time (s) at which an operation failed, or after a part of a step."""
         schedule = self._plan.schedule
         timing = self._plan.timing
-        if fault.operation.action is Action.RECORD:
+        if fault.operation.action in (Action.GET, Action.RECORD):
             return timing.seconds(fault.exchange + 1)
         if fault.operation.action is not Action.STEP:
             return timing.seconds(fault.exchange)
@@ -364,11 +364,16 @@ class Master:
 
     def _unfit(self, fault: Fault) -> str:
         """Name the value that a type cannot hold."""
-        found = self._buses.unfit(fault.operation.component, fault.operation.action)
-        if found is None:  # one that is recorded only
-            return "gives a whole number of more than 53 bits: leave it out of the record"
-        end, value = found
-        return f"{end.name} is of the type {end.port.type}, which cannot hold {value:.17g}"
+        component, action = fault.operation.component, fault.operation.action
+        if action is Action.RECORD:
+            snapshots = self._buses.snapshots
+            row = snapshots.rows[len(snapshots.waiting)]
+            place = snapshots.unfit(row, component)
+            end = snapshots.ends[place]
+            return f"{unfit_text(end, row[place])}: leave it out of the record"
+        found = self._buses.unfit(component, action)
+        assert found is not None
+        return unfit_text(*found)
 
     def _lost(self, fault: Fault) -> str:
         """Name the value that is no finite number, and say what may be done about it."""

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..fmu.types import TYPES
 from ..system.plan import End, Plan, with_whole_arrays
 from .blocks import make_blocks
 
@@ -76,6 +77,21 @@ class Snapshots:
             i
             for i, end in enumerate(self.ends)
             if end.component == component and not np.isfinite(row[i])
+        )
+
+    def unfit(self, row: NDArray[np.float64], component: str) -> int:
+        """Return the place in a row of the first value that a component cannot show exactly.
+
+        Raises
+        ------
+        StopIteration
+            All values of the component are such as their types hold.
+        """
+        return next(
+            i
+            for i, end in enumerate(self.ends)
+            if end.component == component
+            and not TYPES[end.port.type].low <= row[i] <= TYPES[end.port.type].high
         )
 
 
