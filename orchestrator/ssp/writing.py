@@ -175,14 +175,11 @@ def description(
     units = _units(ends)
     elements = etree.SubElement(inner, f"{{{SSD}}}Elements")
     for name in plan.system.components:
-        made = _component(plan, name, names[name], ssp_version)
-        if connectors := _connectors(ends, name, plan.descriptions[name], units):
-            made.insert(0, _group("Connectors", connectors))
-        if is_multi_rate:
-            step = repr(plan.system.step(name))
-            hint = _annotation(OSP_TYPE, f"{{{OSP}}}StepSizeHint", value=step)
-            made.append(_group("Annotations", [hint]))
+        connectors = _connectors(ends, name, plan.descriptions[name], units)
+        made = _component(plan, name, names[name], connectors, ssp_version)
         elements.append(made)
+        if is_multi_rate:
+            made.append(_step_hint(plan.system.step(name)))
     if links:
         inner.append(_connections(links))
     inner.append(_annotations(plan))
@@ -198,17 +195,27 @@ def description(
 # ---------------------------------------------------------------------- components
 
 
-def _component(plan: Plan, name: str, file: str, ssp_version: str) -> etree._Element:
+def _component(
+    plan: Plan, name: str, file: str, connectors: Sequence[etree._Element], ssp_version: str
+) -> etree._Element:
     made = etree.Element(
         f"{{{SSD}}}Component",
         name=name,
         type="application/x-fmu-sharedlibrary",
         source=f"{RESOURCES}/{file}",
     )
+    if connectors:
+        made.append(_group("Connectors", connectors))
     if plan.starts[name]:
         starts = whole_arrays(plan.descriptions[name], plan.starts[name])
         made.append(_bindings(starts, ssp_version))
     return made
+
+
+def _step_hint(step: float) -> etree._Element:
+    """Return libcosim's annotation of the step (s) of a component."""
+    hint = _annotation(OSP_TYPE, f"{{{OSP}}}StepSizeHint", value=repr(step))
+    return _group("Annotations", [hint])
 
 
 def _connectors(

@@ -462,7 +462,7 @@ def connected_units(draw):
     return wired({"a": gives, "b": takes}, connections)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(connected_units(), st.sampled_from(["1.0", "2.0"]))
 def test_whatever_is_exported_is_read_with_the_same_factors_whatever_the_units(made, ssp_version):
     spec, sources = made
