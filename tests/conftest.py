@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 BUILT = Path(__file__).parents[1] / "build" / "fmus"
 """FMUs that the tests build do not mix with those of the user."""
@@ -11,7 +11,8 @@ BUILT = Path(__file__).parents[1] / "build" / "fmus"
 os.environ.setdefault("ROCKSHED_FMU_DIR", str(BUILT))
 
 # The same examples in every run, so that a change is judged by what it changes;
-# --hypothesis-profile search draws others
-settings.register_profile("same", derandomize=True)
-settings.register_profile("search", derandomize=False, print_blob=True)
+# --hypothesis-profile search draws others. How fast the machine is decides nothing
+UNTIMED = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
+settings.register_profile("same", derandomize=True, **UNTIMED)
+settings.register_profile("search", print_blob=True, **UNTIMED)
 settings.load_profile("same")

@@ -52,7 +52,7 @@ def run(instance, load_at, until, support_at=None, exchange=EXCHANGE):
     return instance
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(parameters, st.lists(loads, min_size=2, max_size=4), speeds)
 def test_momentum(chosen, sequence, speed):
     """Mass-proportional damping is left out: it pulls at the discs from outside."""
@@ -82,7 +82,7 @@ def test_momentum(chosen, sequence, speed):
             assert gained @ PLACES == pytest.approx(moment_impulse, abs=1e-12 * scale)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(parameters, st.lists(loads, min_size=2, max_size=4), speeds)
 def test_energy_residual_is_small_and_halves_with_the_step(chosen, sequence, speed):
     """The residual is of first order in the step for any held loads and any motion of the supports, jumps included."""

@@ -99,7 +99,7 @@ def test_on_stiffer_springs_a_blow_bends_it_ever_more_as_on_hinges(stiffness, ne
     assert found[0] == pytest.approx(found[1], abs=nearness * found[1].max())
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.floats(1e-3, 1e3),
     st.lists(

@@ -118,7 +118,7 @@ def test_lever_rule_of_a_load_and_a_torque(number):
     )
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.integers(1, 12), st.integers(1, 12), st.sampled_from(["simple", "fixed"]))
 def test_angle_by_a_force_is_deflection_by_a_torque(turned_disc, loaded_disc, supports):
     """Maxwell's theorem: so the couple is the one that does the torque's work."""

@@ -166,7 +166,7 @@ def test_a_loop_is_the_doubled_line_and_its_area_is_the_plastic_work():
     assert 2.0 * area * length == pytest.approx(loop, rel=1e-5)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(st.floats(-8.0, 8.0), min_size=1, max_size=8), st.booleans())
 def test_of_the_work_on_a_section_nothing_is_lost_and_plastic_work_never_falls(turns, several):
     made, length = section(**(TRILINEAR if several else {}))
@@ -220,7 +220,7 @@ def test_hogging_has_moments_of_its_own_and_cracks_apart_from_sagging():
     assert bend(made, stays / EI) == pytest.approx(0.0, abs=1e-9)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(st.floats(-8.0, 8.0), min_size=1, max_size=8))
 def test_of_the_work_on_a_cracking_section_nothing_is_lost(turns):
     made, length = section(**CRACKING)

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rockshed.components.catalogue import component
@@ -75,7 +75,6 @@ def test_spin_without_torque_goes_on():
     assert instance["angle"] == pytest.approx(0.5 + 1.4, rel=1e-12)
 
 
-@settings(deadline=None)  # the first example may compile
 @given(forces, forces, forces, speeds, speeds, steps, st.integers(1, 20))
 def test_momentum(force_x, force_y, torque, vx, vy, step, count):
     instance = pushed(
@@ -93,7 +92,6 @@ def test_momentum(force_x, force_y, torque, vx, vy, step, count):
     assert spin == pytest.approx(torque * time, rel=1e-12, abs=1e-12)
 
 
-@settings(deadline=None)  # the first example may compile
 @given(forces, forces, forces, speeds, speeds, st.floats(0.1, 30.0), steps)
 def test_energy_residual(force_x, force_y, torque, vx, vy, gravity, step):
     """m g dt (v - v0)/2, as the README says: gravity alone leaves a residual, held forces none."""
@@ -108,7 +106,6 @@ def test_energy_residual(force_x, force_y, torque, vx, vy, gravity, step):
     assert instance["energy.residual"] == pytest.approx(expected, abs=1e-11 * scale)
 
 
-@settings(deadline=None)  # the first example may compile
 @given(forces, forces, forces, st.integers(-20, -8), st.integers(0, 4))
 def test_split_of_a_communication_step_gives_the_same_internal_steps(
     force_x, force_y, torque, exponent, splits
@@ -131,7 +128,6 @@ def test_split_of_a_communication_step_gives_the_same_internal_steps(
         assert whole[name] == parts[name]
 
 
-@settings(deadline=None)  # the first example may compile
 @given(speeds, speeds, st.floats(0.01, 1.0))
 def test_thrown_rock_keeps_its_parabola(vx, vy, time):
     assume(abs(vx) > 0.1)
@@ -146,7 +142,6 @@ def test_thrown_rock_keeps_its_parabola(vx, vy, time):
 # ------------------------------------------------------------------ driven
 
 
-@settings(deadline=None)  # the first example may compile
 @given(forces, forces, forces, speeds, speeds, speeds, steps)
 def test_a_driven_rock_keeps_its_velocities_and_the_machine_does_what_is_missing(
     force_x, force_y, torque, vx, vy, omega, step

@@ -93,13 +93,13 @@ def scaled(low, high):
 
 
 @given(ANY, ANY, ANY)
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_any_three_numbers_give_the_sum_rounded_once(fused, a, b, c):
     assert bits(fused(a, b, c)[0]) == bits(exact(a, b, c))
 
 
 @given(scaled(-60, 0), scaled(-60, 0), scaled(-120, 60))
-@settings(max_examples=750, deadline=None)
+@settings(max_examples=750)
 def test_numbers_of_like_size_give_the_sum_rounded_once(fused, a, b, c):
     for summand in (c, -a * b, math.nextafter(-a * b, math.inf)):
         assert bits(fused(a, b, summand)[0]) == bits(exact(a, b, summand))
@@ -109,20 +109,20 @@ def test_numbers_of_like_size_give_the_sum_rounded_once(fused, a, b, c):
 @example(2.0**-537, 2.0**-538, 5e-324)
 @example(2.0**-537, -(2.0**-538), 5e-324)
 @example(2.0**-600, -(2.0**-600), 0.0)
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 def test_products_that_are_subnormal_give_the_sum_rounded_once(fused, a, b, c):
     assert bits(fused(a, b, c)[0]) == bits(exact(a, b, c))
 
 
 @given(scaled(440, 480), scaled(440, 480), scaled(900, 970))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_sums_near_the_largest_number_are_rounded_once(fused, a, b, c):
     for summand in (c, -c):
         assert bits(fused(a, b, summand)[0]) == bits(exact(a, b, summand))
 
 
 @given(scaled(-52, -52), scaled(-52, -52), scaled(-52, 10))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_ties_are_rounded_to_even(fused, a, b, c):
     one = math.copysign(1.0, a)
     for summand in (c, one * math.ulp(c) / 2, -one * math.ulp(c) / 2):
@@ -131,7 +131,7 @@ def test_ties_are_rounded_to_even(fused, a, b, c):
 
 
 @given(scaled(-1074, 900), scaled(-60, 60), st.sampled_from((0.0, -0.0)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_zeros_keep_their_sign(fused, a, b, zero):
     for numbers in ((zero, b, zero), (zero, -b, -zero), (zero, b, a), (b, -zero, -0.0)):
         assert bits(fused(*numbers)[0]) == bits(exact(*numbers))

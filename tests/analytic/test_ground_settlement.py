@@ -180,7 +180,7 @@ def test_fits_have_the_values_of_a_pocket_calculator():
 # --- the plate as a component ---
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(impulse=st.floats(0.1, 200.0), r0=forces, r1=forces, steps=st.integers(1, 60))
 def test_the_plate_settles_exactly_as_the_closed_form_whatever_the_step(impulse, r0, r1, steps):
     if r0 + r1 < 1.0:

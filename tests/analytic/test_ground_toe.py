@@ -128,7 +128,7 @@ waves = st.lists(st.floats(-80e3, 80e3), min_size=1, max_size=25)
 
 
 @pytest.mark.parametrize("law", LAWS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     loads=waves,
     damping=st.sampled_from([0.0, 0.5, 2.0]),

@@ -187,7 +187,7 @@ def test_the_cushion_gives_back_the_square_of_its_restitution(restitution):
     assert abs(hammer["energy.residual"]) < 1e-10 * hammer["energy.start"]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(1e5, 1e12), st.floats(0.05, 1.0), st.floats(1e-7, 1e-3), st.floats(-5e4, 5e4))
 def test_a_cushion_of_any_stiffness_takes_any_step(stiffness, restitution, step, wave):
     """No tension, no gain of energy, an exact balance."""

@@ -75,7 +75,7 @@ def test_a_rigid_helmet_stays_on_the_head_and_moves_as_the_law_of_its_end_says()
     np.testing.assert_allclose(force, expected, atol=2e-4 * expected.max(), rtol=0)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     ram=st.floats(50.0, 2e4),
     helmet=st.floats(50.0, 5e3),

@@ -12,7 +12,7 @@ from ..rods import closed_form, march, reflecting, rod
 pulses = st.lists(st.floats(-1e5, 1e5, allow_subnormal=False), min_size=1, max_size=30)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(pulses)
 def test_an_arbitrary_pulse_travels_without_change_and_a_matched_toe_takes_it_all(pulse):
     made = rod(40, toe__condition="matched")
@@ -142,7 +142,7 @@ def test_the_ram_comes_back_to_the_head_and_never_goes_into_it():
     assert abs(made["energy.contact"]) < 1e-6 * made["energy.start"]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     st.floats(0.0, 2e5),
     st.floats(1e-4, 1e-2),

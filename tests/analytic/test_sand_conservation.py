@@ -56,7 +56,7 @@ clouds = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(count=st.integers(2, 40), seed=st.integers(0, 10**6), parameters=clouds)
 def test_momentum_of_free_discs(count, seed, parameters):
     discs = cloud(count, seed, parameters)
@@ -65,7 +65,7 @@ def test_momentum_of_free_discs(count, seed, parameters):
     assert momentum(discs)[0] == pytest.approx(before, abs=1e-12 * size)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     count=st.integers(2, 40),
     seed=st.integers(0, 10**6),

@@ -107,7 +107,7 @@ def test_work_of_separation(share, parts):
     assert bool(rows(pair)[1, 0] - rows(pair)[0, 0] > 2 * RADIUS * 1.051) is parts
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     ratio=st.sampled_from([1.0, 3.0, 20.0]),
     cohesion=st.sampled_from([0.0, COHESION]),

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rockshed.components.common.component import ComponentError
@@ -59,7 +59,6 @@ def sand():
     return cushion(WALLS, discs=1, elements=1)
 
 
-@settings(deadline=None)
 @given(st.floats(-0.6, 0.6), st.floats(-0.5, 0.6), st.sampled_from([-1.0, 1.0]))
 def test_the_gap_is_the_distance_to_the_block(sand, out, over, side):
     x = (LEFT if side < 0.0 else LEFT + WIDTH) + side * out

@@ -69,7 +69,7 @@ LAWS = {
 }
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     points=st.sampled_from([JAGGED, FACE]),
     law=st.sampled_from(sorted(LAWS)),

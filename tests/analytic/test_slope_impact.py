@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 from scipy.special import lambertw
@@ -41,7 +41,6 @@ def restitution_of(speed, treatment, gravity=G, **ground):
 # --- flight ---
 
 
-@settings(deadline=None)
 @given(st.floats(math.radians(-40), math.radians(60)), st.floats(-10.0, 10.0), st.floats(0.5, 12.0))
 def test_height_and_length_of_a_jump(angle, u, v):
     """From the cell, with u along it and v off it: (17), (18), and the landing at twice the time of the highest point."""
@@ -134,7 +133,6 @@ def test_penetration_and_restitution_against_the_lambert_function(speed, strengt
         )
 
 
-@settings(deadline=None)
 @given(
     st.floats(-4.0, 1.6),
     st.floats(5.0, 7.5),
@@ -194,7 +192,6 @@ collisions = {
 }
 
 
-@settings(deadline=None)
 @given(**collisions)
 def test_impact_fulfils_the_equations_of_momentum(u, v, spin, e, phi, friction, ratio):
     """(19) solved for both impulses, for m = r = 1: the normal one consistent, and the cone of friction kept."""
@@ -278,7 +275,6 @@ def test_no_impact_gains_energy_in_a_million_and_many_do_as_printed():
     assert np.mean(gains_of(rng.random((100_000, 12)), False, PRINTED) > 1e-12) > 0.1
 
 
-@settings(deadline=None)
 @given(
     st.floats(-1.0, 1.0),
     st.floats(-20.0, 20.0),

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.slope_rocks import G, along, mode, plane
@@ -29,7 +29,6 @@ def test_a_smooth_rock_rolls_with_the_share_of_gravity_of_its_shape(shape, share
     assert rock["angular_velocity"] == pytest.approx(-along(rock, 0.3) / 0.5, rel=1e-12)
 
 
-@settings(deadline=None)
 @given(
     angles, st.floats(0.0, 0.3), st.floats(0.0, 200.0), st.floats(0.05, 1.0), st.floats(0.0, 30.0)
 )
@@ -67,7 +66,6 @@ def test_rolling_fulfils_the_equations_of_motion(angle, roughness, resistance, r
     assert spun == pytest.approx(-gained / radius, abs=1e-8 * G / radius)
 
 
-@settings(deadline=None)
 @given(
     angles, st.floats(0.0, 0.3), st.floats(0.05, 0.9), st.floats(1.0, 20.0), st.floats(-1.0, 3.0)
 )
@@ -165,7 +163,6 @@ def test_a_rock_thrown_up_the_slope_comes_back_slower_and_passes_its_start():
     assert rock["energy.residual"] == pytest.approx(0.0, abs=1e-9 * rock["energy.kinetic"])
 
 
-@settings(deadline=None)
 @given(
     angles,
     st.floats(-20.0, 20.0),
@@ -216,7 +213,6 @@ def test_a_spinning_rock_on_rough_ground_spins_on_the_spot_and_rests():
     assert rock["energy.friction"] == pytest.approx(0.5 * 0.4 * 1000.0 * 2.0**2, rel=1e-12)
 
 
-@settings(deadline=None)
 @given(
     angles,
     st.floats(-15.0, 15.0),

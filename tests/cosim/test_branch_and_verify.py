@@ -51,7 +51,7 @@ def parent(tmp_path_factory):
     return simulate(one, folder, sources=sources, checkpoint_every=0.4)
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 @given(exchange=st.integers(1, 39), force=st.floats(-5.0, 5.0))
 def test_a_variant_is_the_run_in_one_go_whose_values_change_on_the_way(
     parent, tmp_path_factory, exchange, force

@@ -105,7 +105,7 @@ def summing():
 numbers = st.floats(-10.0, 10.0)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     coefficients=st.lists(numbers, min_size=1, max_size=3),
     master=st.sampled_from(SCHEMES),

@@ -102,7 +102,7 @@ def whole(tmp_path_factory):
     return place
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(
     every=st.integers(1, 30),
     moment=st.integers(1, 39),
@@ -235,7 +235,7 @@ def test_a_damaged_checkpoint_is_passed_over_for_the_one_before(tmp_path, whole)
     assert not differing(whole / "sequential", folder)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_no_damage_to_a_checkpoint_is_read_over(checkpoint, data):
     folder, exchange, content = checkpoint
@@ -290,7 +290,7 @@ ENTRIES = ("checkpoints", "versions", "components", "system", "resumed", "starte
 JUNK = st.sampled_from([None, [], {}, "x", -1, 1e300, True, [None], {"run": "x"}])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(data=st.data())
 def test_a_damaged_description_of_a_run_is_refused_in_words(stopped, data):
     folder, told = stopped

@@ -412,7 +412,7 @@ def systems(draw):
     return made, sources
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(systems(), st.sampled_from(["1.0", "2.0"]), st.booleans())
 def test_a_system_comes_back_from_its_ssp_and_is_the_same_xml_again(made, ssp_version, is_multi):
     spec, sources = made
@@ -462,7 +462,7 @@ def connected_units(draw):
     return wired({"a": gives, "b": takes}, connections)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(connected_units(), st.sampled_from(["1.0", "2.0"]))
 def test_whatever_is_exported_is_read_with_the_same_factors_whatever_the_units(made, ssp_version):
     spec, sources = made

@@ -122,7 +122,7 @@ def test_no_text_lies_on_another_one_or_leaves_its_box(system):
     assert float(root.get("width")) < 130.0 * len(system.components) + 200.0
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(2, 8), st.integers(1, 60), st.integers(1, 60))
 def test_however_long_names_are_they_stay_in_their_boxes(number, length, port):
     assert_legible(chain(number, "n" * length + "_{}", "p" * port + ".{}"))

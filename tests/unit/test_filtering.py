@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
@@ -27,7 +27,6 @@ def test_a_sine_at_the_cut_off_keeps_half_of_its_height_and_its_phase():
     assert low_pass(TIME, sine, 250.0)[100:300] == pytest.approx(0.5 * sine[100:300], abs=2e-3)
 
 
-@settings(deadline=None)
 @given(st.floats(-1e6, 1e6), st.floats(30.0, 4900.0))
 def test_what_is_steady_stays_as_it_is(value, cut_off):
     assert low_pass(TIME, np.full(TIME.size, value), cut_off) == pytest.approx(

@@ -53,7 +53,7 @@ def test_friction_by_stress_has_the_value_of_a_calculation_by_hand(site):
     assert clay.lower / 1.6 == pytest.approx(0.6 * (15e3 + 1.5e3 * 6.0))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     first=st.floats(1e3, 5e4),
     growth=st.floats(1.0, 1e4),

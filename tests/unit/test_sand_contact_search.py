@@ -43,7 +43,7 @@ def spring_forces(instance):
     return -(stiffness * overlap / distance)[..., None] * apart
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     count=st.integers(1, 60),
     seed=st.integers(0, 10**6),

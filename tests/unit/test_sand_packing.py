@@ -162,7 +162,7 @@ def test_a_prepared_layer_has_the_solid_fraction_that_was_asked_for(share):
     )
 
 
-@settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=6, suppress_health_check=list(HealthCheck))
 @given(
     width=st.floats(30.0, 60.0),
     thickness=st.floats(16.0, 24.0),

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rockshed.components.common.kernels import kernel
@@ -104,7 +104,6 @@ def contact(column, spring, plastic, law, energies):
     )
 
 
-@settings(deadline=None)
 @given(
     seed=st.integers(0, 10**6),
     speed=st.sampled_from([1e-3, 1.0, 30.0]),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rockshed.components.common.kernels import kernel
@@ -41,7 +41,6 @@ def pairs(seed):
     )
 
 
-@settings(deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_columns_are_those_of_the_plain_loop(seed):
     random, first, second, pair = pairs(seed)
@@ -56,7 +55,6 @@ def test_columns_are_those_of_the_plain_loop(seed):
     assert plain[6 * BLOCK :] == pytest.approx(rows[second, 7] + rows[first, 7])
 
 
-@settings(deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_loads_add_up_in_the_order_of_the_plain_loop(seed):
     random, _, _, pair = pairs(seed)

@@ -183,7 +183,7 @@ def test_trials_and_seed_of_the_project_go_before_those_of_the_slope(tmp_path):
 # ---------------------------------------------------------------- the box
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     steepness=st.floats(0.0, 20.0),
     berm=st.floats(0.0, 3.0),

@@ -468,7 +468,7 @@ CRITERIA = rows_of(
 WIDTHS = perhaps(st.one_of(st.sampled_from(sorted(RULES)), st.floats(0.3, 8.0)))
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(
     span=st.floats(1.0, 40.0),
     cushion=rows_of(thickness=st.floats(0.2, 4.0), effective_width=WIDTHS),

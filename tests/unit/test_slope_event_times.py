@@ -1,16 +1,14 @@
 """The time of the next event, as the rock on its slope publishes it: a step that ends there has the event behind it."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rockshed.components.slope_rockfall.declarations import NEVER
 from rockshed.components.slope_rockfall.kernel import grid_after, on_grid
 
 TIMES = st.floats(0.0, 1000.0)
-AT_LEISURE = settings(deadline=None)  # the first call compiles
 
 
-@AT_LEISURE
 @given(TIMES)
 def test_it_is_the_event_rounded_up_to_a_picosecond(event):
     published = grid_after(event)
@@ -18,7 +16,6 @@ def test_it_is_the_event_rounded_up_to_a_picosecond(event):
     assert on_grid(published) == published
 
 
-@AT_LEISURE
 @given(TIMES, TIMES)
 def test_a_step_that_ends_there_has_the_event_behind_it_whatever_the_rounding_of_the_clock(
     event, start
@@ -27,7 +24,6 @@ def test_a_step_that_ends_there_has_the_event_behind_it_whatever_the_rounding_of
     assert on_grid(start + (published - start)) == published >= event
 
 
-@AT_LEISURE
 @given(st.floats(1e4, NEVER))
 def test_far_times_are_left_alone(event):
     assert grid_after(event) == event

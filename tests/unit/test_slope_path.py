@@ -24,7 +24,7 @@ def nodes_of(cells):
     return np.c_[x, y], longer
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(cells, st.sampled_from([0.01, 0.1, 0.5, 2.0]))
 def test_the_path_touches_the_slope_and_never_cuts_it(cells, radius):
     nodes, longer = nodes_of(cells)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -28,13 +28,11 @@ EXACT = {
 }
 
 
-@settings(deadline=None)
 @given(st.floats(1e-9, 1.0 - 1e-9))
 def test_normal_quantile(p):
     assert normal_quantile(p) == pytest.approx(stats.norm.ppf(p), rel=1e-12, abs=1e-15)
 
 
-@settings(deadline=None)
 @given(st.sampled_from(list(EXACT)), st.floats(0.0, 1.0, exclude_max=True))
 def test_variates_are_quantiles_of_their_distribution(kind, u):
     assert variate(kind, MEAN, DEVIATION, normal_tail(TRUNCATION), u) == pytest.approx(
@@ -42,7 +40,6 @@ def test_variates_are_quantiles_of_their_distribution(kind, u):
     )
 
 
-@settings(deadline=None)
 @given(st.floats(0.0, 1.0, exclude_max=True))
 def test_lognormal_is_the_exponential_of_the_truncated_normal(u):
     exponent = stats.truncnorm(-TRUNCATION, TRUNCATION, math.log(MEAN) - SIGMA**2 / 2, SIGMA).ppf(u)

@@ -1,7 +1,7 @@
 """Smith's soil has two forms, for a node that takes steps and for a toe that moves piece by piece."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rockshed.components.common.smith_soil import (
@@ -18,7 +18,6 @@ from rockshed.components.common.smith_soil import (
 QUAKE, ULTIMATE = 2.5e-3, 20e3
 
 
-@settings(deadline=None)
 @given(st.lists(st.integers(-3000, 3000), min_size=1, max_size=12))
 def test_both_forms_have_the_same_resistance_and_work(ways):
     node = Soil(0.0, QUAKE, ULTIMATE, 0.0, False)
