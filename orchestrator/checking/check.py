@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
 from ..core.fmu.archive import MOST_DESCRIPTION, Archive, ArchiveError
 from ..core.system.names import nearest
 from ..temporary import TemporaryFolder
@@ -81,11 +81,10 @@ def check_fmu(
     'valid against the schemas of FMI'
     """
     file = Path(fmu)
-    chosen = _chosen(probes)
-    problems = [*_number_problems(step_size, time_limit)]
-    if problems:
-        raise InputRefused(problems)
-    about = _about(file)
+    with all_causes(lambda: _chosen(probes), lambda: _about(file)):
+        if problems := [*_number_problems(step_size, time_limit)]:
+            raise InputRefused(problems)
+        chosen, about = _chosen(probes), _about(file)
     asked = [p for p in chosen if p.version in (0, int(about.version[0]))]
     with TemporaryFolder("rockshed-") as folder, Server() as server:
         run = _Running(file.absolute(), folder, server, step_size, time_limit)

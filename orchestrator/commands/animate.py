@@ -9,7 +9,7 @@ from ..analyses.rockfall.result import RockfallResult
 from ..analyses.saved import saved_result
 from ..animations.formats import animation_format
 from ..campaigns.replay import check
-from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..runs.run import read_run
 from .analysis import in_options, options_named
 from .drawing import refuse_foreign_file
@@ -53,7 +53,9 @@ def command(
     """Animate rock, sand with its force chains, and beam of a run; trials of a campaign."""
     from ..pictures.sand_animation import is_coarse  # imports matplotlib
 
-    with opened(quiet, as_json) as screen, options_named(_OPTIONS):
+    form = output.suffix.removeprefix(".").lower() if output else None
+    looks = (lambda: form is None or animation_format(form),)
+    with opened(quiet, as_json) as screen, options_named(_OPTIONS), all_causes(*looks):
         if trial:
             _replay(run, trial, output, screen)
             return

@@ -1,6 +1,7 @@
 """The command ``rockshed branch``: variants of a run, from one of its states."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -8,7 +9,7 @@ import typer
 
 from ..analyses.study.result import StudyResult
 from ..analyses.study.variants import branches
-from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.errors import InputRefused, Problem, RunFailed, all_causes
 from ..core.input_text import shown
 from ..core.supervisor import announce
 from ..input_files.csv_table import CsvRow, CsvTable, read_csv
@@ -17,7 +18,7 @@ from ..runs.run import Run, read_run
 from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .options import Json, NoFigures, Quiet, Strict, Workers, simulated_time
-from .results_place import free_folder, provenance_in
+from .results_place import free_folder, look_at_folder, provenance_in
 from .run import show_run
 from .screen import Screen, opened
 from .streams import stdout_for_results
@@ -76,11 +77,13 @@ def command(
     if variants is not None:
         alone = {"--at": at, "--set": set_, "--checkpoint-every": checkpoint_every}
         others = [name for name, value in alone.items() if value is not None]
-        with opened(quiet, as_json) as screen:
+        looks = (partial(read_run, run), partial(_table, variants), look_at_folder(output_dir))
+        with opened(quiet, as_json) as screen, all_causes(*looks):
             show(screen, _many(run, variants, others, output_dir, workers, not no_figures, screen))
         return
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
-    with opened(quiet, as_json) as screen:
+    look = look_at_folder(output_dir)
+    with opened(quiet, as_json) as screen, all_causes(partial(read_run, run), look):
         asked = {"at": at, "checkpoint_every": checkpoint_every}
         done = _branched(run, set_ or [], output_dir, asked, screen)
         show_run(done, screen, not no_figures, strict)

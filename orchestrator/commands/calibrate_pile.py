@@ -6,10 +6,11 @@ from typing import Annotated
 import typer
 
 from ..analyses.pile_matching.run import match_pile
+from ..core.errors import all_causes
 from ..runs.building import is_cold
 from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
-from .results_place import results_folder
+from .results_place import look_at_folder, results_folder
 from .screen import COLD_START, opened
 from .streams import tell_leftovers
 
@@ -45,7 +46,7 @@ def command(
 
     The wave that the soil sends back up is computed until it is that of the measurement.
     """
-    with opened(quiet, as_json) as screen:
+    with opened(quiet, as_json) as screen, all_causes(look_at_folder(output_dir)):
         origin = {"kind": "pile matching", "measurement": measured.name}
         name = f"matching-{measured.stem}"
         folder = output_dir or results_folder(name, str(measured), origin, screen)

@@ -1,19 +1,22 @@
 """The command ``rockshed calibrate rockfall``: the ground from where rocks came to rest."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..analyses.back_analysis.run import calibrate_rockfall
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
 from ..core.input_text import shown
 from ..core.system.values import finite_number
+from ..input_files.csv_table import read_csv
 from ..runs.building import is_cold
+from ..sites.source import site_source
 from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
-from .results_place import folder_of_site
+from .results_place import folder_of_site, look_at_folder
 from .screen import COLD_START, opened
 
 _OPTIONS = ("fit", "forecast", "scatter", "trials", "steps", "seed", "workers", "folder")
@@ -71,8 +74,11 @@ def command(
     Parameters have intervals, from samples of their posterior.
     """
     with opened(quiet, as_json) as screen:
-        ranges = _ranges(fit or [])
-        folder = output_dir or folder_of_site(site, "rockfall-calibration", screen)
+        read = (site_source, site), (read_csv, endpoints), (site_source, forecast)
+        looks = (partial(look, file) for look, file in read if file is not None)
+        with all_causes(*looks, look_at_folder(output_dir)):
+            ranges = _ranges(fit or [])
+            folder = output_dir or folder_of_site(site, "rockfall-calibration", screen)
         if is_cold(["SlopeRockfall"]):
             screen.note(COLD_START)
         with options_named(_OPTIONS), stages(screen) as progress:

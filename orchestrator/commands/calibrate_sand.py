@@ -2,6 +2,7 @@
 
 import json
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,12 +12,12 @@ from ..analyses.calibration.files import DATA
 from ..analyses.calibration.measurement import Measurement, of_text, table_4
 from ..analyses.calibration.result import CalibrationResult
 from ..analyses.calibration.run import COMPUTED, MeasurementLike, calibrate, measurements_of
-from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.errors import InputRefused, Problem, RunFailed, all_causes
 from ..runs.building import is_cold
 from .analysis import options_named, stages
 from .assignments import values_of
 from .options import Assignments, Json, Quiet, Workers
-from .results_place import Origin, free_folder
+from .results_place import Origin, free_folder, look_at_place
 from .screen import COLD_START, RUN_FAILED, Screen, opened
 
 PAPER = "sonoda1993"
@@ -72,9 +73,11 @@ def command(
     with opened(quiet, as_json) as screen:
         problems: list[Problem] = []
         values = values_of("--set", set_ or [], problems)
-        if problems:
-            raise InputRefused(problems)
-        measurement = measurement_from(target, stiffness)
+        looks = (partial(_look_at_measurement, target, stiffness), look_at_place(output_dir))
+        with all_causes(*looks):
+            if problems:
+                raise InputRefused(problems)
+            measurement = measurement_from(target, stiffness)
         if is_cold(COMPUTED):
             screen.note(COLD_START)
         try:
@@ -94,6 +97,11 @@ def command(
             screen.fail(str(failure))
             raise typer.Exit(RUN_FAILED) from None
         _show(screen, result)
+
+
+def _look_at_measurement(target: str | None, stiffness: str | None) -> None:
+    """Look at what was measured alone."""
+    measurements_of(measurement_from(target, stiffness))
 
 
 def _folder(measurement: MeasurementLike, screen: Screen) -> Path:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,10 +14,11 @@ from ..analyses.exchange_steps import files as exchange_files
 from ..analyses.exchange_steps.result import ExchangeStepsResult
 from ..analyses.exchange_steps.run import converge_exchange
 from ..cases.registry import case, is_case
-from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.errors import InputRefused, Problem, RunFailed, all_causes
 from ..core.system.system import Value
 from ..input_files.quantities import in_si
 from ..runs.chosen import is_project_file
+from ..runs.job import look_at_target
 from ..runs.request import Request
 from .analysis import as_json as data_of
 from .analysis import options_named, show, stages
@@ -31,7 +33,7 @@ from .options import (
     Workers,
     simulated_time,
 )
-from .results_place import free_folder
+from .results_place import free_folder, look_at_place
 from .screen import RUN_FAILED, Screen, opened
 from .streams import stdout_for_results
 
@@ -153,8 +155,9 @@ def _carry_out(
         of_steps["accuracy"] = _share(of_steps["accuracy"], problems)
     asks_for_meshes = not exchange and is_project_file(target)
     problems += _misplaced(of_steps if asks_for_meshes else of_meshes, asks_for_meshes)
-    if problems:
-        raise InputRefused(problems)
+    with all_causes(partial(look_at_target, target), look_at_place(shown["folder"])):
+        if problems:
+            raise InputRefused(problems)
     if asks_for_meshes:
         _meshes(Path(target), {**shown, "values": values, **of_meshes}, screen)
     else:

@@ -36,6 +36,24 @@ def draw(run: Run, folder: Path, screen: Screen) -> list[Path]:
         return list(run.figures(folder, note=screen.note, warn=screen.warn).values())
 
 
+def refuse_form(file: Path) -> None:
+    """Refuse a picture whose name ends in no known format.
+
+    Parameters
+    ----------
+    file : Path
+        Of the picture.
+
+    Raises
+    ------
+    InputRefused
+        With the formats that are known.
+    """
+    if file.suffix.lower() not in _FORMATS:
+        remedy = f"let its name end in one of {', '.join(_FORMATS)}"
+        raise InputRefused([Problem(str(file), "is of no known format", remedy)])
+
+
 def write_picture(figure: "Figure", file: Path) -> Path:
     """Write a picture into a file of its own.
 
@@ -56,9 +74,7 @@ def write_picture(figure: "Figure", file: Path) -> Path:
     InputRefused
         The format is unknown, something else is there, or the file cannot be written.
     """
-    if file.suffix.lower() not in _FORMATS:
-        remedy = f"let its name end in one of {', '.join(_FORMATS)}"
-        raise InputRefused([Problem(str(file), "is of no known format", remedy)])
+    refuse_form(file)
     refuse_foreign_file(file)
     metadata = {"Software": "rockshed"} if file.suffix.lower() == ".png" else None
     with refusing_unwritable(file.parent):

@@ -1,12 +1,15 @@
 """The command ``rockshed export``: a system as files or SSP, or a run in other formats."""
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
+from ..runs.export import refuse_place
+from ..runs.formats.choice import refuse_format
 from ..runs.request import AUTO, Request
 from ..runs.run import read_run
 from ..runs.system import System
@@ -93,11 +96,7 @@ def command(
             of_systems = {"--set": set_, "--size": size, "--coupling": coupling}
             of_systems |= {"--model": model, "--ssp": ssp}
             of_systems |= {"--runtime": runtime if runtime != AUTO else None}
-            _check_run(folder, of_systems)
-            with options_named(("format", "output", "state_interval")):
-                files = read_run(Path(target)).export(format_, output)
-            for file in files[:1] if len(files) > _MOST_TOLD else files:
-                screen.say(str(file))
+            _export_run(Path(target), format_, output, (folder, of_systems), screen)
             return
         if folder is None or output is not None:
             raise InputRefused([_FAULT_OF_SYSTEM])
@@ -109,10 +108,28 @@ def command(
         sizes = sizes_of(size or [], problems)
         request = Request(target, values, sizes, coupling, model=model, runtime=runtime)
         names = ("values", "sizes", "coupling", "model", "ssp", "runtime", "exchange_step")
-        with options_named((*names, "stop_time"), target):
+        place = partial(refuse_place, folder, ssp)
+        with options_named((*names, "stop_time"), target), all_causes(place):
             system = System.prepared(request, screen.note, problems)
             made = system.save(folder, ssp=ssp)
         screen.say(str(made))
+
+
+def _export_run(
+    run: Path,
+    form: str,
+    output: Path | None,
+    misplaced: tuple[Path | None, Mapping[str, object]],
+    screen: Screen,
+) -> None:
+    """Write a run in a format; folder and options of the export of a system are misplaced."""
+    look = partial(refuse_format, form)
+    named = options_named(("format", "output", "state_interval"))
+    with named, all_causes(partial(read_run, run), look):
+        _check_run(*misplaced)
+        files = read_run(run).export(form, output)
+    for file in files[:1] if len(files) > _MOST_TOLD else files:
+        screen.say(str(file))
 
 
 def _export_systems(folder: Path, has_options: bool, screen: Screen) -> None:
@@ -120,9 +137,10 @@ def _export_systems(folder: Path, has_options: bool, screen: Screen) -> None:
     from ..systems.catalogue import impact_systems  # the components of all of them
     from ..systems.files import export_systems
 
-    if has_options:
-        what = "has all kinds of FMUs and no options"
-        raise InputRefused([Problem(SYSTEMS, what, "leave the options out")])
+    with all_causes(partial(refuse_place, folder, None)):
+        if has_options:
+            what = "has all kinds of FMUs and no options"
+            raise InputRefused([Problem(SYSTEMS, what, "leave the options out")])
     screen.say(str(export_systems(impact_systems(), folder, screen.note)))
 
 

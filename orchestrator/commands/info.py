@@ -1,5 +1,6 @@
 """The command ``rockshed info``: the content of an FMU or a system."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -8,11 +9,12 @@ import typer
 from rockshed.components.catalogue import NAMES
 
 from ..cases.registry import cases
-from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..core.system.names import nearest
 from ..files import write_file
 from ..runs.export import system_text
 from ..runs.inspection import describe_component, describe_fmu
+from ..runs.job import look_at_target
 from ..runs.request import Request
 from ..runs.system import System
 from ..runs.target import is_fmu, wrong_target
@@ -49,7 +51,8 @@ def command(
     """Show an FMU, a component or a system: ports, values, connections."""
     with opened() as screen:
         if diagram is not None:
-            _check_diagram(target, diagram)
+            with all_causes(partial(_look, target)):
+                _check_diagram(target, diagram)
         if is_fmu(target):
             screen.overview(describe_fmu(Path(target)))
             return
@@ -69,6 +72,14 @@ def command(
             with refusing_unwritable(diagram, "name another file"):
                 write_file(diagram, system.diagram())
             screen.note(f"drawn into {diagram}")
+
+
+def _look(target: str) -> None:
+    """Look at what is to be shown, without showing it."""
+    if is_fmu(target):
+        describe_fmu(Path(target))
+    elif target not in NAMES:
+        look_at_target(target)
 
 
 def _check_diagram(target: str, file: Path) -> None:

@@ -1,12 +1,14 @@
 """The command ``rockshed page``: an impact to play with, in a browser."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
 from ..pages.writing import page
+from ..runs.job import look_at_target
 from ..runs.request import Request
 from .analysis import options_named
 from .assignments import sizes_of, values_of
@@ -38,7 +40,8 @@ def command(
     problems: list[Problem] = []
     values = values_of("--set", set_ or [], problems)
     asked = Request(target, values, sizes_of(size or [], problems), coupling, model=model)
-    with opened(quiet) as screen, options_named((), target):
+    look = partial(look_at_target, target)
+    with opened(quiet) as screen, options_named((), target), all_causes(look):
         if problems:
             raise InputRefused(problems)
         with screen.progress("compiling"):

@@ -1,15 +1,18 @@
 """The command ``rockshed pile``: blows on a driven pile or rod."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..analyses.pile.run import pile
+from ..core.errors import all_causes
 from ..runs.building import is_cold
+from ..sites.source import site_source
 from .analysis import options_named, show, stages
 from .options import Json, NoFigures, Quiet
-from .results_place import folder_of_site
+from .results_place import folder_of_site, look_at_folder
 from .screen import COLD_START, opened
 from .streams import tell_leftovers
 
@@ -35,7 +38,8 @@ def command(
 
     Residual stresses between blows are computed where the file asks for them.
     """
-    with opened(quiet, as_json) as screen:
+    looks = (partial(site_source, site), look_at_folder(output_dir))
+    with opened(quiet, as_json) as screen, all_causes(*looks):
         folder = output_dir or folder_of_site(site, "pile", screen)
         tell_leftovers(folder, screen)
         if is_cold(["Hammer", "PileRod"]):

@@ -1,18 +1,21 @@
 """The command ``rockshed plot``: pictures of a run, drawn again, and any variables of runs."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..analyses.saved import saved_result
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
 from ..core.results.own_files import FILES, add_files, read_data
 from ..core.results.run_folder import RUN, running_folder
+from ..input_files.csv_table import read_csv
 from ..runs.overlay import Overlay, overlay
 from ..runs.run import Run, read_run
 from .analysis import options_named, stages
-from .drawing import draw, write_picture
+from .drawing import draw, refuse_form, write_picture
 from .options import Json, Quiet
 from .screen import Screen, opened
 
@@ -69,10 +72,13 @@ def command(
 ) -> None:
     """Draw a run again, also one that failed; or variables of several."""
     with opened(quiet, as_json) as screen, options_named(("folder", "variable")):
-        _check(runs, variable, output_dir, {"--csv": csv, "--output": output})
+        looks = _looks(runs, csv, output) if variable else [partial(_look_at_result, runs[0])]
+        with all_causes(*looks):
+            _check(runs, variable, output_dir, {"--csv": csv, "--output": output})
         if variable:
-            found = [_read(folder, screen) for folder in runs]
-            laid = overlay(found, variable, csv)
+            with all_causes(*looks):
+                found = [_read(folder, screen) for folder in runs]
+                laid = overlay(found, variable, csv)
             with screen.busy("drawing"):
                 file = _write(laid, found[0], output, side_by_side)
             _show(laid, file, screen)
@@ -83,6 +89,19 @@ def command(
             return
         for file in files:
             screen.say(str(file))
+
+
+def _looks(runs: list[Path], csv: Path | None, output: Path | None) -> list[Callable[[], object]]:
+    """Return looks at runs, at measured curves and at the place of a picture."""
+    looks: list[Callable[[], object]] = [partial(read_run, folder) for folder in runs]
+    looks += [] if csv is None else [partial(read_csv, csv)]
+    return looks if output is None else [*looks, partial(refuse_form, output)]
+
+
+def _look_at_result(folder: Path) -> None:
+    """Look at a folder of results."""
+    if saved_result(folder) is None:
+        read_run(folder)
 
 
 def _check(

@@ -4,13 +4,14 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputRefused, Problem
 from ..core.input_text import shown
-from ..core.results.run_folder import RUN
+from ..core.results.run_folder import RUN, refuse_other_content
 from ..sites.source import SiteLike, site_source
 from .options import RESULTS
 from .screen import Screen
@@ -86,6 +87,33 @@ def results_folder(name: str, where: str, origin: Origin, screen: Screen) -> Pat
         remedy = "give another name, or name the folder with --output-dir"
         raise InputRefused([Problem(where, text, remedy)])
     return free_folder(name, origin, provenance_in, screen)
+
+
+def look_at_folder(folder: Path | None) -> Callable[[], None] | None:
+    """Return a look at the folder that the user has named for results, if there is one.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Where results of a run or of an analysis are to go.
+    """
+    return None if folder is None else partial(refuse_other_content, folder)
+
+
+def look_at_place(folder: Path | None) -> Callable[[], None] | None:
+    """Return a look at a named folder in which other files may stay.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Where results of an analysis are to go.
+    """
+    return None if folder is None else partial(_refuse_file, folder)
+
+
+def _refuse_file(folder: Path) -> None:
+    if folder.is_file():
+        raise InputRefused([Problem(str(folder), "is a file", "choose another folder")])
 
 
 def provenance_in(folder: Path) -> Any:

@@ -1,20 +1,22 @@
 """The command ``rockshed rockfall``: a campaign of trials on a slope."""
 
 import re
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from ..analyses.rockfall.run import rockfall
-from ..animations.formats import can_write_mp4
-from ..core.errors import InputRefused, Problem
+from ..animations.formats import animation_format, can_write_mp4
+from ..core.errors import InputRefused, Problem, all_causes
 from ..core.system.names import nearest
 from ..runs.building import is_cold
+from ..sites.source import site_source
 from .analysis import kept_if_ended, options_named, show, stages
 from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
 from .options import Json, NoFigures, Quiet
-from .results_place import folder_of_site
+from .results_place import folder_of_site, look_at_folder
 from .screen import COLD_START, Screen, opened
 from .streams import tell_leftovers
 
@@ -86,13 +88,13 @@ def command(
 
     Percentiles have confidence intervals.
     """
-    with opened(quiet, as_json) as screen:
+    looks = (
+        *(partial(site_source, site), partial(_count, trials, preset)),
+        *(partial(animation_format, animation), look_at_folder(output_dir)),
+    )
+    with opened(quiet, as_json) as screen, options_named(_OPTIONS), all_causes(*looks):
         folder = _begun(site, output_dir, bool(replay) and animation is None, screen)
-        with (
-            kept_if_ended(screen, folder),
-            options_named(_OPTIONS),
-            stages(screen) as progress,
-        ):
+        with kept_if_ended(screen, folder), stages(screen) as progress:
             result = rockfall(
                 site,
                 trials=_count(trials, preset),

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.ending import true_cause
-from ..core.errors import Problem, RunFailed, counted
+from ..core.errors import Problem, RunFailed, all_causes, counted
 from ..core.supervisor import announce
 from ..core.system.clock import seconds_in
 from ..metrics.width_band import width_band_table
@@ -34,7 +34,7 @@ from .options import (
     Target,
     simulated_time,
 )
-from .results_place import results_folder
+from .results_place import look_at_folder, results_folder
 from .screen import CHECK_FAILED, COLD_START, INTERRUPTED, RUN_FAILED, Screen, opened
 from .streams import stdout_for_results, tell_leftovers
 
@@ -179,7 +179,7 @@ def command(
     options |= _chosen(tolerance=tolerance, isolate=isolate or None, time_limit=time_limit)
     asked = Request(target, values, sizes, coupling, options, in_process, load_cell, model, runtime)
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
-    with opened(quiet, as_json) as screen:
+    with opened(quiet, as_json) as screen, all_causes(look_at_folder(output_dir)):
         conduct = {"allow_unstable": allow_unstable, "checkpoint_every": checkpoint_every}
         done = _simulate(asked, problems, output_dir, conduct, screen)
         show_run(_with_band(band, done, asked, screen), screen, not no_figures, strict)

@@ -1,19 +1,23 @@
 """The command ``rockshed simulate``: one FMU alone, with inputs from a table."""
 
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.errors import InputRefused, Problem, RunFailed, all_causes
+from ..core.fmu.fmu_slave import FmuFile
 from ..runs.alone import alone
 from ..runs.run import Run
+from ..runs.signals import read_signals
 from ..runs.simulation import simulate
 from ..runs.system import System
 from .analysis import options_named
 from .assignments import values_of
 from .options import Json, NoFigures, Quiet, Strict
-from .results_place import results_folder
+from .results_place import look_at_folder, results_folder
 from .run import show_run
 from .screen import Screen, opened
 from .streams import stdout_for_results, tell_leftovers
@@ -102,9 +106,9 @@ def command(
     with opened(quiet, as_json) as screen:
         problems: list[Problem] = []
         values = values_of("--start-values", start_values or [], problems)
-        if problems:
-            raise InputRefused(problems)
-        with options_named(_OPTIONS):
+        with options_named(_OPTIONS), all_causes(*_looks(fmu, input_file, output_dir)):
+            if problems:
+                raise InputRefused(problems)
             system = alone(
                 fmu,
                 input_file,
@@ -120,6 +124,15 @@ def command(
         with stdout_for_results():
             done = _run(system, folder, screen)
         show_run(done, screen, not no_figures, strict)
+
+
+def _looks(
+    fmu: Path, inputs: Path | None, folder: Path | None
+) -> Iterator[Callable[[], object] | None]:
+    """Yield looks at the FMU, at its inputs and at the place of the results."""
+    yield FmuFile(fmu).model_description
+    yield None if inputs is None else partial(read_signals, inputs)
+    yield look_at_folder(folder)
 
 
 def _run(system: System, folder: Path, screen: Screen) -> Run:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,15 +11,16 @@ import typer
 from ..analyses.study.result import StudyResult
 from ..analyses.study.run import study
 from ..cases.registry import case, is_case
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
 from ..core.results.run_folder import RUN
 from ..runs.chosen import is_project_file
+from ..runs.job import look_at_target
 from ..runs.request import Request
 from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
 from .options import Assignments, Json, NoFigures, Quiet, Target, Workers
-from .results_place import free_folder
+from .results_place import free_folder, look_at_place
 from .screen import Screen, opened
 from .vary import varied_of
 
@@ -96,7 +98,8 @@ def command(
 
     What has ended is kept: a study that was killed goes on.
     """
-    with opened(quiet, as_json) as screen:
+    looks = (partial(look_at_target, target), look_at_place(output_dir))
+    with opened(quiet, as_json) as screen, all_causes(*looks):
         asked = {
             **_read(vary, set_, percentiles),
             "design": design,

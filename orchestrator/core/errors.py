@@ -1,6 +1,6 @@
 """Errors of a co-simulation, made for the person who has to act on them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -103,6 +103,36 @@ class UnknownName(KeyError):  # noqa: N818
 
     def __str__(self) -> str:
         return str(self.args[0])
+
+
+@contextmanager
+def all_causes(*looks: Callable[[], object] | None) -> Iterator[None]:
+    """Tell with a refusal what else is wrong: every input is looked at alone.
+
+    Parameters
+    ----------
+    *looks : callable or None
+        Each looks at one input, and raises InputRefused where something is wrong with it. They are
+        called where the block refuses something, and what the block has told is told once.
+
+    Raises
+    ------
+    InputRefused
+        That of the block, with the problems of all looks behind its own.
+    """
+    try:
+        yield
+    except InputRefused as refusal:
+        told = list(refusal.problems)
+        for look in filter(None, looks):
+            try:
+                look()
+            except InputRefused as another:
+                known = {(problem.where, problem.what) for problem in told}
+                told += [p for p in another.problems if (p.where, p.what) not in known]
+        if len(told) == len(refusal.problems):
+            raise
+        raise type(refusal)(told) from None
 
 
 @contextmanager

@@ -5,7 +5,7 @@ import gzip
 import hashlib
 import json
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from rockshed.components.common.units import standard_gravity
 from rockshed.fmus.parts import BuildError
 from rockshed.fmus.wasm.module import RowKernel, wasm_modules
 
-from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..files import write_file
 from ..pictures.style import BEAM as GREEN
 from ..pictures.style import FAINT, GREY, INK
@@ -77,9 +77,11 @@ def page(
     rockshed.core.errors.InputRefused: 5 problems:
     ...
     """
+    look = None if file is None else partial(_refuse_misplaced, Path(file))
+    with all_causes(look):
+        offers = _offers(system)
     if file is not None:
         _refuse_misplaced(Path(file))
-    offers = _offers(system)
     first = offers[0].system
     place = Path(f"{first.name}.html") if file is None else Path(file)
     _refuse_misplaced(place)

@@ -5,13 +5,14 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 from importlib import import_module
 from itertools import chain, count
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
-from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..core.results.own_files import is_foreign_picture, refuse_foreign
 from ..core.system.names import nearest
 from ..files import whole_file, write_file, write_json
@@ -35,6 +36,7 @@ PAPERS = {
 }
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
+_REMEDY = "name another folder: folder=..."
 _PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
 
@@ -166,10 +168,10 @@ def reproduce(
     InputRefused
         Unknown paper or study, or a folder that cannot be written; nothing has been run.
     """
-    selected = chosen(paper, only)
-    remedy = "name another folder: folder=..."
-    refuse_foreign(folder, (DATA, PAGE), remedy)
-    with refusing_unwritable(folder / FIGURES, remedy):
+    with all_causes(partial(_refuse_place, folder)):
+        selected = chosen(paper, only)
+    _refuse_place(folder)
+    with refusing_unwritable(folder / FIGURES, _REMEDY):
         (folder / FIGURES).mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
@@ -197,6 +199,13 @@ def reproduce(
     if not made.interrupted:
         kept.clear()
     return made
+
+
+def _refuse_place(folder: Path) -> None:
+    """Refuse a folder that is a file, or holds files of the user that would be overwritten."""
+    if folder.is_file():
+        raise InputRefused([Problem(str(folder), "is a file", _REMEDY)])
+    refuse_foreign(folder, (DATA, PAGE), _REMEDY)
 
 
 def _part(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..analyses.frame import Result
 from ..analyses.saved import saved_result
-from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..core.loop.master import Progress
 from ..core.results.own_files import add_files, own_files
 from ..files import whole_file, write_file
@@ -80,11 +80,12 @@ def report(
     ...     page.name
     'impact.html'
     """
-    found = _found(result)
-    folder = _folder(found, result)
-    files = _files(folder, file, pdf)
-    for place in files:
-        _refuse_foreign(folder, place)
+    with all_causes(lambda: file is None or _files(Path(), file, pdf)):
+        found = _found(result)
+        folder = _folder(found, result)
+        files = _files(folder, file, pdf)
+        for place in files:
+            _refuse_foreign(folder, place)
     if isinstance(found, Run):
         halving, without = _check(found, check, progress, note)
         command = _command(found, repeat)

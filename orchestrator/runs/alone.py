@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, all_causes
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
 from ..core.system.names import nearest, select
@@ -112,8 +112,9 @@ def alone(
     >>> round(float(run["input.force.x"][-1]), 3)
     50.0
     """
-    of_fmu = _read(Path(fmu))
-    table = None if inputs is None else _signals(inputs)
+    with all_causes(lambda: inputs is None or _signals(inputs)):
+        of_fmu = _read(Path(fmu))
+        table = None if inputs is None else _signals(inputs)
     problems = [*_column_problems(of_fmu, table, inputs)]
     problems += _name_problems(of_fmu, start_values or {}, output_variables)
     times = {"start_time": start_time, "stop_time": stop_time}

@@ -46,7 +46,7 @@ def choose(request: Request, problems: list[Problem]) -> Chosen:
     request : Request
         The request.
     problems : list of Problem
-        Of the caller; refused together with those of a project.
+        Of the caller, refused together with those seen here.
 
     Returns
     -------
@@ -60,9 +60,12 @@ def choose(request: Request, problems: list[Problem]) -> Chosen:
     if request.project is not None:
         return _of_project(request, request.project, problems)
     if not is_case(request.target) and (wrong := wrong_target(request.target)):
-        raise InputRefused([wrong])
+        raise InputRefused([*problems, wrong])
     if not request.is_file:
-        found = case(request.target)
+        try:
+            found = case(request.target)
+        except InputRefused as refusal:
+            raise InputRefused([*problems, *refusal.problems]) from None
         return Chosen(found, request, {"case": found.name})
     if not is_ssp(request.target) and is_project_file(request.target):
         return _of_project(request, Path(request.target), problems)

@@ -71,9 +71,7 @@ def export_system(
     InputRefused
         The folder holds something, or cannot be written.
     """
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        reason = "is not empty" if folder.is_dir() else "is a file"
-        raise InputRefused([Problem(str(folder), reason, "name a new or empty folder")])
+    refuse_place(folder)
     with refusing_unwritable(folder):
         folder.mkdir(parents=True, exist_ok=True)
         specs = {
@@ -83,6 +81,44 @@ def export_system(
         text = system_text(system.model_copy(update={"components": specs}))
         (folder / SYSTEM).write_text(text, encoding="utf-8")
     return folder / SYSTEM
+
+
+def is_ssp_name(place: Path) -> bool:
+    """Tell whether an export to a place becomes an SSP, by the end of its name."""
+    return place.suffix.lower() == ".ssp"
+
+
+def refuse_place(place: Path, version: str | None = None) -> None:
+    """Refuse a place of an export that holds something, or a version that it cannot have.
+
+    Parameters
+    ----------
+    place : Path
+        A new SSP, or a new or empty folder.
+    version : str, optional
+        Of the SSP.
+
+    Raises
+    ------
+    InputRefused
+        With all that is wrong.
+    """
+    from ..ssp.documents import VERSIONS
+
+    problems = []
+    if version is not None and not is_ssp_name(place):
+        what = "is to be an SSP, and is a folder"
+        problems.append(Problem(str(place), what, "name a file that ends in .ssp"))
+    elif version not in (None, *VERSIONS):
+        choice = f"choose one of {', '.join(VERSIONS)}"
+        problems.append(Problem("ssp", f"{version!r} is unknown", choice))
+    if is_ssp_name(place) and place.exists():
+        problems.append(Problem(str(place), "is there already, and stays", "name a new file"))
+    elif place.exists() and (not place.is_dir() or any(place.iterdir())):
+        reason = "is not empty" if place.is_dir() else "is a file"
+        problems.append(Problem(str(place), reason, "name a new or empty folder"))
+    if problems:
+        raise InputRefused(problems)
 
 
 def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
@@ -111,11 +147,7 @@ def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
     from ..ssp.rewriting import rewrite_ssp
     from ..ssp.writing import write_ssp
 
-    if version not in (None, *VERSIONS):
-        choice = f"choose one of {', '.join(VERSIONS)}"
-        raise InputRefused([Problem("ssp", f"{version!r} is unknown", choice)])
-    if file.exists():  # before FMUs are made
-        raise InputRefused([Problem(str(file), "is there already, and stays", "name a new file")])
+    refuse_place(file, version)  # before FMUs are made
     if job.system.scenario:
         remedy = "write a system file (a folder), or take the scenario out"
         raise InputRefused([Problem("scenario", "has no place in an SSP", remedy)])

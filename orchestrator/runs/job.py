@@ -47,7 +47,7 @@ from .scenario import placed, refuse_misfit, told, with_inputs_read, without_fil
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
 
-__all__ = ["Job", "Request", "plan_problems", "prepare", "recorded_names"]
+__all__ = ["Job", "Request", "look_at_target", "plan_problems", "prepare", "recorded_names"]
 
 
 @dataclass(frozen=True)
@@ -149,6 +149,24 @@ def prepare(
     if warnings:
         facts["warnings"] = warnings
     return replace(job, system=system, facts=facts)
+
+
+def look_at_target(target: str) -> None:
+    """Look at the target of a command alone; nothing is built.
+
+    Parameters
+    ----------
+    target : str
+        A case, a project, a system file or an SSP.
+
+    Raises
+    ------
+    InputRefused
+        It can be no system, there is no such case, or its file is refused.
+    """
+    plain = Request(target)
+    if choose(plain, []).case is None:
+        _from_file(plain, [])
 
 
 def _refuse_misfit(chosen: Case | None, system: SystemSpec, request: Request) -> None:
@@ -263,14 +281,15 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     ):
         if asked:
             problems.append(Problem(argument, "is for cases only", remedy))
-    if problems:
-        raise InputRefused(problems)
     facts: dict[str, Any] = {
         "differences": {**request.values, **request.options},
     }
-    if is_ssp(request.target):
-        return _from_ssp(request, facts)
-    system = _loaded(Path(request.target))
+    try:
+        if is_ssp(request.target):
+            return _from_ssp(request, facts)
+        system = _loaded(Path(request.target))
+    except InputRefused as refusal:
+        raise InputRefused([*problems, *refusal.problems]) from None
     return Job(system.name, system, {}, facts)
 
 

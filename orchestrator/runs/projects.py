@@ -114,13 +114,18 @@ def write_template(folder: Path, template: str = "shed") -> Path:
     InputRefused
         There is no such template, there is such a file, or it cannot be written.
     """
+    file = folder / f"{template}.toml"
+    problems = []
     if template not in TEMPLATES:
         remedy = nearest(template, TEMPLATES)
-        raise InputRefused([Problem(f"template {template}", "there is none", remedy)])
-    file = folder / f"{template}.toml"
+        problems.append(Problem(f"template {template}", "there is none", remedy))
+    elif file.exists():
+        problems.append(Problem(str(file), "is there already, and stays", "name a new folder"))
+    if folder.exists() and not folder.is_dir():
+        problems.append(Problem(str(folder), "is a file", "name a folder"))
+    if problems:
+        raise InputRefused(problems)
     text = TEMPLATES[template].read_text(encoding="utf-8")
-    if file.exists():
-        raise InputRefused([Problem(str(file), "is there already, and stays", "name a new folder")])
     with refusing_unwritable(file):
         folder.mkdir(parents=True, exist_ok=True)
         with file.open("x", encoding="utf-8") as new:

@@ -25,7 +25,7 @@ from ..core.system.system import (
 from ..ssp.package import is_ssp
 from ..tables import Table
 from .building import Note, silent
-from .export import export_ssp, export_system
+from .export import export_ssp, export_system, is_ssp_name, refuse_place
 from .inspection import Overview, describe_system
 from .job import Job, plan_problems, prepare
 from .request import Request, plain
@@ -547,11 +547,9 @@ class System:
         """
         self.refuse_empty()
         path = Path(place)
-        if path.suffix.lower() == ".ssp":
+        if is_ssp_name(path):
             return export_ssp(self.job, path, ssp)
-        if ssp is not None:
-            remedy = "name a file that ends in .ssp"
-            raise InputRefused([Problem(str(place), "is to be an SSP, and is a folder", remedy)])
+        refuse_place(path, ssp)
         return export_system(self.spec, path, self.job.sources)
 
     def __repr__(self) -> str:

@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,8 @@ import numpy as np
 from rockshed.components.catalogue import component
 
 from ...campaigns.campaign import Campaign, campaign_of
-from ...core.errors import InputRefused, Problem
+from ...core.errors import InputRefused, Problem, all_causes
+from ...input_files.csv_table import read_csv
 from ...input_files.form import first
 from ...runs.executors import number_of_workers
 from ...runs.first_compilation import tell_first_compilation
@@ -111,12 +113,14 @@ def calibrate_rockfall(
     ['soil.roughness.mean']
     """
     show = progress or no_progress
-    _check_numbers({"trials": (trials, 50), "steps": (steps, FEWEST_STEPS)}, scatter)
-    slope = prepare(site, trials)
-    campaign = _bare(campaign_of(slope))
-    observed = read_endpoints(Path(endpoints), campaign, scatter)
-    parameters = given_parameters(fit, slope) if fit else default_parameters(slope)
-    other = _other(forecast, slope, trials)
+    other_look = None if forecast is None else partial(prepare, forecast, trials)
+    with all_causes(partial(prepare, site, trials), partial(read_csv, Path(endpoints)), other_look):
+        _check_numbers({"trials": (trials, 50), "steps": (steps, FEWEST_STEPS)}, scatter)
+        slope = prepare(site, trials)
+        campaign = _bare(campaign_of(slope))
+        observed = read_endpoints(Path(endpoints), campaign, scatter)
+        parameters = given_parameters(fit, slope) if fit else default_parameters(slope)
+        other = _other(forecast, slope, trials)
     with ExitStack() as opened:
         place = opened.enter_context(BackAnalysisResult.opened(folder)) if folder else None
         tell_first_compilation([component("SlopeRockfall")])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import AnalysisFailed, InputRefused, Problem
+from ...core.errors import AnalysisFailed, InputRefused, Problem, all_causes
 from ...core.input_text import shown
 from ...core.results.metric import identifier
 from ...core.system.names import nearest
@@ -26,7 +26,17 @@ from ...runs.system import System
 from ..asked import remembering
 from ..frame import StageProgress, counter, no_progress
 from .arguments import StudyArguments, varied
-from .designs import GRID, MOST_POINTS, RANDOM, SAMPLED, SOBOL, DesignPoint, design_problems, points
+from .designs import (
+    DESIGNS,
+    GRID,
+    MOST_POINTS,
+    RANDOM,
+    SAMPLED,
+    SOBOL,
+    DesignPoint,
+    design_problems,
+    points,
+)
 from .factors import Factor, Varied, in_si
 from .headline import headline_metrics
 from .records import (
@@ -218,7 +228,8 @@ def carry_out_study(
     InputRefused, StudyFailed, ClusterFailed
         As :func:`study` does.
     """
-    plan = _plan(asked, note)
+    with all_causes(lambda: _refuse_design(asked)):
+        plan = _plan(asked, note)
     shares = _shares(asked.percentiles, plan)
     orders = orders_of([task for *_, task in plan.entries], note)
     opening = _Opening(asked.workers, asked.scheduler, asked.certificates)
@@ -293,6 +304,12 @@ def _plan(asked: StudyArguments, note: Note) -> _Plan:
     origin = {kind: job.facts[kind], "draw": asked.draw, "samples": asked.samples, "seeds": seeds}
     given = {"values": dict(request.values), "options": dict(request.options)}
     return _Plan(job.name, chosen, factors, entries, {**origin, **given})
+
+
+def _refuse_design(asked: StudyArguments) -> None:
+    """Refuse a design that is unknown, whatever the system is."""
+    if asked.design is not None and asked.design not in DESIGNS:
+        raise InputRefused(design_problems(asked.design, [], asked.samples))
 
 
 def _argument_problems(asked: StudyArguments) -> Iterator[Problem]:

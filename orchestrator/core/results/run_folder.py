@@ -124,10 +124,7 @@ class RunFolder:
         self._states: _Stream | None = None
 
     def __enter__(self) -> "RunFolder":
-        if self.folder.exists() and not _is_run_or_empty(self.folder):
-            raise self._refusal(
-                "is no folder of a run, and would be overwritten", "choose another folder"
-            )
+        refuse_other_content(self.folder)
         if os.path.ismount(self.folder):
             raise self._refusal("cannot be replaced as a whole", "choose a folder in it")
         try:
@@ -590,6 +587,24 @@ def running_folder(folder: Path) -> Path:
     place = Path(os.path.realpath(folder))
     known = [path for path in _numbered(place).values() if is_marked(path)]
     return known[-1] if known else _beside(place, f"{place.name}.running")
+
+
+def refuse_other_content(folder: Path) -> None:
+    """Refuse a folder for the results of a run that holds something else.
+
+    Parameters
+    ----------
+    folder : Path
+        Of results, or where nothing is yet.
+
+    Raises
+    ------
+    InputRefused
+        It is a file, or a folder of something else than a run.
+    """
+    if folder.exists() and not _is_run_or_empty(folder):
+        what = "is no folder of a run, and would be overwritten"
+        raise InputRefused([Problem(str(folder), what, "choose another folder")])
 
 
 def _is_run_or_empty(folder: Path) -> bool:

@@ -35,6 +35,12 @@ _WRITERS: Mapping[str, tuple[str, Writer]] = {
 FORMATS = tuple(_WRITERS)
 
 
+def refuse_format(form: str) -> None:
+    """Refuse a format that is none of :data:`FORMATS`."""
+    if form not in _WRITERS:
+        raise InputRefused([Problem("format", f"{form!r} is unknown", nearest(form, FORMATS))])
+
+
 def export_run(run: StoredRun, form: str, output: Path | None = None) -> list[Path]:
     """Write a run in a format of other programs.
 
@@ -60,8 +66,7 @@ def export_run(run: StoredRun, form: str, output: Path | None = None) -> list[Pa
         The format is unknown, a library for it is missing, the run has nothing to write, something
         is there already, or it cannot be written.
     """
-    if form not in _WRITERS:
-        raise InputRefused([Problem("format", f"{form!r} is unknown", nearest(form, FORMATS))])
+    refuse_format(form)
     if not run.time.size:
         reason = "the run was ended before its first row was written"
         raise InputRefused([Problem(str(run.folder), reason, "run it again")])
