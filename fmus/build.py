@@ -17,6 +17,7 @@ from rockshed.components.catalogue import component as catalogued
 from rockshed.components.common.component import Component
 from rockshed.components.common.kept import folder_problem, make_private
 from rockshed.files import write_file
+from rockshed.platforms import LONGEST_HEAD, platforms_of, this_machine
 
 from .description.documentation import documentation
 from .description.fmi2 import model_description
@@ -52,6 +53,7 @@ __all__ = [
     "fmu_folder",
     "folder_name",
     "native_is_fresh",
+    "runs_with_python_here",
     "store",
 ]
 
@@ -367,5 +369,15 @@ def _import_problems(sources: Files) -> list[str]:
 
 
 def _binaries(component: Component) -> Iterator[tuple[str, bytes]]:
-    for path in sorted((_PYTHONFMU / "resources" / "binaries").glob("*/*")):
+    for path in _pythonfmu_binaries():
         yield f"binaries/{path.parent.name}/{component.name}{path.suffix}", path.read_bytes()
+
+
+def _pythonfmu_binaries() -> list[Path]:
+    return sorted((_PYTHONFMU / "resources" / "binaries").glob("*/*"))
+
+
+def runs_with_python_here() -> bool:
+    """Tell whether FMUs with Python have a binary for this machine: pythonfmu brings them."""
+    heads = (path.read_bytes()[:LONGEST_HEAD] for path in _pythonfmu_binaries())
+    return any(this_machine().in_fmi3 in platforms_of(head) for head in heads)

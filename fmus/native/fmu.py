@@ -10,7 +10,6 @@ description of FMI 2.0 differs from that of the FMU with Python in GUID, tool an
 import errno
 import json
 import os
-import platform as machine
 import shlex
 import shutil
 import subprocess
@@ -28,6 +27,8 @@ from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
 from rockshed.components.common.component import Component
 from rockshed.components.common.kept import keep, kept
 from rockshed.components.common.ports import Sizes
+from rockshed.platforms import PLATFORMS as KNOWN
+from rockshed.platforms import Platform, this_machine
 from rockshed.processes import with_parent
 from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
@@ -71,15 +72,13 @@ CPU = Baseline(
 
 
 @dataclass(frozen=True)
-class Platform:
-    """A platform.
+class Toolchain:
+    """Settings with which code for a platform is compiled.
 
     Parameters
     ----------
-    in_fmi3 : str
-        Its name in FMI 3.0.
-    suffix : str
-        Suffix of its libraries.
+    platform : Platform
+        The platform.
     triple : str
         Its name for LLVM.
     processor : str
@@ -90,8 +89,7 @@ class Platform:
         Options of the linker.
     """
 
-    in_fmi3: str
-    suffix: str
+    platform: Platform
     triple: str
     processor: str
     zig: tuple[str, str]
@@ -99,60 +97,44 @@ class Platform:
 
 
 _OF_LINUX = ("-Wl,-z,defs", "-Wl,-Bsymbolic", "-lm", "-pthread")
-PLATFORMS: Mapping[str, Platform] = {
-    "linux64": Platform(
-        "x86_64-linux",
-        ".so",
+_TOOLCHAINS = (
+    Toolchain(
+        KNOWN["x86_64-linux"],
         "x86_64-unknown-linux-gnu",
         CPU.name,
         ("x86_64-linux-gnu.2.17", "x86_64"),
         _OF_LINUX,
     ),
-    "win64": Platform(
-        "x86_64-windows",
-        ".dll",
+    Toolchain(
+        KNOWN["x86_64-windows"],
         "x86_64-w64-windows-gnu",
         CPU.name,
         ("x86_64-windows-gnu", "x86_64"),
     ),
-    "darwin64": Platform(
-        "x86_64-darwin",
-        ".dylib",
+    Toolchain(
+        KNOWN["x86_64-darwin"],
         "x86_64-apple-macosx11.0",
         CPU.name,
         ("x86_64-macos.11.0", "x86_64"),
     ),
-    "aarch64-linux": Platform(
-        "aarch64-linux",
-        ".so",
+    Toolchain(
+        KNOWN["aarch64-linux"],
         "aarch64-unknown-linux-gnu",
         "generic",  # ARMv8-A, vectors of two numbers
         ("aarch64-linux-gnu.2.17", "generic"),
         _OF_LINUX,
     ),
-    "aarch64-darwin": Platform(
-        "aarch64-darwin",
-        ".dylib",
+    Toolchain(
+        KNOWN["aarch64-darwin"],
         "arm64-apple-macosx11.0",
         "apple-m1",  # the oldest one with macOS
         ("aarch64-macos.11.0", "apple_m1"),
     ),
-}
-"""All platforms that there can be native FMUs for, by their names in FMI 2.0.
-
-FMI 2.0.4 has names of its own for x86-64, and takes those of FMI 3.0 for other processors.
-"""
+)
+PLATFORMS: Mapping[str, Toolchain] = {each.platform.in_fmi2: each for each in _TOOLCHAINS}
+"""All platforms that there can be native FMUs for, by their names in FMI 2.0."""
 ALL_PLATFORMS = "all"
 """Stands for all platforms."""
-_OWN = {
-    ("Linux", "x86_64"): "linux64",
-    ("Windows", "x86_64"): "win64",
-    ("Darwin", "x86_64"): "darwin64",
-    ("Linux", "aarch64"): "aarch64-linux",
-    ("Darwin", "aarch64"): "aarch64-darwin",
-}
-_SAME_MACHINE = {"amd64": "x86_64", "arm64": "aarch64"}
-
 _OPTIONS = (
     "-std=gnu11",
     "-O3",
@@ -167,8 +149,8 @@ _PYTHON_REMAINS = 'FMUs with Python inside, runtime="python", need no compiler'
 
 def _platform_here() -> str | None:
     """Return the platform of this machine; None where there are no native FMUs for it."""
-    processor = machine.machine().lower()
-    return _OWN.get((machine.system(), _SAME_MACHINE.get(processor, processor)))
+    name = this_machine().in_fmi2
+    return name if name in PLATFORMS else None
 
 
 def own_platform() -> str:
@@ -183,8 +165,8 @@ def own_platform() -> str:
     if name is None:
         raise BuildError(
             "native FMUs are made for x86-64 processors under Linux, Windows and macOS, and for "
-            f"64-bit ARM under Linux and macOS; this is {machine.machine()} under "
-            f"{machine.system()}. {_PYTHON_REMAINS}"
+            f"64-bit ARM under Linux and macOS; this is {this_machine().in_fmi3}. Remedy: "
+            "in_process=True, which needs no FMUs"
         )
     return name
 
@@ -288,8 +270,7 @@ def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:
 
 def _library(component: Component, platform: str, fmi: Fmi) -> str:
     """Return the path of the library for a platform inside the FMU."""
-    folder = platform if fmi is Fmi.TWO else PLATFORMS[platform].in_fmi3
-    return f"binaries/{folder}/{component.name}{PLATFORMS[platform].suffix}"
+    return PLATFORMS[platform].platform.library(component.name, fmi)
 
 
 def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
@@ -523,7 +504,7 @@ def compiler(platform: str) -> list[str]:
     BuildError
         There is none.
     """
-    is_own = machine.system() == "Linux" and _platform_here() == platform
+    is_own = sys.platform == "linux" and _platform_here() == platform
     baseline = _SHIM_FOR.get(platform, "")
     if is_own and (chosen := os.environ.get("CC")):
         return [*shlex.split(chosen), baseline]

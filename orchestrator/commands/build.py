@@ -26,8 +26,8 @@ _Runtime = Annotated[
     str | None,
     typer.Option(
         metavar="python|native|both",
-        help="FMUs with Python inside, which every processor runs, or native ones, which need no "
-        "Python. By default python, with --fmi 3 native.",
+        help="FMUs with Python inside, for x86-64 under Linux and Windows, or native ones, which "
+        "need no Python. By default python, with --fmi 3 native.",
     ),
 ]
 _Fmi = Annotated[

@@ -12,6 +12,7 @@ from rockshed.fmus.places import Fmi, Runtime, fmu_file, folder_name, native_is_
 from ..cases.registry import Case
 from ..core.errors import InputRefused, Problem
 from ..core.system.names import nearest
+from ..platforms import this_machine
 from .request import AUTO
 from .subsystem import component_of, is_whole, whole_sizes
 
@@ -177,7 +178,8 @@ def case_fmus(
     note : callable
         Called with a line for each FMU that is built.
     wanted : str
-        A runtime, or ``auto``: native if all of these FMUs are there and up to date, else Python.
+        A runtime, or ``auto``: native if all of these FMUs are there and up to date, or if those
+        with Python have no binary for this machine; else Python.
 
     Returns
     -------
@@ -254,6 +256,11 @@ def _best_runtime(
 ) -> tuple[Runtime, str]:
     if not stale:
         return Runtime.NATIVE, "they are up to date"
+    from rockshed.fmus.build import runs_with_python_here  # with what builds: half a second
+
+    if not runs_with_python_here():
+        why = f"those with Python inside have no binary for {this_machine().in_fmi3}"
+        return Runtime.NATIVE, why
     there = [
         name
         for name in stale
@@ -400,8 +407,8 @@ def build_fmu(
         ``rockshed build`` do, so that none takes the place of another kind; by default into the
         folder of built FMUs.
     runtime : str, optional
-        ``python``: with Python inside, which every processor runs; ``native``: needs no Python.
-        By default Python, with FMI 3 native.
+        ``python``: with Python inside, for x86-64 under Linux and Windows; ``native``: needs no
+        Python. By default Python, with FMI 3 native.
     platforms : sequence of str
         Of native FMUs, ``linux64``, ``win64``, ``darwin64``, ``aarch64-linux``,
         ``aarch64-darwin``, or ``all``; by default this machine's.
@@ -461,7 +468,7 @@ def _export_problems(export: Export) -> list[Problem]:
         choice = f"choose one of {', '.join(Runtime)}, {BOTH}"
         problems.append(Problem("runtime", f"{runtime!r} is unknown", choice))
     elif export.platforms and runtime == Runtime.PYTHON:
-        reason = "is for native FMUs; those with Python inside run everywhere"
+        reason = "is for native FMUs; those with Python inside always are for linux64 and win64"
         problems.append(Problem("platforms", reason, 'add runtime="native"'))
     if export.fmi not in list(Fmi):
         reason = "there is no such version of FMI here"

@@ -28,6 +28,7 @@ from rockshed.fmus.build import (
 )
 from rockshed.fmus.native import fmu as native_fmu
 from rockshed.fmus.native.fmu import CPU, compiler, model_header, native_files
+from rockshed.platforms import Platform
 
 from .host import Host
 
@@ -410,8 +411,9 @@ def test_other_platforms_need_zig(monkeypatch):
 
 
 def test_a_processor_of_another_kind_is_refused(monkeypatch):
-    monkeypatch.setattr(native_fmu.machine, "machine", lambda: "riscv64")
-    with pytest.raises(BuildError, match=r"made for x86-64 processors.*this is riscv64"):
+    riscv = Platform("riscv64-linux", "riscv64-linux")
+    monkeypatch.setattr(native_fmu, "this_machine", lambda: riscv)
+    with pytest.raises(BuildError, match=r"made for x86-64 processors.*this is riscv64-linux"):
         native_files(component("FallingRock"), {})
 
 

@@ -5,9 +5,8 @@ import stat
 import zipfile
 from pathlib import PurePosixPath
 
-import fmpy
-
 from ...core.fmu.archive import MOST_MEMBERS, MOST_UNPACKED
+from ...platforms import NoBinaryError, this_machine
 from ..subject.subject import Subject
 from ..subject.variables import listed
 from ..verdicts import Seen, failed, passed, warned
@@ -77,16 +76,18 @@ def layout(subject: Subject) -> Seen:
         listed_names = [member.filename for member in archive.infolist()]
     if slashed := [name for name in listed_names if "\\" in name]:
         return failed(f"{listed(slashed)} has backslashes", "pack it with slashes")
-    if not subject.library.is_file():
+    try:
         place = subject.library.parent.name
-        found = sorted({n.split("/")[1] for n in listed_names if n.startswith("binaries/")} - {""})
-        return failed(
-            f"binaries/{place}/{subject.library.name} is not in it; it has binaries for "
-            f"{', '.join(found) or 'no platform'}",
-            f"export it for {fmpy.platform}, with the file name of modelIdentifier",
-        )
+    except NoBinaryError as error:
+        return failed(f"it {error}", error.remedy)
     known = _KNOWN_3 if subject.version == 3 else _KNOWN_2
     odd = sorted({PurePosixPath(name).parts[0] for name in listed_names} - set(known))
     if odd:
         return warned(f"{listed(odd)} stands where FMI has nothing", "put it into extra/")
+    standard = this_machine().folders(subject.version)[0]
+    if place != standard:
+        return warned(
+            f"its library for {standard} is in binaries/{place}, where not every tool looks for it",
+            f"put it into binaries/{standard}, as FMI has it",
+        )
     return passed("description and library are where FMI has them")

@@ -13,8 +13,6 @@ _ODD_NAMES = ("100% %s %n %d", "ä é 日本", "x" * 4096)
 
 def loads(subject: Subject) -> Seen:
     """Load the library with all of its functions."""
-    if not subject.library.is_file():
-        return failed(f"there is no {subject.library.name}", "export it for this machine")
     try:
         dll = subject.dll
     except CannotLoad as error:

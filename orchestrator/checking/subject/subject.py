@@ -4,11 +4,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import fmpy
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
 from fmpy.model_description import read_model_description
 
+from ...platforms import LONGEST_HEAD, NoBinaryError, binary, this_machine
 from .calls import Called, CannotLoad, NoInstance, Trail
 from .fmi2 import Called2
 from .fmi3 import Called3
@@ -122,7 +122,7 @@ class Subject:
     @property
     def platform3(self) -> str:
         """Name of this machine's platform in FMI 3.0."""
-        return str(fmpy.platform_tuple)
+        return this_machine().in_fmi3
 
     @cached_property
     def steps(self) -> int:
@@ -157,17 +157,34 @@ class Subject:
                 unzipDirectory=str(self.folder),
                 modelIdentifier=self.can.modelIdentifier,
                 instanceName="check",
+                libraryPath=str(self.library),
             )
+        except NoBinaryError as error:
+            raise CannotLoad(f"it {error}") from error
         except Exception as error:  # fmpy raises plain ones
             raise CannotLoad(str(error)) from error
         return made.dll
 
-    @property
+    @cached_property
     def library(self) -> Path:
-        """File of the library for this machine."""
-        place = fmpy.platform_tuple if self.version == 3 else fmpy.platform
-        name = f"{self.can.modelIdentifier}{fmpy.sharedLibraryExtension}"
-        return self.folder / "binaries" / place / name
+        """File of the library for this machine.
+
+        Raises
+        ------
+        NoBinaryError
+            There is none.
+        """
+        files = {
+            path.relative_to(self.folder).as_posix(): path
+            for path in (self.folder / "binaries").rglob("*")
+            if path.is_file()
+        }
+
+        def head(name: str) -> bytes:
+            with files[name].open("rb") as file:
+                return file.read(LONGEST_HEAD)
+
+        return files[binary(self.can.modelIdentifier, self.version, files, head)]
 
     def instantiate(
         self,

@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import IO
 
 from ...files import naming
+from ...platforms import LONGEST_HEAD
 from ..input_text import shown
 
 MOST_UNPACKED = 2 << 30
@@ -146,6 +147,21 @@ class Archive:
             )
             raise ArchiveError(what)
         return b"".join(self._parts(name, info))
+
+    def head(self, name: str) -> bytes:
+        """Return the first bytes of a file in it, :data:`LONGEST_HEAD` at most.
+
+        Parameters
+        ----------
+        name : str
+            Of a file in the archive.
+
+        Raises
+        ------
+        ArchiveError
+            It is damaged.
+        """
+        return next(self._parts(name, self._members[name]), b"")[:LONGEST_HEAD]
 
     def _parts(self, name: str, info: zipfile.ZipInfo) -> Iterator[bytes]:
         """Yield the content of a member in parts; errors of whoever takes them are not its own."""

@@ -13,7 +13,7 @@ import os
 import sys
 import weakref
 import zipfile
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,7 +21,6 @@ from typing import Any
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
-import fmpy
 import numpy as np
 import pythonfmu  # noqa: F401 (FMUs bring parts of it; the first import serves the whole process)
 from fmpy.fmi1 import FMICallException
@@ -44,6 +43,7 @@ from fmpy.model_description import (
     read_model_description,
 )
 
+from ...platforms import NoBinaryError, binary
 from ...temporary import TemporaryFolder
 from ..errors import InputRefused, Problem
 from .annotations import NOTHING, Annotation, read_annotations
@@ -105,11 +105,14 @@ class FmuFile:
     ----------
     origin : dict of str to str
         Path, and hash of the content once it has been read.
+    library : str
+        Path of this machine's library inside it, once the description has been read.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.origin = {"fmu": str(path)}
+        self.library = ""
 
     def model_description(self) -> bytes:
         """Read the modelDescription.xml, and see whether this machine can run the FMU.
@@ -117,7 +120,7 @@ class FmuFile:
         Raises
         ------
         InputRefused
-            No such file, not an FMU, or no binary for this platform.
+            No such file, not an FMU, or no binary for this machine.
         """
         if os.path.isdir(self.path):  # Path.is_dir raises where a name is too long
             raise self._refusal(
@@ -130,13 +133,12 @@ class FmuFile:
         with self._archive(content) as archive:
             archive.check_size()
             xml = archive.read(_DESCRIPTION_FILE, MOST_DESCRIPTION)
-        if xml is None:
-            raise self._refusal(
-                f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again"
-            )
-        if _is_co_simulation(xml):  # else that is the reason
-            is_fmi_3 = _version(xml).startswith("3")
-            self._check_binary(archive.names, fmpy.platform_tuple if is_fmi_3 else fmpy.platform)
+            if xml is None:
+                raise self._refusal(
+                    f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again"
+                )
+            with contextlib.suppress(UnusableError):  # then that is the reason
+                self.library = self._library(_checked_root(xml), archive)
         return xml
 
     @contextlib.contextmanager
@@ -164,18 +166,15 @@ class FmuFile:
         with self._archive() as archive:
             archive.unpack(folder)
 
-    def _check_binary(self, names: Collection[str], platform: str) -> None:
-        platforms = sorted(
-            {
-                name.split("/")[1]
-                for name in names
-                if name.startswith("binaries/") and not name.endswith("/")
-            }
-        )
-        if platform not in platforms:
-            listed = ", ".join(platforms) or "none"
-            what = f"has no binary for this machine ({platform}); it has {listed}"
-            raise self._refusal(what, f"export it for {platform}")
+    def _library(self, root: ElementTree.Element, archive: Archive) -> str:
+        """Return the path of this machine's library inside the FMU."""
+        kind = root.find("CoSimulation")
+        identifier = "" if kind is None else kind.get("modelIdentifier", "")
+        fmi = int(root.get("fmiVersion", "2")[0])
+        try:
+            return binary(identifier, fmi, archive.names, archive.head)
+        except NoBinaryError as error:
+            raise self._refusal(str(error), error.remedy) from error
 
     def _refusal(self, what: str, remedy: str) -> InputRefused:
         return InputRefused([Problem(str(self.path), what, remedy)])
@@ -320,22 +319,6 @@ def _checked_root(xml: bytes) -> ElementTree.Element:
 
 
 _OTHER_KINDS = {"ModelExchange": "model exchange", "ScheduledExecution": "scheduled execution"}
-
-
-def _is_co_simulation(xml: bytes) -> bool:
-    try:
-        _checked_root(xml)
-    except UnusableError:
-        return False
-    return True
-
-
-def _version(xml: bytes) -> str:
-    """Return the version of FMI; empty where the description cannot be read."""
-    try:
-        return ElementTree.fromstring(xml).get("fmiVersion") or ""
-    except UNREADABLE_XML:
-        return ""
 
 
 def _read_leniently(archive: io.BytesIO, cause: Exception) -> ModelDescription:
@@ -564,6 +547,7 @@ class FmuSlave:
                     guid=description.guid,
                     modelIdentifier=description.identifier,
                     unzipDirectory=self._folder.name,
+                    libraryPath=os.path.join(self._folder.name, *file.library.split("/")),
                 )
             self._release = weakref.finalize(self, _release_python, self._fmu.dll)
             self._instantiate(_callbacks(key, description.generation_tool))
