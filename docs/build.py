@@ -57,6 +57,7 @@ CONTENTS = {
         "check",
         "impact-systems",
         "experiments",
+        "wasm",
         "compatibility",
         "fmus",
         "security",

@@ -23,7 +23,8 @@ from .description.documentation import documentation
 from .description.fmi2 import model_description
 from .description.legal import license_files, license_text, needed_by_python
 from .experiments.files import experiment_files
-from .native.fmu import native_files
+from .ls_wasm import PLATFORM as WASM
+from .native.fmu import described_files, native_files
 from .parts import (
     DESCRIPTION,
     BuildError,
@@ -61,6 +62,7 @@ ONLY_NATIVE = (
     "FMUs with Python inside are for FMI 2.0 only, as pythonfmu makes them; for FMI 3.0 there are "
     "native ones"
 )
+ONLY_FMI3 = "a component for WebAssembly is for FMI 3.0, as FMI-LS-WASM has it"
 
 _HERE = Path(__file__).parent
 _PYTHONFMU = Path(pythonfmu.__file__).parent
@@ -200,7 +202,8 @@ def fmu_content(
     runtime : Runtime
         With Python or native.
     platforms : sequence of str
-        Of a native one; by default this machine's.
+        Of a native one; by default this machine's. ``wasm`` is a component for WebAssembly, beside
+        those of other platforms that are named, or alone.
     fmi : Fmi
         Version of FMI.
 
@@ -212,13 +215,31 @@ def fmu_content(
     Raises
     ------
     BuildError
-        A native FMU cannot be compiled, or FMI 3 is asked for with Python.
+        A native FMU cannot be compiled, or FMI 3 is asked for with Python, or WebAssembly with
+        FMI 2.
     """
     if runtime is Runtime.NATIVE:
-        return archive(native_files(component, sizes, platforms, fmi))
+        return archive(_native_files(component, sizes, platforms, fmi))
     if fmi is not Fmi.TWO:
         raise BuildError(f"{component.name}: {ONLY_NATIVE}")
     return archive(fmu_files(component, sizes))
+
+
+def _native_files(
+    component: Component, sizes: Mapping[str, int], platforms: Sequence[str], fmi: Fmi
+) -> Files:
+    """Return the files of a native FMU, with a component for WebAssembly if it is asked for."""
+    if WASM not in platforms:
+        return native_files(component, sizes, platforms, fmi)
+    from .ls_wasm.binary import component_files
+
+    if fmi is not Fmi.THREE:
+        raise BuildError(f"{component.name}: {ONLY_FMI3}")
+    own = component_files(component, sizes)
+    others = [name for name in platforms if name != WASM]
+    if not others:
+        return described_files(component, sizes, fmi) | own
+    return native_files(component, sizes, others, fmi) | own
 
 
 def store(

@@ -55,7 +55,8 @@ _SHIMS = {Fmi.TWO: _HERE / "shim_fmi2.c", Fmi.THREE: _HERE / "shim_fmi3.c"}
 _CONDUCT = _HERE.parent / "python" / "conduct.py"
 _LEAST_FREE = 1 << 20
 """Room (bytes) that a compiler needs at least; some say nothing on a full disk."""
-_KERNELS = (_HERE / "kernels.py", _HERE / "subset.py")
+NATIVE_KERNELS = (_HERE / "kernels.py", _HERE / "subset.py")
+"""Modules that make object code of kernels."""
 
 
 def _bits(*numbers: int) -> int:
@@ -203,8 +204,7 @@ def native_files(
     if ALL_PLATFORMS in platforms:
         platforms = tuple(PLATFORMS)
     compilers = {name: compiler(name) for name in platforms}
-    guid = stamp(component, sizes, fmi)
-    files = _described(component, sizes, guid, fmi)
+    files = described_files(component, sizes, fmi)
     for name, sources in library_sources(component, sizes, platforms, fmi).items():
         path = _library(component, name, fmi)
         files[path] = _linked(
@@ -239,10 +239,30 @@ def library_sources(
     BuildError
         A kernel needs Python.
     """
-    header = model_header(component, sizes, stamp(component, sizes, fmi), CPU)
-    shared = {"model.h": header, **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
+    shared = slave_sources(component, sizes, fmi)
     objects = _objects(component, sizes, platforms)
     return {name: {**shared, "kernels.o": objects[name]} for name in platforms}
+
+
+def slave_sources(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> Files:
+    """Return the slave in C around kernels: the shim and what it includes.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        Sizes to build it with.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to bytes
+        ``model.h``, ``slave.h`` and the shim.
+    """
+    header = model_header(component, sizes, stamp(component, sizes, fmi), CPU)
+    return {"model.h": header, **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
 
 
 def own_binary(component: Component, fmi: Fmi = Fmi.TWO) -> str:
@@ -318,14 +338,30 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
     return f"{{{uuid.UUID(digest(made_from)[:32])}}}"
 
 
-def _described(component: Component, sizes: Sizes, guid: str, fmi: Fmi) -> Files:
-    """Return description, documentation, icon and terminals, for which nothing is compiled."""
+def described_files(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> Files:
+    """Return description, documentation, icon and terminals, for which nothing is compiled.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to bytes
+        Files by their path in the FMU.
+    """
     from ..description import fmi2 as description
     from ..description import fmi3 as description3
     from ..experiments.files import experiment_files
 
     files = documentation(component, sizes, experiment_files(component, sizes, fmi))
     files |= license_files()
+    guid = stamp(component, sizes, fmi)
     if fmi is Fmi.THREE:
         own = {DESCRIPTION: description3.model_description(component, sizes, guid)}
         return files | own | description3.terminals_and_icon(component)
@@ -343,7 +379,9 @@ def _versions(*packages: str) -> list[str]:
 
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Return the object code of the kernels by platform; it is kept with the compiled kernels."""
-    made_from = component_sources(component) | {path.name: path.read_bytes() for path in _KERNELS}
+    made_from = component_sources(component) | {
+        path.name: path.read_bytes() for path in NATIVE_KERNELS
+    }
     versions = _versions("numba", "llvmlite")
     made_from["for"] = repr([_targets(PLATFORMS), dict(sizes), *versions]).encode()
     stamp = digest(made_from)[:24]

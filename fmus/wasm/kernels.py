@@ -1,9 +1,9 @@
 """Kernels as object code for WebAssembly, in a process of its own.
 
 ``python -m rockshed.fmus.wasm.kernels < order.json`` writes ``VARIANT.o`` into the working
-directory for every :data:`VARIANTS`, and prints the problems as a JSON list of texts. The code that
-numba makes is the one of native FMUs; vectors are cut to what WebAssembly has, and fused
-multiply-adds become what :mod:`.fused` writes.
+directory for those of :data:`VARIANTS` that are asked for, and prints the problems as a JSON list
+of texts. The code that numba makes is the one of native FMUs; vectors are cut to what WebAssembly
+has, and fused multiply-adds become what :mod:`.fused` writes.
 """
 
 import json
@@ -38,6 +38,8 @@ from .places import kept_places
 _TRIPLE = "wasm32-unknown-unknown"
 _FUSED = re.compile(r"@llvm\.fma\.v(\d+)f64\(")
 _FUSED_DECLARED = re.compile(r"^declare .*@llvm\.fma\.v\d+f64\(.*$", re.MULTILINE)
+_THREADS = re.compile(r"@pthread_(create|join)\b")
+"""Renamed, as a library that has them for WebAssembly declares them otherwise."""
 _EXACT = "fma"
 """Function of three numbers that the linker takes from its own library."""
 
@@ -87,8 +89,8 @@ def main() -> None:
         llvm.initialize_all_targets()
         llvm.initialize_all_asmprinters()
         code = kept_places(str(module))
-        for name, variant in VARIANTS.items():
-            Path(f"{name}.o").write_bytes(emitted(code, variant, order["tables"]))
+        for name in order["variants"]:
+            Path(f"{name}.o").write_bytes(emitted(code, VARIANTS[name], order["tables"]))
     json.dump(problems, sys.stdout)
 
 
@@ -161,7 +163,7 @@ def emitted(code: str, variant: Variant, tables: Mapping[str, Any]) -> bytes:
 
 
 def _with_fused(code: str, variant: Variant) -> Any:
-    """Return the module with functions of :mod:`.fused` in the place of fused multiply-adds."""
+    """Return the module with functions of :mod:`.fused` and of the runtime in it."""
     widths = sorted({int(width) for width in _FUSED.findall(code)})
     declared = [
         f"declare {kind} @fused_{n}({kind}, {kind}, {kind})"
@@ -169,6 +171,7 @@ def _with_fused(code: str, variant: Variant) -> Any:
         for kind in [f"<{n} x double>"]
     ]
     own = _FUSED.sub(r"@fused_\1(", _FUSED_DECLARED.sub("", code))
+    own = _THREADS.sub(r"@thread_\1", own)
     module = llvm.parse_assembly("\n".join([own, *declared]))
     if widths:
         extra = ir.Module()

@@ -14,7 +14,7 @@ which return the status of the kernel. All results have the bits of native FMUs.
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -27,7 +27,7 @@ from rockshed.processes import with_parent
 from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
 
-from ..native.fmu import CPU, compiled_apart
+from ..native.fmu import CPU, NATIVE_KERNELS, compiled_apart
 from ..parts import BuildError, component_sources, digest
 
 VARIANTS = ("plain", "simd", "relaxed")
@@ -84,19 +84,14 @@ def wasm_modules(
         A kernel needs Python, or the linker is missing or fails.
     """
     asked = {name: (table.kernel, table.columns) for name, table in (tables or {}).items()}
-    files = _kept_files(component, asked)
+    files = _kept_files(component, asked, ".wasm")
     found = {name: kept(path) for name, path in files.items()}
     sound = {name: content for name, content in found.items() if content is not None}
     if sound.keys() == set(VARIANTS):
         return sound
-    _refuse_without_linker()
+    refuse_without_linker()
     with TemporaryFolder() as work:
-        order = {"folder": str(component.folder), "tables": asked}
-        problems = compiled_apart(f"{__package__}.kernels", component, order, work)
-        if problems:
-            raise BuildError(
-                f"{component.name}: its kernels cannot become WebAssembly: {'; '.join(problems)}"
-            )
+        _compile(component, asked, VARIANTS, work)
         made = {name: linked(component.name, name, tuple(asked), work) for name in VARIANTS}
     for name, path in files.items():
         with suppress(OSError):  # then it is compiled again next time
@@ -104,21 +99,72 @@ def wasm_modules(
     return made
 
 
-def _kept_files(component: Component, asked: Mapping[str, tuple[str, int]]) -> dict[str, Path]:
+def kernel_object(component: Component, variant: str) -> bytes:
+    """Return the kernels of a component as object code, for what is linked elsewhere.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    variant : str
+        One of :data:`VARIANTS`.
+
+    Returns
+    -------
+    bytes
+        An object file with the entries ``rockshed_initialise``, ``rockshed_evaluate`` and
+        ``rockshed_step``, for buffers of any size.
+
+    Raises
+    ------
+    BuildError
+        A kernel needs Python.
+    """
+    file = _kept_files(component, {}, ".o").get(variant)
+    if file and (found := kept(file)) is not None:
+        return found
+    with TemporaryFolder() as work:
+        _compile(component, {}, (variant,), work)
+        made = (work / f"{variant}.o").read_bytes()
+    if file:
+        with suppress(OSError):  # then it is compiled again next time
+            keep(file, made)
+    return made
+
+
+def _compile(
+    component: Component,
+    asked: Mapping[str, tuple[str, int]],
+    variants: Sequence[str],
+    work: Path,
+) -> None:
+    """Write ``VARIANT.o`` into a folder, or raise a BuildError with everything that is wrong."""
+    order = {"folder": str(component.folder), "tables": asked, "variants": variants}
+    problems = compiled_apart(f"{__package__}.kernels", component, order, work)
+    if problems:
+        raise BuildError(
+            f"{component.name}: its kernels cannot become WebAssembly: {'; '.join(problems)}"
+        )
+
+
+def _kept_files(
+    component: Component, asked: Mapping[str, tuple[str, int]], suffix: str
+) -> dict[str, Path]:
     folder = cache_directory()
     if folder is None:
         return {}
-    ours = (*_HERE.glob("*.py"), _RUNTIME, *(_HERE.parent / "native").glob("*.py"))
+    ours = (*_HERE.glob("*.py"), _RUNTIME, *NATIVE_KERNELS)
     made_from = component_sources(component) | {
         f"{path.parent.name}/{path.name}": path.read_bytes() for path in ours
     }
     versions = [version_of(package) for package in ("numba", "llvmlite", "ziglang")]
     made_from["for"] = repr([CPU.name, asked, versions]).encode()
     stamp = digest(made_from)[:24]
-    return {name: folder / f"{component.name}-{name}-{stamp}.wasm" for name in VARIANTS}
+    return {name: folder / f"{component.name}-{name}-{stamp}{suffix}" for name in VARIANTS}
 
 
-def _refuse_without_linker() -> None:
+def refuse_without_linker() -> None:
+    """Raise a BuildError if zig, which links WebAssembly, is not there."""
     if not find_spec("ziglang"):
         raise BuildError(
             "WebAssembly is linked by zig, the Python package ziglang, which is not there. Remedy: "

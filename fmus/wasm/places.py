@@ -14,7 +14,8 @@ _POINTER = re.compile(r"\bptr\b")
 _RESERVED = re.compile(r"= alloca (?P<type>[\[{p])")
 _REACHED = re.compile(r"getelementptr (?P<flags>(?:inbounds |nuw |nusw )*)(?P<type>[\[{p])")
 _LOADED = re.compile(r"^  (?P<to>%\S+) = load (?P<type>\{)")
-_STORED = re.compile(r"^  store \{")
+_STORED = re.compile(r"^  store (?P<type>\{)")
+_STORED_TO = re.compile(r" (%[^\s,]+|zeroinitializer), ptr (%[^\s,]+)")
 _TOKEN = re.compile(r"\s*(\{|\}|\[\d+ x|\]|,|ptr|double|float|i\d+)")
 
 
@@ -150,8 +151,9 @@ def _kept(line: str, number: int) -> str:
     if found := _LOADED.match(line):
         kind, end = kind_at(line, found.start("type"))
         return _loaded(found["to"], kind, line[end:], number)
-    if _STORED.match(line) and _POINTER.search(kind_at(line, line.index("{"))[0].text):
-        raise LayoutError(f"a structure that is stored whole: {line}")
+    if found := _STORED.match(line):
+        kind, end = kind_at(line, found.start("type"))
+        return _stored(kind, line[end:], number)
     return line
 
 
@@ -177,4 +179,20 @@ def _loaded(to: str, kind: MemoryType, rest: str, number: int) -> str:
         where = ", ".join(map(str, path))
         lines.append(f"  {name} = insertvalue {kind.text} {whole}, {leaf.text} {value}, {where}")
         whole = name
+    return "\n".join(lines)
+
+
+def _stored(kind: MemoryType, rest: str, number: int) -> str:
+    """Return instructions that store a structure member by member."""
+    found = _STORED_TO.match(rest)
+    if not found:
+        raise LayoutError(f"a structure that is stored to no known place: {rest}")
+    whole, to = found.groups()
+    lines = []
+    for place, (path, distance, leaf) in enumerate(kind.leaves()):
+        address, value = f"%place.{number}.{place}", f"%member.{number}.{place}"
+        where = ", ".join(map(str, path))
+        lines.append(f"  {value} = extractvalue {kind.text} {whole}, {where}")
+        lines.append(f"  {address} = getelementptr i8, ptr {to}, i64 {distance}")
+        lines.append(f"  store {leaf.text} {value}, ptr {address}, align {leaf.alignment}")
     return "\n".join(lines)

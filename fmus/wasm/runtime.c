@@ -21,7 +21,7 @@ EXPORT("step") int step(double t, double h, double *w, double *x, Index *k, int 
 }
 
 /* There are no threads: the kernel does all parts of its work itself. */
-int pthread_create(Index *thread, const void *attributes, void *(*work)(void *), void *share) { return 1; }
-int pthread_join(Index thread, void **result) { return 0; }
+int thread_create(Index *thread, const void *attributes, void *(*work)(void *), void *share) { return 1; }
+int thread_join(Index thread, void **result) { return 0; }
 
 double sqrt(double number) { return __builtin_sqrt(number); } /* an instruction */

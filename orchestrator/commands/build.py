@@ -37,8 +37,9 @@ _Fmi = Annotated[
 _Platforms = Annotated[
     list[str] | None,
     typer.Option(
-        metavar="linux64|win64|darwin64|aarch64-linux|aarch64-darwin|all",
-        help="Of native FMUs; by default this machine's. May be repeated.",
+        metavar="linux64|win64|darwin64|aarch64-linux|aarch64-darwin|all|wasm",
+        help="Of native FMUs; by default this machine's. May be repeated. wasm, for hosts of "
+        "WebAssembly, is for FMI 3 and needs the extra wasm.",
     ),
 ]
 _Folder = Annotated[

@@ -411,7 +411,8 @@ def build_fmu(
         Python. By default Python, with FMI 3 native.
     platforms : sequence of str
         Of native FMUs, ``linux64``, ``win64``, ``darwin64``, ``aarch64-linux``,
-        ``aarch64-darwin``, or ``all``; by default this machine's.
+        ``aarch64-darwin``, or ``all`` of these; ``wasm``, a component for WebAssembly, with FMI 3;
+        by default this machine's.
     fmi : int
         Version of FMI, 2 or 3; that of 3 is for native FMUs only.
 
@@ -454,10 +455,11 @@ def build_fmu(
 
 
 def _export_problems(export: Export) -> list[Problem]:
-    from rockshed.fmus.build import ONLY_NATIVE
+    from rockshed.fmus.build import ONLY_FMI3, ONLY_NATIVE
+    from rockshed.fmus.ls_wasm import PLATFORM as WASM
     from rockshed.fmus.native.fmu import ALL_PLATFORMS, PLATFORMS
 
-    known = [*PLATFORMS, ALL_PLATFORMS]
+    known = [*PLATFORMS, ALL_PLATFORMS, WASM]
     runtime = export.chosen_runtime
     problems = [
         Problem(f"platforms {name}", "there is no such platform", nearest(name, known))
@@ -470,6 +472,8 @@ def _export_problems(export: Export) -> list[Problem]:
     elif export.platforms and runtime == Runtime.PYTHON:
         reason = "is for native FMUs; those with Python inside always are for linux64 and win64"
         problems.append(Problem("platforms", reason, 'add runtime="native"'))
+    if WASM in export.platforms and export.fmi == Fmi.TWO:
+        problems.append(Problem(f"platforms {WASM}", ONLY_FMI3, "add fmi=3"))
     if export.fmi not in list(Fmi):
         reason = "there is no such version of FMI here"
         problems.append(Problem(f"fmi {export.fmi}", reason, "choose 2 or 3"))
