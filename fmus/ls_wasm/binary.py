@@ -51,7 +51,7 @@ _LICENSES = {
         "lib/libc/wasi/libc-top-half/musl/COPYRIGHT",
     ),
 }
-"""What is linked in, and the texts in the package ziglang that have to go with it."""
+"""Texts in the package ziglang that go with what is linked in."""
 
 
 def component_files(component: Component, sizes: Sizes) -> Files:
@@ -87,7 +87,7 @@ def component_files(component: Component, sizes: Sizes) -> Files:
             (work / name).write_bytes(content)
         compiler = [sys.executable, "-m", "ziglang", "cc", *_COMPILER]
         _run(component, work, [*compiler, "-o", "core.wasm", _SHIM.name, "kernels.o"])
-        embed = [*wrapper, "component", "embed", "fmi3.wit", "--world", WORLD, "core.wasm"]
+        embed = [*wrapper, "component", "embed", "fmi3.wit", "-w", WORLD, "core.wasm"]
         _run(component, work, [*embed, "-o", "embedded.wasm"])
         _run(component, work, [*wrapper, "component", "new", "embedded.wasm", "-o", "whole.wasm"])
         content = (work / "whole.wasm").read_bytes()
