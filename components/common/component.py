@@ -145,7 +145,13 @@ class Component:
 
     def __post_init__(self) -> None:
         for bond in self.bonds:
-            if len({v.causality for v in bond.members(self.layout.variables).values()}) < 2:
+            members = bond.members(self.layout.variables)
+            if lost := sorted(set(bond.named) - set(members)):
+                raise ValueError(
+                    f"{self.name}: bond {bond.name!r} names {', '.join(lost)}: no member, or its "
+                    f"variable is no input or output"
+                )
+            if len({v.causality for v in members.values()}) < 2:
                 raise ValueError(
                     f"{self.name}: bond {bond.name!r} needs motion and force, one of them an "
                     f"input, one an output"

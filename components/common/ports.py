@@ -317,8 +317,13 @@ BOND_MEMBERS = (
     "force.x",
     "force.y",
     "torque",
+    "position",
+    "velocity",
+    "force",
+    "wave",
+    "impedance",
 )
-"""Names of what a power bond may carry, in this order."""
+"""Names of what a power bond may carry, in this order: in the plane, then along a rod."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,8 +332,8 @@ class Bond:
 
     It carries the motion of a body, which one of both computes, and the force on it. Its members
     are the inputs and outputs of the component that are named ``prefix`` + one of
-    :data:`BOND_MEMBERS`, be they scalars or arrays. Two components fit together if their bonds have
-    the same members.
+    :data:`BOND_MEMBERS`, or as ``named`` says, be they scalars or arrays. Two components fit
+    together if their bonds have the same members.
 
     Attributes
     ----------
@@ -343,6 +348,8 @@ class Bond:
         Empty where a component does something sensible without a partner.
     unless : tuple of str
         A parameter and the word of it with which the bond plays no part; empty for none.
+    named : mapping of str to str
+        Variables of those members whose names do not follow from ``prefix``.
     """
 
     name: str
@@ -350,6 +357,7 @@ class Bond:
     prefix: str = ""
     idle: str = ""
     unless: tuple[str, ...] = ()
+    named: Mapping[str, str] = field(default_factory=dict)
 
     def members(self, variables: Sequence[Variable]) -> dict[str, Variable]:
         """Return the variables of the bond by member, in the order of :data:`BOND_MEMBERS`.
@@ -359,12 +367,9 @@ class Bond:
         variables : sequence of Variable
             Variables of the component.
         """
-        named = {v.name: v for v in variables if v.causality is not Causality.PARAMETER}
-        return {
-            member: named[self.prefix + member]
-            for member in BOND_MEMBERS
-            if self.prefix + member in named
-        }
+        ports = {v.name: v for v in variables if v.causality is not Causality.PARAMETER}
+        names = {member: self.named.get(member, self.prefix + member) for member in BOND_MEMBERS}
+        return {member: ports[name] for member, name in names.items() if name in ports}
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..common.component import Component
+from ..common.ports import Bond
 from .declarations import LAYOUT
 from .faults import FAULTS
 
@@ -14,4 +15,12 @@ COMPONENT = Component(
     folder=Path(__file__).parent,
     faults=FAULTS,
     default_step=1e-5,
+    bonds=(
+        Bond(
+            "head",
+            "motion and wave of a rod's head, mean force on it",
+            "head.",
+            named={"force": "force"},
+        ),
+    ),
 )

@@ -6,6 +6,7 @@ It is Mogami's plate with its sand, or Smith's soil at the toe of a rod.
 from pathlib import Path
 
 from ..common.component import Component
+from ..common.ports import Bond
 from ..common.shown import Curve, Panel, Picture
 from .declarations import LAYOUT
 from .faults import FAULTS
@@ -18,6 +19,15 @@ COMPONENT = Component(
     folder=Path(__file__).parent,
     faults=FAULTS,
     default_step=1e-5,
+    bonds=(
+        Bond(
+            "toe",
+            "motion and wave of a rod's toe, mean force on it",
+            "toe.",
+            named={"force": "toe.mean_force"},
+        ),
+        Bond("plate", "motion of the plate, force on it"),
+    ),
     pictures=(
         Picture(
             "piles",

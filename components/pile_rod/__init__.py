@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..common.component import Component
+from ..common.ports import Bond
 from ..common.shown import Curve, Panel, Picture
 from .declarations import LAYOUT, SIZES
 from .faults import FAULTS
@@ -16,6 +17,10 @@ COMPONENT = Component(
     sizes=SIZES,
     faults=FAULTS,
     default_step=1e-5,
+    bonds=(
+        Bond("head", "motion and wave of the head, force on it", "head."),
+        Bond("toe", "motion and wave of the toe, force on it", "toe."),
+    ),
     pictures=(
         Picture(
             "piles",

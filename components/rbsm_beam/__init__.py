@@ -22,7 +22,12 @@ COMPONENT = Component(
     default_step=1e-5,
     bonds=(
         Bond("beam", "motion of the discs, force on them", idle="no force acts on the beam"),
-        Bond("support", "motion of the supports, force on them", "support."),
+        Bond(
+            "support",
+            "motion of the supports, mean force on them",
+            "support.",
+            named={"force.y": "support.mean_force.y"},
+        ),
     ),
     pictures=(
         Picture(

@@ -10,12 +10,13 @@ from typing import Any
 from lxml import etree
 
 from rockshed.components.common.component import Component
-from rockshed.components.common.ports import Variable
+from rockshed.components.common.ports import Bond, Variable
 
 TOOL = "org.rockshed"
 """Name of the tool that the annotations are for."""
 _OF_VARIABLES = ("role", "label", "formerly", "reported")
-_OF_COMPONENTS = ("contents", "pictures", "bonds")
+_OF_COMPONENTS = ("contents", "pictures")
+_OF_BONDS = ("name", "description", "idle", "unless")
 
 
 def of_variable(variable: Variable) -> etree._Element | None:
@@ -37,7 +38,18 @@ def of_component(component: Component) -> etree._Element | None:
     component : Component
         Its declaration.
     """
-    return _filled(etree.Element("Component"), component, _OF_COMPONENTS)
+    element = etree.Element("Component")
+    element.extend(_bond(bond, component) for bond in component.bonds)
+    return _filled(element, component, _OF_COMPONENTS)
+
+
+def _bond(bond: Bond, component: Component) -> etree._Element:
+    """Return the element of a bond, with the variable of each of its members."""
+    element = etree.Element("Bond")
+    _filled(element, bond, _OF_BONDS)
+    for member, variable in bond.members(component.layout.variables).items():
+        etree.SubElement(element, "Member", name=member, variable=variable.name)
+    return element
 
 
 def _filled(element: etree._Element, declared: Any, names: tuple[str, ...]) -> Any:

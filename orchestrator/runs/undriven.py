@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rockshed.components.common.ports import BOND_MEMBERS
-
 from ..core.fmu.description import Description, Port
 from ..core.system.plan import Plan
 from ..core.system.values import written
@@ -59,7 +57,7 @@ def _bonds(component: str, description: Description) -> list[_Bond]:
     """Return the bonds that a component declares, with ``component.port`` of their members."""
     made = []
     for told in description.bonds:
-        members = {told["prefix"] + member for member in BOND_MEMBERS}
+        members = set(told["members"].values())
         sides = (
             frozenset(
                 f"{component}.{_array(port)}"

@@ -56,7 +56,7 @@ class Annotations:
     pictures : tuple of mappings
         Pictures of the outputs as data: name, panels with their curves.
     bonds : tuple of mappings
-        Power bonds: name, beginning of their members' names, what is so while nothing drives them.
+        Power bonds: name, variables of their members, what is so while nothing drives them.
     """
 
     variables: Mapping[str, Annotation] = field(default_factory=dict)
@@ -128,9 +128,10 @@ def _picture(element: Element) -> dict[str, Any]:
 
 
 def _bond(element: Element) -> dict[str, Any]:
-    names = ("name", "description", "prefix", "idle")
+    names = ("name", "description", "idle")
     data: dict[str, Any] = {name: element.get(name, "") for name in names}
-    return {**data, "unless": tuple(element.get("unless", "").split())}
+    members = {m.get("name", ""): m.get("variable", "") for m in element.findall("Member")}
+    return {**data, "members": members, "unless": tuple(element.get("unless", "").split())}
 
 
 def _panel(element: Element) -> dict[str, Any]:

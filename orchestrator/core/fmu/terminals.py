@@ -8,8 +8,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from rockshed.components.common.ports import BOND_MEMBERS
-
 from .description import Description
 
 PLUG, BUS, SEQUENCE = "plug", "bus", "sequence"
@@ -121,19 +119,9 @@ def terminals_of_bonds(description: Description) -> dict[str, Terminal]:
     description : Description
         With our annotations, or without any.
     """
-    causalities = ("input", "output")
-    names = {
-        port.array if port.shape else port.name.partition("[")[0]
-        for port in description.ports.values()
-        if port.causality in causalities
-    }
     return {
         bond["name"]: Terminal(
-            {
-                member: TerminalMember(bond["prefix"] + member)
-                for member in BOND_MEMBERS
-                if bond["prefix"] + member in names
-            }
+            {member: TerminalMember(name) for member, name in bond["members"].items()}
         )
         for bond in description.bonds
     }
