@@ -17,7 +17,8 @@ from ..core.loop.exchange import ExchangeLoop
 from ..core.loop.initialisation import free, initialise, instantiate
 from ..core.run import sources_of
 from ..core.system.planning import make_plan
-from ..core.system.system import SystemSpec, system_from
+from ..core.system.reading import system_from
+from ..core.system.system import SystemSpec
 from ..temporary import TemporaryFolder
 from ..versions import version_of
 from .exchange_peer import INPUTS, STEP

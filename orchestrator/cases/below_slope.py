@@ -30,7 +30,7 @@ from ..campaigns.chosen_rock import (
 from ..campaigns.replay import set_rock_of
 from ..campaigns.roof import CushionOnProfile, bodies_of, receiver_of, strikes_of
 from ..core.errors import InputRefused, Problem
-from ..core.system.system import Value
+from ..core.system.fields import Value
 from ..input_files.places import Places
 from ..sites.rockfall.preparation import COMPONENT, PreparedSlope
 from ..sites.rockfall.preparation import prepare as prepare_slope

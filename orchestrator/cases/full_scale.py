@@ -13,8 +13,10 @@ from typing import Any
 from rockshed.components.catalogue import component
 from rockshed.components.common.units import cm, cm2, cm4, kgf, standard_gravity
 
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, EnergyAlarm, SharedValue
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
+from ..core.system.system import SystemSpec
 from ..references import Known, Reference, References
 from .sand_models import FULL_SCALE_SOIL, SandLayer
 from .sonoda1993 import SAND, differs, impact_bonds, impact_connections, of_the_test, printed_rows

@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 
-from ..core.system.system import ComponentSpec, SystemSpec, Value
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec
+from ..core.system.system import SystemSpec
 from ..sites.shed.foundation import SupportRod
 from ..sites.shed.geometry import ShedLayout
 from .shed_on_piles import SIDES as SIDES

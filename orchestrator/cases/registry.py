@@ -12,8 +12,9 @@ from rockshed.components.catalogue import component
 from rockshed.components.common.units import ms
 
 from ..core.errors import InputRefused, Problem
+from ..core.system.fields import Value
 from ..core.system.names import nearest
-from ..core.system.system import SystemSpec, Value
+from ..core.system.system import SystemSpec
 from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test

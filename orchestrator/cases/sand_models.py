@@ -12,8 +12,8 @@ from rockshed.components.common.units import cm, kgf, standard_gravity
 from rockshed.components.sand_cushion.models import MODELS, SPREAD, SandModel
 
 from ..core.errors import InputRefused, Problem
+from ..core.system.fields import Value
 from ..core.system.names import nearest
-from ..core.system.system import Value
 
 _KGF_PER_CM2 = kgf / cm**2
 

@@ -14,7 +14,9 @@ from rockshed.components.common.ports import Causality
 from rockshed.components.common.units import kN, ms, standard_gravity
 
 from ..core.errors import Problem
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, EnergyAlarm, SharedValue
+from ..core.system.system import SystemSpec
 from ..sites.shed.geometry import WALL_HEIGHT, WALL_THICKNESS, ShedLayout, end_stiffness
 from ..sites.shed.materials import caution
 from ..sites.shed.preparation import Cushioned, PreparedShed, SlopeRock, prepare

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 
 from rockshed.components.common.units import cm2, kgf, standard_gravity
 
-from ..core.system.system import ComponentSpec, Connection, PowerBond, SystemSpec, Value
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, Connection, PowerBond
+from ..core.system.system import SystemSpec
 from . import full_scale
 from .spt import toe_bond, toe_connections
 

@@ -3,7 +3,7 @@
 from rockshed.components.common.component import Instance
 from rockshed.components.common.ports import Causality, Kind, Variable
 
-from ..core.system.system import Value
+from ..core.system.fields import Value
 
 
 def site_parameters(instance: Instance) -> dict[str, Value]:

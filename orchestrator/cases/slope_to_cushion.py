@@ -14,7 +14,9 @@ from pathlib import Path
 from rockshed.components.common.component import Instance
 from rockshed.components.common.units import cm, cm2, kgf
 
-from ..core.system.system import ComponentSpec, SharedValue, SystemSpec, Value
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, SharedValue
+from ..core.system.system import SystemSpec
 from .full_scale import GIRDER_THICKNESS, Impact, full_scale_system, layer
 from .sand_models import SandLayer
 from .slope_parameters import site_parameters

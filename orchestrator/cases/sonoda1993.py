@@ -13,16 +13,10 @@ from pathlib import Path
 
 from rockshed.components.common.units import cm, kgf, mm, standard_gravity
 
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue
 from ..core.system.schedule import Scheme
-from ..core.system.system import (
-    ComponentSpec,
-    Connection,
-    EnergyAlarm,
-    PowerBond,
-    SharedValue,
-    SystemSpec,
-    Value,
-)
+from ..core.system.system import SystemSpec
 from ..references import Known, Reference, References
 from .sand_models import DENSE, LOOSE, SandLayer, Soil
 

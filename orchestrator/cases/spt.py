@@ -9,14 +9,9 @@ from collections.abc import Mapping
 
 from rockshed.components.common.units import cm, cm2, mm
 
-from ..core.system.system import (
-    ComponentSpec,
-    Connection,
-    EnergyAlarm,
-    PowerBond,
-    SystemSpec,
-    Value,
-)
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, Connection, EnergyAlarm, PowerBond
+from ..core.system.system import SystemSpec
 
 NAME = "spt"
 COUPLINGS: Mapping[str, tuple[str, float]] = {

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 
 from rockshed.components.common.units import cm, kgf
 
+from ..core.system.fields import Value
+from ..core.system.parts import ComponentSpec, EnergyAlarm, SharedValue
 from ..core.system.schedule import Scheme
-from ..core.system.system import ComponentSpec, EnergyAlarm, SharedValue, SystemSpec, Value
+from ..core.system.system import SystemSpec
 from ..references import Known, Reference, References
 from .sand_models import SandLayer
 from .sonoda1993 import (

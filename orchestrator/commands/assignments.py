@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import cast
 
 from ..core.errors import Problem
-from ..core.system.system import Value
+from ..core.system.fields import Value
 
 
 def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dict[str, Value]:

@@ -33,7 +33,8 @@ from .run import Session
 from .supervisor import announce
 from .system.plan import Plan
 from .system.planning import make_plan
-from .system.system import SystemSpec, system_from
+from .system.reading import system_from
+from .system.system import SystemSpec
 
 _OF_THE_END = (
     *("error", "ended", "warnings", "wall_time", "cpu_time"),

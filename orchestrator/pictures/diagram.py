@@ -19,7 +19,8 @@ from textwrap import wrap
 from xml.etree import ElementTree
 
 from ..core.system.names import split_name
-from ..core.system.system import Connection, SystemSpec
+from ..core.system.parts import Connection
+from ..core.system.system import SystemSpec
 
 _INK, _GREY, _LINE, _BOX = "#222222", "#666666", "#8a99a8", "#e8eef4"
 _BOND, _BOND_BOX = "#b5540f", "#fbeee2"

@@ -8,7 +8,7 @@ from rockshed.components.common.units import ms, tonne
 from ..core.errors import InputRefused
 from ..core.results.facts import number_of, table_of, tables_of
 from ..core.results.reading import StoredRun
-from ..core.system.system import system_from
+from ..core.system.reading import system_from
 from ..files import write_file
 from ..metrics import comparison, contents
 from ..metrics.caption import models

@@ -19,7 +19,8 @@ from ..core.loop.master import Progress
 from ..core.results.facts import number_of, table_of
 from ..core.results.own_files import add_files, read_data
 from ..core.results.reading import StoredRun
-from ..core.system.system import SystemSpec, system_from
+from ..core.system.reading import system_from
+from ..core.system.system import SystemSpec
 from ..files import write_json
 from ..metrics import names
 from ..metrics.comparison import ComparedRow, rows

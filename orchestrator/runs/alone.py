@@ -11,9 +11,10 @@ from xml.etree import ElementTree
 from ..core.errors import InputRefused, Problem, all_causes
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
+from ..core.system.fields import RESERVED, Value
 from ..core.system.names import nearest, select
+from ..core.system.reading import system_from
 from ..core.system.signals import Signals, signals_of
-from ..core.system.system import RESERVED, Value, system_from
 from .job import Job
 from .signals import SignalSource, read_signals
 from .system import System

@@ -8,7 +8,7 @@ from typing import Any
 from ..cases.registry import Case, case, is_case
 from ..cases.shed import prepared, shed_case
 from ..core.errors import InputRefused, Problem
-from ..core.system.system import Value
+from ..core.system.fields import Value
 from ..input_files.form import read_toml
 from ..sites.shed.preparation import is_field, is_project
 from ..ssp.package import is_ssp

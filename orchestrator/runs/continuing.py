@@ -20,9 +20,10 @@ from ..core.results.reading import StoredRun
 from ..core.results.run_folder import RUN
 from ..core.run import simulate as simulate_spec
 from ..core.run import sources_of
+from ..core.system.fields import Value
+from ..core.system.other_values import with_values
 from ..core.system.plan import Plan
 from ..core.system.planning import make_plan
-from ..core.system.system import Value, with_values
 from ..temporary import TemporaryFolder
 from .building import Note, silent
 from .job import Job

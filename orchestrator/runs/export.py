@@ -11,9 +11,10 @@ from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.fmu.description import Port
 from ..core.fmu.slave import Source
 from ..core.run import sources_of
+from ..core.system.parts import Connection
 from ..core.system.plan import Plan
 from ..core.system.planning import make_plan
-from ..core.system.system import Connection, SystemSpec
+from ..core.system.system import SystemSpec
 from ..temporary import TemporaryFolder
 from .job import Job
 from .target import SYSTEM

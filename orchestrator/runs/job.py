@@ -25,16 +25,11 @@ from ..cases.registry import (
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
+from ..core.system.fields import ONE_VALUE, Value
+from ..core.system.other_values import aliases, with_values
+from ..core.system.reading import load_system, system_from
 from ..core.system.renaming import with_present_names
-from ..core.system.system import (
-    ONE_VALUE,
-    SystemSpec,
-    Value,
-    aliases,
-    load_system,
-    system_from,
-    with_values,
-)
+from ..core.system.system import SystemSpec
 from ..input_files.form import read_toml
 from ..input_files.quantities import doubt, in_si
 from ..metrics.filtering import LOAD_CELL_ROWS

@@ -9,8 +9,8 @@ from rockshed.components.common.units import UNITS
 from ..core.errors import InputRefused
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
+from ..core.system.fields import Value
 from ..core.system.names import split_name
-from ..core.system.system import Value
 from ..core.system.values import finite_number
 from ..input_files.fields import ANY, fields, unit_of
 from ..input_files.quantities import in_si

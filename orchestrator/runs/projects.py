@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.system.fields import Value
 from ..core.system.names import nearest
-from ..core.system.system import Value
 from .request import AUTO, Request, plain
 from .system import System
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.system.system import Value
+from ..core.system.fields import Value
 from ..ssp.package import is_ssp
 
 AUTO = "auto"

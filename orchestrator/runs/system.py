@@ -13,15 +13,12 @@ from ..cases.registry import case as case_of
 from ..cases.registry import is_case
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
+from ..core.system.fields import Value
 from ..core.system.names import split_name
-from ..core.system.system import (
-    ComponentSpec,
-    PowerBond,
-    SystemSpec,
-    Value,
-    system_from,
-    with_values,
-)
+from ..core.system.other_values import with_values
+from ..core.system.parts import ComponentSpec, PowerBond
+from ..core.system.reading import system_from
+from ..core.system.system import SystemSpec
 from ..ssp.package import is_ssp
 from ..tables import Table
 from .building import Note, silent

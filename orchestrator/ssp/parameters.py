@@ -8,7 +8,7 @@ from lxml import etree
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import UnitDefinition
-from ..core.system.system import Value
+from ..core.system.fields import Value
 from .conversion import UNCHANGED, Way
 from .documents import SSC, SSD, SSM, SSV, read_document
 from .package import OutsideError, Package

@@ -12,8 +12,10 @@ from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
 from ..core.fmu.slave import BINARY, BOOLEAN, CLOCK, INTEGER, REAL, STRING
+from ..core.system.fields import RESERVED, Value
 from ..core.system.names import expand, nearest, split_name
-from ..core.system.system import RESERVED, SystemSpec, Value, system_from
+from ..core.system.reading import system_from
+from ..core.system.system import SystemSpec
 from ..core.system.values import written
 from .conversion import UNCHANGED, between
 from .documents import SSD, parsed, read_document

@@ -13,8 +13,9 @@ from ..core.errors import InputRefused, Problem, refusing_unwritable
 from ..core.fmu.description import Description, Port, UnitDefinition
 from ..core.fmu.slave import BOOLEAN, INTEGER, REAL, STRING
 from ..core.fmu.types import TYPES, TYPES_2
+from ..core.system.parts import Connection
 from ..core.system.plan import End, Plan
-from ..core.system.system import Connection, SystemSpec
+from ..core.system.system import SystemSpec
 from ..files import whole_file
 from ..versions import version_of
 from .documents import SSC, SSD, SSV, VERSIONS, as_bytes, schema_problems

@@ -251,7 +251,7 @@ def wired(
     mocks: Mapping[str, Mock], connections: list[str], **settings: Any
 ) -> tuple[Any, Mapping[str, Mock]]:
     """A system of mocks and its sources."""
-    from rockshed.core.system.system import system_from
+    from rockshed.core.system.reading import system_from
 
     specs = settings.pop("components", {})
     data = {

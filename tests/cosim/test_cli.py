@@ -18,7 +18,7 @@ from rockshed.commands.app import COMMANDS, app
 from rockshed.commands.screen import spoken
 from rockshed.core.errors import InputRefused, Problem
 from rockshed.core.results.reading import read_run
-from rockshed.core.system.system import load_system
+from rockshed.core.system.reading import load_system
 
 EXAMPLES = Path(__file__).parents[2] / "orchestrator" / "examples"
 PICTURES = {

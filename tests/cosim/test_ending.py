@@ -18,7 +18,7 @@ SCRIPT = """
 import sys
 from pathlib import Path
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from tests.cosim.mocks import called_back
 
 fmu, folder, way = sys.argv[1:]

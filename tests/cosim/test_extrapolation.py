@@ -13,8 +13,8 @@ from rockshed.core import continuing
 from rockshed.core import run as core
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.system.planning import make_plan
+from rockshed.core.system.reading import system_from
 from rockshed.core.system.schedule import make_schedule
-from rockshed.core.system.system import system_from
 from rockshed.runs.job import Job
 from rockshed.runs.simulation import simulate
 from rockshed.runs.system import System

@@ -16,7 +16,7 @@ from rockshed.commands.app import app
 from rockshed.commands.screen import Screen
 from rockshed.core.errors import InputRefused
 from rockshed.core.form_faults import sentence
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.papers.reproduction import PAPERS
 from rockshed.pictures.style import literal
 from rockshed.sites.rockfall.preparation import prepare
@@ -193,7 +193,7 @@ def test_thousands_are_not_taken_for_decimals(site):
 def test_a_byte_order_mark_is_no_part_of_a_file(rockshed, tmp_path, name):
     content = (EXAMPLES / name).read_bytes()
     (tmp_path / name).write_bytes(b"\xef\xbb\xbf" + content)
-    from rockshed.core.system.system import load_system
+    from rockshed.core.system.reading import load_system
     from rockshed.sites.pile.preparation import prepare as prepare_pile
 
     {"slope.toml": prepare, "pile.toml": prepare_pile, "rigid_floor.toml": load_system}[name](

@@ -6,7 +6,7 @@ import pytest
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.fmu.fmu_slave import FmuFile
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from tests.cosim.fmi3_fmus import SIMPLE, XML, library, pack
 from tests.cosim.mocks import Mock, called_back, inp, out
 

@@ -15,7 +15,7 @@ from rockshed.core.fmu.fmu_slave import FmuFile, read_description
 from rockshed.core.fmu.slave import BOOLEAN, DISCARD, ERROR, INTEGER, OK
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from tests.cosim.mocks import Mock, called_back, inp, mass, out
 
 RING = [

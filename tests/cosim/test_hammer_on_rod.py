@@ -6,7 +6,7 @@ import pytest
 from rockshed.components.pile_rod.st_venant import StVenant
 from rockshed.core.errors import InputRefused
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.fmus.build import build_if_needed
 
 SEGMENTS, LENGTH = 256, 10.24

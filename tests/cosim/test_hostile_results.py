@@ -26,7 +26,7 @@ from rockshed.core.fmu.fmu_slave import FmuFile
 from rockshed.core.loop.journal import FILE, LEGEND, last_entry
 from rockshed.core.results.own_files import refuse_foreign
 from rockshed.core.results.run_folder import RunFolder
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.files import write_json
 from rockshed.fmus.build import Fmi, Runtime, build
 from rockshed.metrics.contents import ForeignStateError, decoded

@@ -18,7 +18,7 @@ from rockshed.core.errors import ComponentLost, InputRefused, RunFailed
 from rockshed.core.results.bits import first_difference
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
-from rockshed.core.system.system import load_system, system_from
+from rockshed.core.system.reading import load_system, system_from
 from tests.cosim.fmi3_fmus import library, pack
 from tests.cosim.mocks import Mock, out
 from tests.cosim.odd_fmus import SYSTEM, XML, make, program

@@ -12,7 +12,8 @@ from rockshed.components.sand_cushion.declarations import ROW
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.results.reading import StoredRun, read_run
 from rockshed.core.run import simulate
-from rockshed.core.system.system import SystemSpec, with_values
+from rockshed.core.system.other_values import with_values
+from rockshed.core.system.system import SystemSpec
 from rockshed.fmus.build import build_if_needed
 from rockshed.metrics import names
 from rockshed.metrics.headlines import headlines

@@ -14,7 +14,7 @@ from rockshed.core.loop.initialisation import free, initialise, instantiate
 from rockshed.core.loop.tables import NOT_FINITE
 from rockshed.core.run import sources_of
 from rockshed.core.system.planning import make_plan
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.fmus.build import BuildError, Runtime, build_component
 from rockshed.fmus.native.fmu import compiler, own_platform
 from tests.cosim.mocks import Mock, inp, mass, out, spring, wired

@@ -12,7 +12,7 @@ import rockshed
 from rockshed.commands.app import app
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.results.reading import read_run
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 
 
 def lab_impact(stop_time=0.002, sizes=None, **values):

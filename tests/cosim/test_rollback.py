@@ -13,8 +13,8 @@ from rockshed.core.loop.exchange import ExchangeLoop
 from rockshed.core.loop.initialisation import free, initialise, instantiate
 from rockshed.core.masters.rollback import Rollback, prove_rollback
 from rockshed.core.system.planning import make_plan
+from rockshed.core.system.reading import system_from
 from rockshed.core.system.rollback import rollback_problems
-from rockshed.core.system.system import system_from
 from rockshed.fmus.build import build
 from rockshed.fmus.parts import Fmi, Runtime
 from tests.cosim.fmi3_fmus import library, pack

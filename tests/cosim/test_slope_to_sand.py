@@ -8,7 +8,7 @@ import pytest
 
 import rockshed
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.fmus.build import build_if_needed
 
 EXAMPLE = Path(rockshed.__file__).parent / "examples" / "rigid_floor.toml"

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from rockshed.core.errors import InputRefused
+from rockshed.core.system.other_values import with_values
 from rockshed.core.system.planning import make_plan
-from rockshed.core.system.system import with_values
 from rockshed.runs.system import System
 from rockshed.ssp.documents import SSC, SSD, as_bytes, parsed, same_xml
 from rockshed.ssp.package import MAIN, Package, open_package

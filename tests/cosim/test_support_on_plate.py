@@ -4,7 +4,7 @@ import pytest
 
 from rockshed.components.catalogue import component
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.fmus.in_process import InProcess
 
 SIDES = ("left", "right")

@@ -6,7 +6,9 @@ from pathlib import Path
 import pytest
 
 from rockshed.core.errors import InputRefused
-from rockshed.core.system.system import Connection, load_system, system_from, with_values
+from rockshed.core.system.other_values import with_values
+from rockshed.core.system.parts import Connection
+from rockshed.core.system.reading import load_system, system_from
 
 TEXT = """
 name = "pair"

@@ -6,7 +6,7 @@ import pytest
 
 from rockshed.core.errors import InputRefused
 from rockshed.core.system.planning import make_plan
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.runs.job import Job
 from rockshed.runs.simulation import simulate
 from rockshed.runs.system import System

@@ -8,7 +8,7 @@ import pytest
 from rockshed.core.errors import InputRefused
 from rockshed.core.run import sources_of
 from rockshed.core.system.planning import make_plan
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
 SHAPES = """<TypeDefinitions><SimpleType name='Shape'><Enumeration><Item name='sphere' value='1'/><Item name='disc' value='2'/>

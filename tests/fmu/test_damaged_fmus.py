@@ -11,7 +11,7 @@ from rockshed.components.catalogue import component
 from rockshed.core.errors import InputRefused
 from rockshed.core.fmu.archive import Archive, ArchiveError
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.fmus.build import Runtime, build, build_if_needed
 from rockshed.fmus.places import native_is_fresh
 

@@ -8,7 +8,7 @@ from lxml import etree
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
 from rockshed.core.run import simulate
-from rockshed.core.system.system import Connection
+from rockshed.core.system.parts import Connection
 from rockshed.fmus.description.fmi3 import TERMINALS
 
 from .host import Host

@@ -6,7 +6,7 @@ import pytest
 from fmpy import simulate_fmu
 
 from rockshed.core.run import simulate
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 
 from .host3 import Host3
 

@@ -9,8 +9,8 @@ import pytest
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
 from rockshed.core.run import simulate, sources_of
+from rockshed.core.system.other_values import with_values
 from rockshed.core.system.planning import make_plan
-from rockshed.core.system.system import with_values
 from rockshed.ssp.writing import write_ssp
 from tests.fmu.test_peers import needs
 

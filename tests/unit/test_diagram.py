@@ -12,7 +12,7 @@ from matplotlib.textpath import TextPath
 
 from rockshed.cases.sonoda1993 import lab_system
 from rockshed.cases.sonoda1993 import tests as laboratory_tests
-from rockshed.core.system.system import system_from
+from rockshed.core.system.reading import system_from
 from rockshed.pictures.diagram import condensed, system_diagram
 
 SVG = "{http://www.w3.org/2000/svg}"

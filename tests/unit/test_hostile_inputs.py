@@ -14,7 +14,7 @@ import rockshed
 from rockshed.analyses.calibration.curve_file import read_curve
 from rockshed.campaigns.campaign import campaign_of
 from rockshed.core.errors import InputRefused
-from rockshed.core.system.system import load_system
+from rockshed.core.system.reading import load_system
 from rockshed.sites.pile.preparation import prepare as prepare_pile
 from rockshed.sites.rockfall.preparation import prepare as prepare_slope
 

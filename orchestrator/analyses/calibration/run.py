@@ -8,7 +8,7 @@ from pathlib import Path
 from rockshed.components.catalogue import component
 
 from ...core.errors import InputRefused, Problem
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...runs.building import Note, silent
 from ...runs.first_compilation import tell_first_compilation
 from ...runs.kept import FINISHED, KeptRuns

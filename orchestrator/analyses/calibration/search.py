@@ -12,7 +12,7 @@ from ...cases.sand_models import LATTICE_SHIFT, model_values
 from ...cases.sonoda1993 import STATIC_RATIO
 from ...cases.static_loading import NAME, SPEED, rock_height
 from ...core.errors import InputRefused, Problem, RunFailed
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.load_curve import LoadCurve, load_curve
 from ...runs.batch import COMPLETE, INTERRUPTED, Outcome, Task, run_all, run_here, uncounted
 from ...runs.building import Note, silent

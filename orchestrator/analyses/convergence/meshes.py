@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...cases.shed import prepared
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...runs.batch import COLUMNS, Task
 from ...runs.request import Request
 

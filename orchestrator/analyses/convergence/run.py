@@ -6,7 +6,7 @@ from typing import Any
 
 from ...cases.shed import prepared
 from ...core.errors import InputRefused, Problem
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...runs.batch import INTERRUPTED, run_all
 from ...runs.building import Note, silent
 from ...runs.kept import FINISHED, KeptRuns

@@ -8,8 +8,8 @@ from typing import Any
 
 from ...core.errors import InputRefused, Problem, RunFailed
 from ...core.run import starting_problems
+from ...core.system.fields import Value
 from ...core.system.names import nearest
-from ...core.system.system import Value
 from ...runs.building import Note, silent
 from ...runs.job import recorded_names
 from ...runs.request import Request, plain

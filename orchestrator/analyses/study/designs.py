@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.errors import Problem
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ..frame import FloatArray
 from .factors import Factor
 

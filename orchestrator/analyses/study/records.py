@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...core.results.metric import identifier
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...runs.batch import COMPLETE, Outcome
 from ..frame import FloatArray
 from .designs import BASE, FIRST, SECOND

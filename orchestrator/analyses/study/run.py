@@ -10,8 +10,8 @@ from typing import Any
 from ...core.errors import AnalysisFailed, InputRefused, Problem, all_causes
 from ...core.input_text import shown
 from ...core.results.metric import identifier
+from ...core.system.fields import Value
 from ...core.system.names import nearest
-from ...core.system.system import Value
 from ...metrics.percentiles import borne, needed
 from ...runs.batch import INTERRUPTED, Outcome, Task, carry_out, orders_of
 from ...runs.building import Note, silent

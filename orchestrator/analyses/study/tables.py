@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.percentiles import Percentile
 from ...tables import Table, digits
 from .designs import HYPERCUBE, RANDOM, SAMPLED, SOBOL

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ...core.errors import InputRefused, Problem
 from ...core.results.reading import StoredRun
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...runs.building import Note, silent
 from ...runs.continuing import request_of
 from ...runs.run import read_run

@@ -7,10 +7,10 @@ import numpy as np
 
 from ..errors import InputRefused, Problem, RunFailed
 from ..fmu.slave import WARNING, Slave, status_name
+from ..system.fields import Value
 from ..system.names import nearest, split_name
 from ..system.plan import End, Plan
 from ..system.renaming import present_name
-from ..system.system import Value
 from ..system.timing import exchanges_in
 from ..system.values import value_for
 from .recording import last_words

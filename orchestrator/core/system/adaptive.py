@@ -4,10 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from ..errors import Problem
 from ..fmu.description import Description
+from .adaptivity import Adaptive
 from .iterated import iterated_schedule
 from .plan import PlannedScenario
 from .schedule import Schedule, Scheme, make_schedule
-from .system import Adaptive, SystemSpec
+from .system import SystemSpec
 from .timing import Timing
 
 

@@ -11,8 +11,8 @@ from ..errors import counted
 from ..fmu.description import UnitDefinition
 from .finding import Finder
 from .linking import Links
+from .parts import PowerBond
 from .plan import BondPlaces, End
-from .system import PowerBond
 from .units import is_force, is_joule
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from decimal import Decimal
 from fractions import Fraction
 from math import lcm, ulp
+from typing import Any
 
 PICOSECONDS = 10**12
 """Ticks in a second where nothing else is needed: steps in use go down to 1e-7 s, and a step that
@@ -44,6 +45,13 @@ def seconds_in(text: str) -> float:
     except (ValueError, ZeroDivisionError, OverflowError):
         what = f"{text[:40]!r} is no time: write a number of seconds, or a fraction, 1/60"
         raise ValueError(what) from None
+
+
+def from_fraction(value: Any) -> Any:
+    """Return a fraction of a second, ``1/60``, as the nearest float; anything else as it is."""
+    if isinstance(value, Fraction) or (isinstance(value, str) and "/" in value):
+        return seconds_in(str(value))
+    return value
 
 
 def exact(seconds: float) -> Fraction:

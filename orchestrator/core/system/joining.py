@@ -8,7 +8,7 @@ from ..fmu.fmu_slave import TERMINALS_FILE
 from ..fmu.slave import Source
 from ..fmu.terminals import Terminal, TerminalMember, matched, terminals_in, terminals_of_bonds
 from .names import nearest
-from .system import Connection
+from .parts import Connection
 
 _ONE_BY_ONE = "connect the variables one by one"
 

@@ -7,8 +7,8 @@ from ..errors import InputRefused, counted
 from ..fmu.slave import NUMBERS, REAL, STRING, Source
 from .finding import Finder, few
 from .joining import Joiner
+from .parts import Connection
 from .plan import End
-from .system import Connection
 from .units import unit_text, units_agree
 
 Links = list[tuple[End, End]]

@@ -25,7 +25,7 @@ from .loops import algebraic_loops, told
 from .names import nearest
 from .plan import End, Plan, PlannedScenario, Starts, with_whole_arrays
 from .rollback import rollback_problems
-from .scenario import ScenarioReader
+from .staging import ScenarioReader
 from .starting import Starter
 from .system import SystemSpec
 from .timing import Timing, make_timing

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from ..errors import InputRefused, Problem
 from ..fmu.description import Description
-from .system import Value
+from .fields import Value
 
 
 def present_name(description: Description, name: str) -> str:

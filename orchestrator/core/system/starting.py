@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from .fields import Value
 from .finding import Finder, few
 from .linking import Links
+from .parts import ComponentSpec
 from .plan import End, Starts, with_whole_arrays
 from .renaming import present_name
-from .system import ComponentSpec, Value
 from .values import start_value, value_for
 
 

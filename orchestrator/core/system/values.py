@@ -7,7 +7,7 @@ from rockshed.components.common.units import range_in_words
 from ..fmu.description import Port
 from ..fmu.slave import BOOLEAN, INTEGER, REAL, STRING
 from ..fmu.types import TYPES
-from .system import Value
+from .fields import Value
 
 _TRUE = ("true", "1", "on", "yes")
 _FALSE = ("false", "0", "off", "no")

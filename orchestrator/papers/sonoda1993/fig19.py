@@ -12,7 +12,7 @@ import numpy as np
 from rockshed.components.common.units import cm, kgf, ms
 
 from ...cases.sonoda1993 import DEFAULT_TEST, case_name
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.names import IMPACT_ENERGY, PEAK_TRANSMITTED
 from ...runs.batch import COMPLETE, FAILED, Outcome, Task
 from ...runs.job import Request

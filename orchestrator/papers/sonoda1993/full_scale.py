@@ -12,7 +12,7 @@ from rockshed.components.common.units import cm, kgf, ms, standard_gravity, tf
 
 from ...cases.full_scale import LAYER, ROCK_MASS, ROCK_RADIUS, ROCK_SPEED
 from ...cases.sand_models import LATTICE_SHIFT, LOOSE
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.filtering import low_pass
 from ...metrics.names import SETTLED_CUT_OFF
 from ...runs.batch import COMPLETE, Outcome, Task

@@ -7,7 +7,7 @@ from rockshed.components.common.units import cm
 
 from ...cases.sand_models import LATTICE_SHIFT, model_values
 from ...cases.sonoda1993 import DEFAULT_TEST, case_name
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...runs.batch import Task
 from ...runs.job import Request
 from ..study import shortened

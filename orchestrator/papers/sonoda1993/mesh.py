@@ -21,7 +21,7 @@ from ...cases.sonoda1993 import (
     ELEMENTS,
     LAYER,
 )
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.names import (
     BEAM_ENERGY_FROM_STRAIN,
     PEAK_TRANSMITTED,

@@ -16,7 +16,7 @@ from ...cases import full_scale, sonoda1993
 from ...cases.sand_models import DENSE, LOOSE
 from ...cases.static_loading import NAME as STATIC_TEST
 from ...cases.static_loading import SPEED
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.names import (
     BEAM_ENERGY_FROM_STRAIN,
     BEAM_SHARE_FROM_STRAIN,

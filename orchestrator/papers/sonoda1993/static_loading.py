@@ -15,7 +15,7 @@ from rockshed.components.common.units import cm, kgf
 from ...cases.sand_models import LATTICE_SHIFT
 from ...cases.sonoda1993 import LAYER, STATIC_RATIO, printed_rows
 from ...cases.static_loading import E_BAR, NAME, SPEED, STOP, rock_height
-from ...core.system.system import Value
+from ...core.system.fields import Value
 from ...metrics.load_curve import DEPTH, load_curve
 from ...metrics.names import STATIC_DEPARTURE, STATIC_LOAD, STATIC_STIFFNESS
 from ...runs.batch import COMPLETE, Task

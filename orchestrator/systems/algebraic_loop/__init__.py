@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from ...core.system.reading import system_from
 from ...core.system.schedule import Scheme
-from ...core.system.system import SystemSpec, system_from
+from ...core.system.system import SystemSpec
 from ..parts.loaded_spring import COMPONENT as LOADED
 from ..parts.soft_spring import COMPONENT as SOFT
 from ..system import FmuPart, FmuPaths, ImpactSystem

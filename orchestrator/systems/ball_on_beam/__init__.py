@@ -5,8 +5,9 @@ from pathlib import Path
 from rockshed.components.falling_rock import COMPONENT as ROCK
 from rockshed.components.rbsm_beam import COMPONENT as BEAM
 
+from ...core.system.reading import system_from
 from ...core.system.schedule import Scheme
-from ...core.system.system import SystemSpec, system_from
+from ...core.system.system import SystemSpec
 from ..parts.beam_contact import COMPONENT as CONTACT
 from ..system import FmuPart, FmuPaths, ImpactSystem
 from .truth import AREA, DENSITY, MASS, MODULUS, SECOND_MOMENT, SPAN, SPEED, STIFFNESS, deflection

@@ -5,8 +5,9 @@ from pathlib import Path
 from rockshed.components.hammer import COMPONENT as HAMMER
 from rockshed.components.pile_rod import COMPONENT as ROD
 
+from ...core.system.reading import system_from
 from ...core.system.schedule import Scheme
-from ...core.system.system import SystemSpec, system_from
+from ...core.system.system import SystemSpec
 from ..system import FmuPart, FmuPaths, ImpactSystem
 from .truth import LENGTH, MASS, REFLECTION, SPEED, hammer_velocity
 

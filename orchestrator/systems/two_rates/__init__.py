@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from ...core.system.reading import system_from
 from ...core.system.schedule import Scheme
-from ...core.system.system import SystemSpec, system_from
+from ...core.system.system import SystemSpec
 from ..parts.light_mass import COMPONENT as LIGHT
 from ..parts.mass import COMPONENT as MASS
 from ..system import FmuPart, FmuPaths, ImpactSystem
