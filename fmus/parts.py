@@ -12,6 +12,8 @@ from rockshed.components.common.component import Component
 COMPONENTS = Path(components.__file__).parent
 SHARED = COMPONENTS / "common"
 DESCRIPTION = "modelDescription.xml"
+STATES = ".state"
+"""End of the names of serialized states, which are zeros for the most part."""
 EXPERIMENTS = "experiments.py"
 """Module of a component's folder with its experiments, which nothing inside an FMU runs."""
 _NOT_FROZEN = {".md", ".png", ".svg", ".pyc"}
@@ -118,7 +120,7 @@ def digest(files: Files) -> str:
 def archive(files: Files) -> bytes:
     """Return a zip archive that follows from the files alone: fixed order, dates and permissions.
 
-    Nothing is compressed, because the result would depend on the version of zlib.
+    Only :data:`STATES` are compressed, because the result depends on the version of zlib.
 
     Parameters
     ----------
@@ -136,5 +138,7 @@ def archive(files: Files) -> bytes:
             entry = zipfile.ZipInfo(path)
             entry.create_system = 3  # Unix, also when built on Windows
             entry.external_attr = 0o100644 << 16
+            if path.endswith(STATES):
+                entry.compress_type = zipfile.ZIP_DEFLATED
             target.writestr(entry, files[path])
     return buffer.getvalue()

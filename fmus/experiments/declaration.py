@@ -40,6 +40,22 @@ class Expected:
 
 
 @dataclass(frozen=True)
+class SerializedState:
+    """A complete state of the FMU, after the initialisation and before the first step.
+
+    Parameters
+    ----------
+    name : str
+        Names its file.
+    content : bytes
+        Serialized, as an FMU takes it.
+    """
+
+    name: str
+    content: bytes = field(repr=False)
+
+
+@dataclass(frozen=True)
 class Experiment:
     """An experiment on an FMU alone.
 
@@ -67,6 +83,8 @@ class Experiment:
         Number of steps before the first comparison.
     every : int
         Number of steps from one comparison to the next.
+    state : SerializedState, optional
+        Leads to the same results as ``parameters``, without the work of the initialisation.
     """
 
     name: str
@@ -79,6 +97,7 @@ class Experiment:
     inputs: Mapping[str, Stimulus] = field(default_factory=dict)
     first: int = 0
     every: int = 1
+    state: SerializedState | None = None
 
     @property
     def stop_time(self) -> float:

@@ -1,10 +1,12 @@
 """Experiments as files inside an FMU, as FMI-LS-REF and MA-HS-Experiments have them.
 
-The manifest names every file with its role. A file of experiments (``.exp``) for each purpose
-refers to parameters (SSV), stimuli and expected results (CSV). The tolerances of the results stand
-in an annotation, as the standards have no place for one that is not the same for all outputs.
+The manifest names every file with its role, and in an annotation its checksum. A file of
+experiments (``.exp``) for each purpose refers to parameters (SSV), stimuli and expected results
+(CSV). The tolerances of the results stand in an annotation, as the standards have no place for one
+that is not the same for all outputs; so does the state from which an experiment may begin.
 """
 
+import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -18,10 +20,11 @@ from rockshed.components.common.ports import Kind, Sizes, Variable
 from ..description.annotations import TOOL
 from ..description.documentation import EXPERIMENTS_PAGE
 from ..description.fmi2 import literal
-from ..parts import Files, Fmi
-from .declaration import Experiment, Given, Purpose, Stimulus, rows
+from ..parts import STATES, Files, Fmi
+from .declaration import Experiment, Given, Purpose, SerializedState, Stimulus, rows
 from .found import experiments_of
 from .page import experiments_html
+from .recorded import STATE_PLATFORM
 
 FOLDER = "extra/org.fmi-standard.fmi-ls-ref"
 """Folder of FMI-LS-REF inside an FMU."""
@@ -81,13 +84,31 @@ def experiment_files(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> 
         return {}
     writer = _Writer(component, sizes, fmi)
     related = [file for one in experiments for file in writer.data_files(one)]
+    states = {one.state.name: one.state for one in experiments if one.state}
+    related += [_of_state(state, fmi) for state in states.values()]
     for purpose in Purpose:
         chosen = [one for one in experiments if one.purpose is purpose]
         if chosen:
             related.append(writer.experiments_file(purpose, chosen))
     files = {f"{FOLDER}/{file.name}": file.content for file in related}
     page = experiments_html(component, experiments).encode()
-    return files | {MANIFEST: _manifest(related), EXPERIMENTS_PAGE: page}
+    shown = _Related(
+        f"../../{EXPERIMENTS_PAGE}", "document", "text/html", "what the experiments show", page
+    )
+    return files | {MANIFEST: _manifest([shown, *related]), EXPERIMENTS_PAGE: page}
+
+
+def _of_state(state: SerializedState, fmi: Fmi) -> _Related:
+    """Return a state with the role of its platform, which each version of FMI names otherwise."""
+    platform = STATE_PLATFORM.in_fmi2 if fmi is Fmi.TWO else STATE_PLATFORM.in_fmi3
+    what = f"state of {state.name}, initialised: the first step may follow"
+    role = f"serialized-state/{platform}"
+    return _Related(state_file(state), role, "application/octet-stream", what, state.content)
+
+
+def state_file(state: SerializedState) -> str:
+    """Return the name of the file of a state."""
+    return f"{state.name}{STATES}"
 
 
 def _manifest(related: Sequence[_Related]) -> bytes:
@@ -97,13 +118,24 @@ def _manifest(related: Sequence[_Related]) -> bytes:
         f"{{{_LS}}}fmi-ls-description": _LS_DESCRIPTION,
     }
     root = etree.Element("fmiReferences", names, nsmap={"fmi-ls": _LS})
-    page = ("text/html", f"../../{EXPERIMENTS_PAGE}", "document", "what the experiments show")
-    entries = [page, *((f.type, f.name, f.role, f.description) for f in related)]
-    for kind, source, role, description in entries:
-        etree.SubElement(
-            root, "Related", type=kind, source=source, role=role, description=description
+    for file in related:
+        element = etree.SubElement(
+            root,
+            "Related",
+            type=file.type,
+            source=file.name,
+            role=file.role,
+            description=file.description,
         )
+        checksum = hashlib.sha256(file.content).hexdigest()
+        etree.SubElement(_annotation(element), "Content", sha256=checksum)
     return _text(root)
+
+
+def _annotation(element: etree._Element) -> etree._Element:
+    """Append an annotation of this program."""
+    annotations = etree.SubElement(element, "Annotations")
+    return etree.SubElement(annotations, "Annotation", type=TOOL)
 
 
 def _text(root: etree._Element) -> bytes:
@@ -162,9 +194,7 @@ class _Writer:
         references = etree.SubElement(
             element, "References", type="text/csv", source=f"{one.name}_ref.csv"
         )
-        annotations = etree.SubElement(references, "Annotations")
-        annotation = etree.SubElement(annotations, "Annotation", type=TOOL)
-        tolerances = etree.SubElement(annotation, "Tolerances")
+        tolerances = etree.SubElement(_annotation(references), "Tolerances")
         for variable, expected in one.expected.items():
             etree.SubElement(
                 tolerances,
@@ -172,6 +202,8 @@ class _Writer:
                 variable=variable,
                 absolute=repr(float(f"{expected.tolerance:.3g}")),
             )
+        if one.state:
+            etree.SubElement(_annotation(element), "State", source=state_file(one.state))
 
     def data_files(self, one: Experiment) -> Iterator[_Related]:
         """Yield parameters, stimuli and references of an experiment."""

@@ -1,4 +1,6 @@
-"""Experiments on the sand: weight at rest, free fall, the laws of contact, a rock driven in."""
+"""Experiments on the sand: at rest, falling, settled, laws of contact, a rock driven in."""
+
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.linalg import expm
@@ -6,8 +8,8 @@ from scipy.linalg import expm
 from rockshed.components.common.ports import Sizes
 from rockshed.components.common.units import standard_gravity as _g
 
-from .declaration import Expected, Experiment, Purpose, near, rows
-from .recorded import recorded
+from .declaration import Expected, Experiment, Given, Purpose, SerializedState, near, rows
+from .recorded import recorded, recorded_state
 
 _RADIUS, _THICKNESS, _DENSITY, _MODULUS = 0.005, 0.1, 1799.9999999999998, 2981221.599999999
 _FACTOR, _DAMPING, _TANGENTIAL = 0.342, 0.2, 0.25
@@ -38,6 +40,7 @@ def experiments(sizes: Sizes) -> tuple[Experiment, ...]:
         _lifted(sizes),
         _fall(sizes),
         *_driven(sizes),
+        *_settled(sizes),
         *(_disturbed(sizes["discs"], seed) for seed in (1, 2, 3)),
         *(_density(sizes["discs"], share) for share in (0.9, 1.1)),
     )
@@ -194,23 +197,82 @@ def _lifted(sizes: Sizes) -> Experiment:
 
 def _driven(sizes: Sizes) -> tuple[Experiment, ...]:
     """Rock that is driven into the sand: no closed form is known, so what came out is kept."""
-    name = "driven-rock"
+    return _pushed_in(
+        "driven-rock",
+        sizes,
+        "A turning rock is driven into the sand with 4 m/s, beside the middle. No closed form "
+        "is known: the values are what this model gave when they were recorded, for comparison "
+        "of tools and versions. The bits are the same on all processors; tools round times.",
+        {"kinematics": "linear"},
+        0.1,
+    )
+
+
+_SETTLED: dict[str, Given] = {
+    "packing": "prepared",
+    "solid_fraction": 0.81,
+    "rotation": "free",
+    "kinematics": "linear",
+}
+"""Parameters of sand that settles until it is as dense as asked for."""
+
+
+def _settled(sizes: Sizes) -> tuple[Experiment, ...]:
+    """Sand that has settled, at rest and with a rock; its state is in the FMU."""
+    state = recorded_state("settled-sand", sizes)
+    if state is None:
+        return ()
+    at_rest = Experiment(
+        "settled-sand",
+        Purpose.VALIDATION,
+        "Discs that have settled until they are as dense as asked for (to 0.01) lie at rest: the "
+        "base carries their weight less what rough walls take. The state after settling is "
+        "inside; a tool that takes none settles the sand by the parameters, with the same bits.",
+        1e-4,
+        20,
+        {
+            "layer.solid_fraction": Expected(float(str(_SETTLED["solid_fraction"])), 0.01),
+            "transmitted_force": near(_weight(sizes["discs"]), 5e-2),
+            "energy.kinetic": Expected(0.0, 1e-9),
+            "energy.residual": Expected(0.0, 1e-9),
+        },
+        _SETTLED,
+        state=state,
+    )
+    return at_rest, *_pushed_in(
+        "rock-into-settled-sand",
+        sizes,
+        "The rock of driven-rock is driven into the settled sand, whose state is inside. Recorded, "
+        "too.",
+        _SETTLED,
+        0.102,
+        state,
+    )
+
+
+def _pushed_in(
+    name: str,
+    sizes: Sizes,
+    description: str,
+    parameters: Mapping[str, Given],
+    surface: float,
+    state: SerializedState | None = None,
+) -> tuple[Experiment, ...]:
+    """Return the recorded experiment of a turning rock that is driven in from above a surface."""
     step, steps, speed, spin = 1e-4, 60, -4.0, 5.0
     tables = recorded(name, dict(sizes))
     if not tables:
         return ()
-    begin = 0.1 + _ROCK
+    begin = surface + _ROCK
     return (
         Experiment(
             name,
             Purpose.SMOKE,
-            "A turning rock is driven into the sand with 4 m/s, beside the middle. No closed form "
-            "is known: the values are what this model gave when they were recorded, for comparison "
-            "of tools and versions. The bits are the same on all processors; tools round times.",
+            description,
             step,
             steps,
             {output: near(values, 1e-6) for output, values in tables.items()},
-            {"kinematics": "linear"},
+            parameters,
             {
                 "rock.position.x": 0.62,
                 "rock.position.y": lambda time: begin + speed * time,
@@ -220,6 +282,7 @@ def _driven(sizes: Sizes) -> tuple[Experiment, ...]:
             },
             first=5,
             every=5,
+            state=state,
         ),
     )
 

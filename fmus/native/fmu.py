@@ -325,7 +325,7 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
         *_HERE.parent.glob("*.py"),
         *_HERE.parent.glob("description/*.py"),
         *_HERE.parent.glob("experiments/*.py"),
-        *_HERE.parent.glob("experiments/data/*.csv"),
+        *_HERE.parent.glob("experiments/data/*"),
         _SLAVE,
         _SHIMS[fmi],
     )

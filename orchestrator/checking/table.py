@@ -143,7 +143,7 @@ PROBES = (
     _probe("experiments/smoke-test", "they give what is expected", experiments.smoke_test),
     _probe("experiments/validation", "so do validations", experiments.validation),
     _probe("experiments/uncertainty-analysis", "and other parameters", experiments.uncertainty),
-    _probe("experiments/state", "states inside are taken", experiments.state),
+    _probe("experiments/state", "so do states inside", experiments.state),
 )
 """All probes, in the order in which they run."""
 

@@ -1,6 +1,7 @@
 """Experiments inside our FMUs in other tools, from the manifest alone: ``python -m tests.fmu.peers``.
 
-Each tool carries out all experiments of an FMU in a process of its own.
+Each tool carries out all experiments of an FMU in a process of its own. libcosim and ecos take no
+serialized state: there experiments begin with their parameters.
 """
 
 import ctypes
@@ -75,7 +76,7 @@ def with_integers(fmu, folder):
     return str(copy)
 
 
-def libcosim(fmu, model, stop, step, start_values, stimuli, outputs):
+def libcosim(fmu, model, stop, step, start_values, stimuli, outputs, _state):
     from libcosimpy.CosimEnums import CosimVariableType
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
@@ -123,7 +124,7 @@ def _samples(read, slave, variable, steps):
     return np.array([*first, *rest], float)
 
 
-def ecos(fmu, model, stop, step, start_values, stimuli, outputs):
+def ecos(fmu, model, stop, step, start_values, stimuli, outputs, _state):
     for file in files("tbb"):
         if file.name == "libtbb.so.12":
             ctypes.CDLL(str(file.locate()))
@@ -170,9 +171,9 @@ def in_this_process(tool, fmu):
 
     original = found["run"]
 
-    def run(fmu, folder, experiment, simulate):
+    def run(fmu, folder, experiment, simulate, states):
         try:
-            return original(fmu, folder, experiment, safely)
+            return original(fmu, folder, experiment, safely, states)
         except Exception as error:  # whatever a tool says
             return float("inf"), f"{type(error).__name__}: {error}"
 

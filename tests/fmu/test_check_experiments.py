@@ -1,6 +1,7 @@
 """``rockshed check`` carries out the experiments of anyone's FMU, and follows no manifest that lies."""
 
 import zipfile
+from hashlib import sha256
 
 import pytest
 
@@ -11,16 +12,26 @@ from rockshed.fmus.experiments.files import FOLDER, MANIFEST
 
 
 def rewritten(fmu, folder, **edits):
-    """A copy of an FMU with edits of its members: a function of the content, or None to leave it out."""
+    """A copy of an FMU with edits of its members: a function of the content, or None to leave it out.
+
+    Their checksums in the manifest are those of the new content.
+    """
     copy = folder / "copy.fmu"
-    names = {name.replace("|", "/"): edit for name, edit in edits.items()}
-    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(copy, "w") as target:
-        for info in source.infolist():
-            short = info.filename.removeprefix(f"{FOLDER}/")
-            edit = names.pop(short, bytes)
-            if edit is not None:
-                target.writestr(info.filename, edit(source.read(info)))
-    assert not names
+    with zipfile.ZipFile(fmu) as source:
+        files = {name: source.read(name) for name in source.namelist()}
+    sums = {}
+    for name, edit in edits.items():
+        path = f"{FOLDER}/{name}"
+        old = files.pop(path)
+        if edit is not None:
+            files[path] = edit(old)
+            sums[sha256(old).hexdigest().encode()] = sha256(files[path]).hexdigest().encode()
+    for old, new in sums.items():
+        if MANIFEST in files:
+            files[MANIFEST] = files[MANIFEST].replace(old, new)
+    with zipfile.ZipFile(copy, "w") as target:
+        for name, content in files.items():
+            target.writestr(name, content)
     return copy
 
 
@@ -96,6 +107,15 @@ def test_a_wrong_reference_fails_with_output_deviation_and_tolerance(rock, tmp_p
 def test_a_manifest_that_lies_is_told_and_not_followed(rock, tmp_path, edits, verdict, said):
     finding = check(rewritten(rock, tmp_path, **edits))["experiments/manifest"]
     assert (finding.verdict, said in finding.what) == (verdict, True), finding.what
+
+
+def test_a_file_that_is_not_what_the_manifest_says_is_told(rock, tmp_path):
+    wrong = swapped('source="free-fall_ref.csv"', 'source="push-and-turn_ref.csv"')
+    finding = check(rewritten(rock, tmp_path, **{"fmi-ls-manifest.xml": wrong}))[
+        "experiments/manifest"
+    ]
+    assert finding.verdict is Verdict.FAILED
+    assert "push-and-turn_ref.csv is not what the manifest says: its SHA-256 is" in finding.what
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,9 @@
 Nothing outside the FMU is looked at, whatever a manifest says.
 """
 
+import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
@@ -21,6 +22,8 @@ _MOST_BYTES = 64 << 20
 EXPERIMENTS_TYPES = ("application/x-ma-hs-experiments", "application/x-ma-ls-experiments")
 """Names of the type of experiments: the second one stands in the example of FMI-LS-REF."""
 SMOKE = "smoke-test"
+STATE = "serialized-state"
+"""Role of a state; its platform may follow behind a stroke."""
 _OURS = "org.rockshed"
 
 
@@ -30,12 +33,51 @@ class Untrue(Exception):  # noqa: N818 (a statement, not a failure of this progr
 
 @dataclass(frozen=True)
 class Related:
-    """An entry of a manifest: address, role, type, and its file where it is inside the FMU."""
+    """An entry of a manifest.
+
+    Attributes
+    ----------
+    source, role, type : str
+        As they stand there.
+    file : Path, optional
+        Where it is inside the FMU.
+    sha256 : str
+        Its checksum, from an annotation of this program; empty where none is told.
+    """
 
     source: str
     role: str
     type: str
     file: Path | None
+    sha256: str = ""
+
+    def content(self) -> bytes:
+        """Return the content of the file.
+
+        Raises
+        ------
+        Untrue
+            It is not there, too large, or does not have the checksum that is told.
+        """
+        if self.file is None:
+            raise Untrue(f"{self.source} is not in the FMU")
+        found = content_of(self.file)
+        checksum = hashlib.sha256(found).hexdigest()
+        if self.sha256 not in ("", checksum):
+            raise Untrue(
+                f"{self.source} is not what the manifest says: its SHA-256 is {checksum[:12]}..., "
+                f"not {self.sha256[:12]}..."
+            )
+        return found
+
+    @property
+    def damage(self) -> str:
+        """Why its content cannot be had, in words; empty where it can."""
+        try:
+            self.content()
+        except Untrue as untrue:
+            return str(untrue)
+        return ""
 
 
 @dataclass(frozen=True)
@@ -56,6 +98,8 @@ class Setup:
         Files inside the FMU.
     tolerances : dict of str to float
         Absolute tolerances by variable, from an annotation of this program.
+    state : Path, optional
+        File of the state that it may begin with instead of the parameters, from such an annotation.
     """
 
     name: str
@@ -68,6 +112,7 @@ class Setup:
     stimuli: Path | None = None
     references: Path | None = None
     tolerances: dict[str, float] = field(default_factory=dict)
+    state: Path | None = None
 
 
 def content_of(file: Path) -> bytes:
@@ -154,8 +199,32 @@ def read_manifest(fmu: Path, said: Remarks) -> list[Related]:
         except Untrue as untrue:
             said.untrue.append(str(untrue))
         kind = element.get("type", "application/octet-stream")
-        related.append(Related(source, element.get("role", ""), kind, file))
+        told = [each.get("sha256", "") for each in _annotated(element, "Content")]
+        related.append(Related(source, element.get("role", ""), kind, file, *told[:1]))
+    told_sums = (entry for entry in related if entry.file and entry.sha256)
+    said.untrue += [entry.damage for entry in told_sums if entry.damage]
     return related
+
+
+def _annotated(element: etree._Element, name: str) -> Iterator[etree._Element]:
+    """Yield the elements of a name in the annotations of this program."""
+    for annotation in element.iter("Annotation"):
+        if annotation.get("type") == _OURS:
+            yield from annotation.iter(name)
+
+
+def states_for(related: list[Related], platforms: tuple[str, ...]) -> list[Related]:
+    """Return the states for a machine.
+
+    Parameters
+    ----------
+    related : list of Related
+        Entries of a manifest.
+    platforms : tuple of str
+        Names of the machine's platform.
+    """
+    roles = (STATE, *(f"{STATE}/{platform}" for platform in platforms))
+    return [entry for entry in related if entry.role in roles]
 
 
 def setups(fmu: Path, related: list[Related], said: Remarks) -> list[Setup]:
@@ -184,6 +253,11 @@ def setups(fmu: Path, related: list[Related], said: Remarks) -> list[Setup]:
             found += _setups_in(fmu, entry.file, purpose or SMOKE, said)
         except Untrue as untrue:
             said.untrue.append(str(untrue))
+    states = {entry.file for entry in related if entry.role.partition("/")[0] == STATE}
+    for number, setup in enumerate(found):
+        if setup.state and setup.state not in states:
+            said.untrue.append(f"{setup.name}: {setup.state.name} is no state in the manifest")
+            found[number] = replace(setup, state=None)
     known = {setup.references for setup in found}
     found += [
         Setup("default experiment", SMOKE, references=entry.file)
@@ -218,10 +292,9 @@ def _setup(fmu: Path, file: Path, purpose: str, element: etree._Element) -> Setu
     }
     tolerances = {
         each.get("variable", ""): float(each.get("absolute", "nan"))
-        for annotation in element.iter("Annotation")
-        if annotation.get("type") == _OURS
-        for each in annotation.iter("Tolerance")
+        for each in _annotated(element, "Tolerance")
     }
+    states = [each.get("source", "") for each in _annotated(element, "State")]
     return Setup(
         element.get("name", ""),
         purpose,
@@ -233,6 +306,7 @@ def _setup(fmu: Path, file: Path, purpose: str, element: etree._Element) -> Setu
         files.get("Stimuli"),
         files.get("References"),
         tolerances,
+        place(fmu, file.parent, states[0]) if states else None,
     )
 
 

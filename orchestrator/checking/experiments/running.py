@@ -1,14 +1,14 @@
 """Experiments carried out on the FMU under check, and their results compared."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..subject.calls import Called, CallRefused, NoInstance
 from ..subject.subject import Subject
-from .manifest import Setup, Untrue
+from .manifest import Setup, Untrue, content_of
 from .tables import TableSeries, read_parameters, read_table
 
 UNTOLD = 1e-3
@@ -59,6 +59,31 @@ def compared(subject: Subject, setup: Setup) -> Compared:
         return Compared(setup.name, math.inf, refused=f"the FMU does not do it: {error}")
 
 
+def state_difference(subject: Subject, setup: Setup) -> str:
+    """Return where results from the state differ from those from the parameters; empty if nowhere.
+
+    Parameters
+    ----------
+    subject : Subject
+        The FMU.
+    setup : Setup
+        An experiment with a state and parameters.
+
+    Raises
+    ------
+    Untrue, CallRefused, NoInstance
+        It cannot be carried out.
+    """
+    times, rows = _Running(subject, setup).course()
+    _, others = _Running(subject, replace(setup, state=None)).course()
+    # outputs at the start follow inputs only in the initialisation, which the state has behind it
+    for time, row, other in list(zip(times, rows, others, strict=True))[1:]:
+        for name in row:
+            if row[name] != other[name]:
+                return f"{setup.name}: at {time:g} s {name} is {row[name]} instead of {other[name]}"
+    return ""
+
+
 class _Running:
     """One experiment on one FMU.
 
@@ -95,7 +120,7 @@ class _Running:
 
     def compared(self) -> Compared:
         """Carry the experiment out and compare."""
-        times, rows = self._course()
+        times, rows = self.course()
         worst = Compared(self._setup.name)
         for name, series in self._references.items():
             deviation = self._deviation(name, series, times, rows)
@@ -109,15 +134,11 @@ class _Running:
 
     # ------------------------------------------------------------------ the run
 
-    def _course(self) -> tuple[list[float], list[OutputRow]]:
+    def course(self) -> tuple[list[float], list[OutputRow]]:
         """Return times and outputs at all communication points."""
         start, stop, step = self._times()
-        instance = self._subject.instantiate("experiment", logging=False)
-        for name, values in self._parameters.items():
-            instance.set(self._variables[name], values)
-        self._set_inputs(instance, start)
+        instance = self._begun(start) if self._setup.state is None else self._restored(start)
         read = [self._variables[name] for name in self._references]
-        instance.initialise(start, None)
         times, rows = [start], [instance.get(read)]
         for number in range(math.ceil((stop - start) / step - _ROUNDING)):
             time = start + number * step
@@ -130,6 +151,25 @@ class _Running:
                 break
         instance.free()
         return times, rows
+
+    def _begun(self, start: float) -> Called:
+        """Return an instance that is initialised with parameters and inputs."""
+        instance = self._subject.instantiate("experiment", logging=False)
+        for name, values in self._parameters.items():
+            instance.set(self._variables[name], values)
+        self._set_inputs(instance, start)
+        instance.initialise(start, None)
+        return instance
+
+    def _restored(self, start: float) -> Called:
+        """Return an instance in the state of the experiment, with its inputs."""
+        assert self._setup.state is not None
+        instance = self._subject.instantiate("experiment")
+        state = instance.deserialize(content_of(self._setup.state))
+        instance.restore(state)
+        instance.free_state(state)
+        self._set_inputs(instance, start)
+        return instance
 
     def _times(self) -> tuple[float, float, float]:
         setup, subject = self._setup, self._subject
