@@ -345,6 +345,8 @@ class Session:
         self.initialised = True
         self.accounts = Accounts(self.slaves, buses)
         driver = driver_of(buses, self.slaves)
+        if self.course is not None:
+            self.course.asks_always = not driver.halts
         recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results, driver)
         self.watched = buses.watched
         self.texts = buses.texts

@@ -12,7 +12,7 @@ from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import contents, names
 from .cushion import cushions, still_sinking, thickness_at_start
-from .energy import driven, structures
+from .energy import driven, scenario_work, structures
 from .headlines import headlines
 from .roles import column, members, members_of, owners, parameter, parameters, recorded
 from .utilisation import exceeded
@@ -241,16 +241,19 @@ def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
     share = next((float(metric.value) for metric in found if metric.name == name), None)
     if share is not None and not abs(share) <= _RESIDUAL_LIMIT:
         remedy = "do not trust the figures, reduce the steps"
-        if _has_scenario(run):
-            remedy = "it has not the work of the scenario; see whether it closes without that"
+        if _has_unknown_work(run):
+            remedy = (
+                "it has not what faults of the scenario make, and what that imposes elsewhere than "
+                "on power ports; see whether it closes without them"
+            )
         missing = f"{100.0 * share:+.3g} % of the {whole}"
         yield f"the balance of energy does not close: {missing}; {remedy}"
 
 
-def _has_scenario(run: StoredRun) -> bool:
-    """Tell whether inputs or faults from outside have acted on the system."""
-    system = run.provenance.get("system") or {}
-    return any((system.get("scenario") or {}).values())
+def _has_unknown_work(run: StoredRun) -> bool:
+    """Tell whether a scenario has done work on the system that nobody counts."""
+    scenario = (run.provenance.get("system") or {}).get("scenario") or {}
+    return any(scenario.values()) and ("fault" in scenario or scenario_work(run) is None)
 
 
 def _other_weight(run: StoredRun, structure: str) -> Iterator[str]:

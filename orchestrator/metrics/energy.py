@@ -7,6 +7,7 @@ import numpy as np
 
 from rockshed.components.common.roles import Role
 
+from ..core.results.columns import WORK_OF_SCENARIO
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import names
@@ -50,9 +51,9 @@ def system_residual(run: StoredRun) -> Samples | None:
     That is what is stored and dissipated less what came in. A component's residual is the change of
     its energies less the work done on it. The works of both sides of an interface cancel but for
     what the coupling makes; with them the sum over all components is the balance of the system. The
-    work of a machine and of a weight comes from outside and stays in the balance. The load that a
-    rod carries at rest does work on its way down to the ground, which counts it as a potential; the
-    rod leaves it out.
+    work of a machine and of a weight comes from outside and stays in the balance, and so does that
+    of what a scenario imposes. The load that a rod carries at rest does work on its way down to the
+    ground, which counts it as a potential; the rod leaves it out.
 
     Parameters
     ----------
@@ -73,8 +74,25 @@ def system_residual(run: StoredRun) -> Samples | None:
         for name in [residual, *inside]:
             part = run.series[name] - run.series[name][0]
             total = part if total is None else total + part
-    carried = carried_work(run)
-    return total if total is None or carried is None else total - carried
+    for outside in (carried_work(run), scenario_work(run)):
+        total = total if total is None or outside is None else total - outside
+    return total
+
+
+def scenario_work(run: StoredRun) -> Samples | None:
+    """Return the work of the forces and motions that a scenario imposes, since the start.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+
+    Returns
+    -------
+    array of float, shape (rows,), or None
+        In J; None where it imposes none on a power port.
+    """
+    return run.series.get(WORK_OF_SCENARIO)
 
 
 def carried_work(run: StoredRun) -> Samples | None:

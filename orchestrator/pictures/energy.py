@@ -13,7 +13,13 @@ from rockshed.components.common.roles import Role
 from rockshed.components.common.units import ms
 
 from ..core.results.reading import StoredRun
-from ..metrics.energy import carried_work, impact_energy, machine_work, system_residual
+from ..metrics.energy import (
+    carried_work,
+    impact_energy,
+    machine_work,
+    scenario_work,
+    system_residual,
+)
 from ..metrics.roles import Member, recorded
 from ..metrics.screen_units import screen_size, screen_unit
 from .style import GREY, INK, WIDTH, figure, legend_beside, literal, over_time
@@ -137,6 +143,7 @@ def expected(run: StoredRun) -> Layer:
     works = {
         "work of the machine": machine_work(run),
         "work of the loads at rest": carried_work(run),
+        "work of the scenario": scenario_work(run),
     }
     added = {words: work for words, work in works.items() if work is not None and work.any()}
     whole = np.full(run.series["time"].size, start) + sum(added.values())

@@ -8,11 +8,12 @@ from rockshed.core.continuing import find_stopped
 from rockshed.core.continuing import resume as go_on
 from rockshed.core.errors import InputRefused
 from rockshed.core.fmu.description import Port
-from rockshed.core.loop.scenario import noise
+from rockshed.core.loop.scenario import Course, noises
 from rockshed.core.results.bits import first_difference
 from rockshed.core.results.checkpoints import known_checkpoints
 from rockshed.core.run import simulate
 from rockshed.core.system.plan import End, PlannedFault
+from rockshed.metrics.energy import system_residual
 from tests.cosim.mocks import Mock, inp, out, par, wired
 
 STEPS = 10
@@ -131,7 +132,7 @@ def test_of_a_linear_connection_what_arrives_is_frozen_and_cut(tmp_path):
 def numbers(seed, name="x", count=4000):
     end = End("echo", Port(name, 0, "Real", "input", "Real"))
     fault = PlannedFault(end, "noise", 0, count, 0.0, 1.0, seed)
-    return np.array([noise(fault, exchange) for exchange in range(count)])
+    return noises(fault, 0, count)
 
 
 def test_noise_is_normal_and_no_number_tells_another_one():
@@ -245,14 +246,80 @@ def test_an_entry_of_a_wrong_form_is_refused_in_words(part, entry, words):
     assert f"scenario.{part}.0" in problem.where
 
 
-def test_work_from_outside_is_no_reason_to_reduce_the_steps(tmp_path):
-    fall = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.05)
-    fall = fall.add("rock", "FallingRock", {"mass": 1.0})
-    thrown = fall.scenario(values=[{"port": "rock.force.x", "value": 1000.0, "at": 0.01}])
-    run = rockshed.simulate(thrown)
-    assert run["rock.velocity.x"][-1] == pytest.approx(40.0)  # 1000 N for 0.04 s on 1 kg
-    (warning,) = [text for text in run.warnings if "balance of energy" in text]
-    assert "work of the scenario" in warning
+def fall(**values):
+    made = rockshed.System.new("fall", exchange_step=1e-3, stop_time=0.05)
+    return made.add("rock", "FallingRock", {"mass": 2.0, "velocity0.y": 0.0, **values})
+
+
+def test_the_work_of_a_constant_force_is_the_force_times_the_way_and_the_balance_has_it():
+    """12 N on 2 kg for 0.05 s: s = 6 m/s2 t (t + h) / 2 with h, the internal step; W = F s."""
+    run = rockshed.simulate(
+        fall().scenario(values=[{"port": "rock.force.x", "value": 12, "at": 0}])
+    )
+    time = run["time"].values
+    work = run["coupling.scenario.work"]
+    np.testing.assert_allclose(work.values, 12.0 * 3.0 * time * (time + 1e-5), rtol=1e-9)
+    np.testing.assert_allclose(work.values, 12.0 * run["rock.position.x"].values, rtol=1e-12)
+    assert work.unit == "J"
+    assert not [text for text in run.warnings if "balance of energy" in text]
+
+
+@pytest.mark.parametrize("push", [{"rock.force.x": [0.0, 80.0]}, {"rock.torque": [2.0, -0.5]}])
+def test_with_a_table_what_is_left_of_the_balance_is_the_error_of_the_internal_step(push):
+    left = []
+    for step in (1e-5, 5e-6):
+        run = rockshed.simulate(fall(internal_step=step).scenario({"time": [0.0, 0.05], **push}))
+        work, whole = run["coupling.scenario.work"].values, system_residual(run)
+        left.append(np.abs(whole).max())
+    assert left[0] / left[1] == pytest.approx(2.0, rel=1e-3)
+    assert left[0] < 1e-3 * work[-1]
+
+
+class Bonded(Mock):
+    """A mock that declares a power bond at its end, as our components do."""
+
+    def model_description(self):
+        members = "".join(
+            f"<Member name='{name}' variable='end.{name}'/>" for name in ("position.x", "force.x")
+        )
+        told = f"<Component><Bond name='end' description='' idle=''>{members}</Bond></Component>"
+        annotation = (
+            f"<VendorAnnotations><Tool name='org.rockshed'>{told}</Tool></VendorAnnotations>"
+        )
+        plain = super().model_description().decode()
+        return plain.replace("<ModelVariables>", f"{annotation}<ModelVariables>").encode()
+
+
+def test_an_imposed_motion_does_the_work_that_a_spring_stores(tmp_path):
+    """The end of a spring of 400 N/m is moved by 0.1 m; what it holds back is counted."""
+
+    def step(v, _t=0.0, _h=0.0):
+        v["end.force.x"] = -400.0 * v["end.position.x"]
+
+    ports = [inp("end.position.x", "m"), out("end.force.x", "N")]
+    mock = Bonded(ports, step, step)
+    table = {"time": [0.0, 0.8], "spring.end.position.x": [0.0, 0.1]}
+    for steps in (20, 200):
+        system, sources = wired(
+            {"spring": mock}, [], scenario={"inputs": table}, exchange_step=1.0 / steps
+        )
+        done = simulate(system, tmp_path / str(steps), sources=sources)
+        assert done.series["coupling.scenario.work"][-1] == pytest.approx(2.0, rel=1e-12)
+
+
+def test_exchanges_with_a_table_stay_in_the_loop_until_a_condition_is_true(monkeypatch):
+    """400 exchanges with a table and noise: the master looks at the start, at the condition and at the end."""
+    looks = []
+    look = Course.look
+    monkeypatch.setattr(Course, "look", lambda self, n: (looks.append(n), look(self, n))[1])
+    table = {"time": [0.0, 1.0], "rock.force.x": [0.0, 1.0]}
+    hit = {"port": "rock.torque", "value": 4.0, "when": "rock.position.y < 0.95"}
+    system = fall().with_options(exchange_step=1e-4, stop_time=0.2).scenario(table, values=[hit])
+    run = rockshed.simulate(system)
+    (event,) = run.provenance["scenario_events"]
+    first = int(np.argmax(run["rock.position.y"].values < 0.95))
+    assert looks == [0, first, 1000, 2000] or looks == [0, 1000, first, 2000]
+    assert event["at"] == pytest.approx(first * 1e-4)
 
 
 # ------------------------------------------------------------------ files

@@ -12,17 +12,24 @@ from .blocks import Block, make_blocks
 from .snapshots import Snapshots
 from .tables import (
     CHANNEL,
+    CONDITION,
     DISCRETE,
     EXTRAPOLATED,
     GIVER,
     LINEAR,
     POSTED,
+    SIGNS,
     TAKER,
     WATCHED,
     IntegerTable,
     Records,
 )
 from .texts import Texts
+
+_MOST_EXCHANGES = 1000
+"""Exchanges of a course that are computed at once."""
+_MOST_NUMBERS = 1_000_000
+"""Inputs times exchanges of a course, at most."""
 
 
 class Buses:
@@ -54,6 +61,14 @@ class Buses:
         them.
     fired : array of int
         Number of exchanges after which each condition of the scenario was true; -1 before.
+    conditions : array of CONDITION
+        Those conditions, for the loop.
+    course : array of float, shape (exchanges, inputs, 2)
+        Factor and offset of the inputs of the scenario that change all the time.
+    course_rows : array of int64, shape (inputs,)
+        Their rows in ``linear``.
+    course_span : array of int64, shape (2,)
+        The first exchange in the course, and how many it has.
     extrapolated : array of EXTRAPOLATED
         Inputs that follow polynomials, by rising place.
     discrete : array of DISCRETE
@@ -75,6 +90,12 @@ class Buses:
         self.watched = _watched(plan)
         self.linear = _linear(plan)
         self.fired = np.full(len(plan.scenario.conditions), -1, np.int64)
+        self.conditions = _conditions(plan)
+        places = [plan.place_of_input[name] for name in plan.scenario.restless]
+        self.course_rows = np.searchsorted(self.linear["place"], places).astype(np.int64)
+        number = min(_MOST_EXCHANGES, _MOST_NUMBERS // max(1, len(places)))
+        self.course = np.full((number if places else 0, len(places), 2), np.nan)
+        self.course_span = np.zeros(2, np.int64)
         self.extrapolated = _extrapolated(plan)
         self.discrete = _discrete(plan)
         self.jumps = np.zeros(len(plan.order), np.int64)
@@ -238,10 +259,10 @@ def unfit_text(end: End, value: float) -> str:
 
 
 def _channels(plan: Plan) -> Records:
-    channels = np.zeros(sum(bond.force.size for bond in plan.bonds), CHANNEL)
-    if plan.bonds:
+    channels = np.zeros(sum(bond.force.size for bond in plan.channels), CHANNEL)
+    if plan.channels:
         for name in ("given", "seen", "force", "position"):
-            channels[name] = np.concatenate([getattr(bond, name) for bond in plan.bonds])
+            channels[name] = np.concatenate([getattr(bond, name) for bond in plan.channels])
     return channels
 
 
@@ -252,6 +273,14 @@ def _linear(plan: Plan) -> Records:
     }
     rows = [(place, *ways[place]) for place in sorted(ways)]
     return np.array(rows, LINEAR)
+
+
+def _conditions(plan: Plan) -> Records:
+    """Return the table of conditions, none of which has been true."""
+    places = {end.name: place for place, end in enumerate(plan.outputs)}
+    conditions = [switch.condition for switch in plan.scenario.conditions if switch.condition]
+    rows = [(places[c.end.name], SIGNS.index(c.sign), 1, c.number) for c in conditions]
+    return np.array(rows, CONDITION)
 
 
 def _within(places: IntegerTable, block: Block) -> slice:

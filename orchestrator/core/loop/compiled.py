@@ -156,7 +156,8 @@ def _call_step(  # type: ignore[no-untyped-def]
 def _post(channels, inputs, outputs):  # type: ignore[no-untyped-def]
     """Enter the work of one exchange."""
     for i in range(channels.size):
-        _post_taker(channels[i], inputs, outputs)
+        if channels[i]["given"] >= 0:
+            _post_taker(channels[i], inputs, outputs)
         if channels[i]["seen"] >= 0:
             _post_giver(channels[i], inputs, outputs)
 
@@ -212,6 +213,48 @@ def _watch(watched, outputs, exchange, units):  # type: ignore[no-untyped-def]
             entry["low_at"] = exchange
         entry["area"] += 0.5 * (entry["last"] + value) * units
         entry["last"] = value
+
+
+@_compiled
+def _follow(tables, exchange):  # type: ignore[no-untyped-def]
+    """Change the inputs of a course for the exchange after so many of them.
+
+    Polynomials of those that are extrapolated begin anew.
+    """
+    number = tables.course_rows.size
+    at = exchange - tables.course_span[0]
+    if number == 0 or at < 0 or at >= tables.course_span[1]:
+        return
+    for i in range(number):
+        factor = tables.course[2 * (at * number + i)]
+        if factor != factor:  # it is not changed now
+            continue
+        way = tables.linear[tables.course_rows[i]]
+        way["factor"] = factor
+        way["offset"] = tables.course[2 * (at * number + i) + 1]
+        for row in range(tables.extrapolated.size):
+            if tables.extrapolated[row]["place"] == way["place"]:
+                tables.extrapolated[row]["known"] = 0
+
+
+@_compiled
+def _has_come(conditions, outputs):  # type: ignore[no-untyped-def]
+    """Tell whether a condition that waits is true."""
+    for i in range(conditions.size):
+        condition = conditions[i]
+        if condition["waits"] == 0:
+            continue
+        value = outputs[condition["place"]]
+        number = condition["number"]
+        sign = condition["sign"]
+        if (
+            (sign == 0 and value < number)
+            or (sign == 1 and value <= number)
+            or (sign == 2 and value > number)
+            or (sign == 3 and value >= number)
+        ):
+            return True
+    return False
 
 
 @_compiled
@@ -480,6 +523,7 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
         n = first + i * units
         origin = tables.start + n // period * period * tables.exchange
         tables.journal[0] = n
+        _follow(tables, n)
         for o in range(tables.first[n % period], tables.first[n % period + 1]):
             tables.journal[1] = o
             status = _operate(tables, o, origin)
@@ -496,6 +540,8 @@ def advance(tables, first, count):  # type: ignore[no-untyped-def]
             if status != 0:
                 return n - first, o, status
         tables.journal[1] = -1
+        if _has_come(tables.conditions, tables.outputs):
+            return end - first, 0, 0
     return count * units, 0, 0
 
 

@@ -25,10 +25,20 @@ class Driver:
     ----------
     loop : ExchangeLoop
         Gives counts of warnings and of early returns, and the time that a step has reached.
+    halted_after : int or None
+        Number of exchanges that the newest :meth:`advance` has carried out, where a condition of
+        the scenario ended it; else None.
     """
+
+    halted_after: int | None = None
 
     def __init__(self, loop: ExchangeLoop) -> None:
         self.loop = loop
+
+    @property
+    def halts(self) -> bool:
+        """Whether it ends its exchanges where a condition of the scenario comes true."""
+        return type(self) is Driver
 
     def begin(self) -> None:
         """Act before the first exchange of this process, when all values are there."""
@@ -64,7 +74,10 @@ class Driver:
         Fault or None
             The operation that failed.
         """
-        return self.loop.advance(first, count)
+        fault = self.loop.advance(first, count)
+        has_halted = fault is None and self.loop.done < count
+        self.halted_after = self.loop.done if has_halted else None
+        return fault
 
     def record(self, exchange: int) -> Fault | None:
         """Take a snapshot of the values after so many exchanges, behind those that wait."""

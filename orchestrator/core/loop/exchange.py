@@ -54,6 +54,12 @@ class ExchangeLoop:
         Values that the exchanges change.
     slaves : mapping of str to Slave
         Initialised, by component. Those that are made of Python are called back.
+
+    Attributes
+    ----------
+    done : int
+        Exchange steps of the newest call without a fault: fewer than were asked for where a
+        condition has come true.
     """
 
     def __init__(self, buses: Buses, slaves: Mapping[str, Slave]) -> None:
@@ -65,6 +71,7 @@ class ExchangeLoop:
             name: Callbacks(slave) for name, slave in slaves.items() if slave.addresses is None
         }
         self._waiting = buses.snapshots.waiting
+        self.done = 0
         self._texts = TextCalls(buses.texts, slaves)
         self._tables = _tables(buses, self._addresses(slaves), self._texts)
         self._head = head(self._tables)
@@ -197,6 +204,7 @@ class ExchangeLoop:
         head[NUMBERS.index("row")] = len(self._waiting) + rows
         done, number, status = self._loop(head, first, count)
         if not status:
+            self.done = int(done)
             return None
         operation = self._operations[number]
         called_back = self._callbacks.get(operation.component)
@@ -280,6 +288,10 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         posted=buses.posted,
         watched=buses.watched,
         snapshots=snapshots.rows.ravel(),
+        course=buses.course.ravel(),
+        course_rows=buses.course_rows,
+        course_span=buses.course_span,
+        conditions=buses.conditions,
         journal=buses.journal,
         warned=np.zeros(len(operations), np.int64),
         returned=np.zeros(len(operations), np.int64),

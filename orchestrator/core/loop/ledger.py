@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ..errors import RunFailed
 from ..fmu.access import read_values
 from ..fmu.slave import WARNING, Slave
+from ..results.columns import WORK_OF_SCENARIO
 from ..results.metric import Metric
 from ..results.run_folder import Column
 from ..system.plan import End
@@ -31,6 +32,11 @@ _DESCRIPTIONS = {
     "energy": "sum of both works: energy that the coupling has made",
 }
 """Columns of a bond, and their descriptions."""
+_OF_SCENARIO = Column(
+    WORK_OF_SCENARIO,
+    "J",
+    "work that the forces and motions which a scenario imposes have done on the components",
+)
 RUNAWAY = 10.0
 """Share of E0 beyond which an error of energy ends the run: nothing after it means anything."""
 
@@ -95,7 +101,7 @@ class Accounts:
         self.plan = buses.plan
         self._slaves = slaves
         self._snapshots = buses.snapshots
-        ends = np.cumsum([0, *(bond.force.size for bond in self.plan.bonds)])
+        ends = np.cumsum([0, *(bond.force.size for bond in self.plan.channels)])
         self._channels = [slice(a, b) for a, b in pairwise(ends)]
         self._at_start = [self._read(bond.work) for bond in self.plan.bonds]
         self._balances_at_start = [self._read(end) for end in self.plan.balances]
@@ -121,7 +127,7 @@ class Accounts:
     @property
     def columns(self) -> int:
         """Number of values that :meth:`values` gives."""
-        return len(_DESCRIPTIONS) * len(self.plan.bonds)
+        return len(_DESCRIPTIONS) * len(self.plan.bonds) + (self.plan.imposed is not None)
 
     @property
     def described(self) -> list[Column]:
@@ -130,10 +136,10 @@ class Accounts:
             Column(f"coupling.{bond.name}.{name}", "J", description)
             for bond in self.plan.bonds
             for name, description in _DESCRIPTIONS.items()
-        ]
+        ] + ([] if self.plan.imposed is None else [_OF_SCENARIO])
 
     def values(self, rows: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return works and coupling energy of all bonds.
+        """Return works and coupling energy of all bonds, and the work of a scenario.
 
         Parameters
         ----------
@@ -162,8 +168,17 @@ class Accounts:
             self.plan.balances, self._balances, self._balances_at_start, strict=True
         ):
             watched.look(rows[:, self._snapshots.place[end.name]] - start, times, most)
+        if self.plan.imposed is not None:
+            found[:, -1] = self._of_scenario(rows)
+            self._largest_work = max(self._largest_work, float(np.abs(found[:, -1]).max()))
         self._newest = found[-1]
         return found
+
+    def _of_scenario(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the work of the forces and motions that a scenario imposes."""
+        channels = self._channels[-1]
+        taken = rows[:, self._snapshots.taken][:, channels]
+        return _sums(taken + rows[:, self._snapshots.given_back][:, channels])
 
     def memory(self) -> dict[str, NDArray[np.float64]]:
         """Return what has been found since the start, by name."""

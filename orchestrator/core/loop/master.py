@@ -241,8 +241,8 @@ class Master:
             if self.ended_by:
                 self._record_end()
                 return True
-            if self.exchanges == due:
-                self._look(due)
+            if self.exchanges == due or self.driver.halted_after is not None:
+                self._look(self.exchanges)
             if progress is not None:
                 progress(timing.seconds(self.exchanges), stop)
         if self.exchanges % snapshots.every:
@@ -281,7 +281,7 @@ class Master:
         took = time.perf_counter() - began
         self.wall_time += took
         self.cpu_time += time.thread_time() - began_of_thread
-        self._arrive(count, fault)
+        self._arrive(self.driver.halted_after or count, fault)
         if fault is not None and not self._is_end(fault):
             raise self._failure(fault) from fault.cause
         self._recorder.look()

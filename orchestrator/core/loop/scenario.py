@@ -1,7 +1,8 @@
 """Scenarios during a run: what an input gets in the place of its source's value.
 
-Everything is done between two exchanges: factor and offset of an input are changed
-(:attr:`~.buses.Buses.linear`), with which every input gets the value of its source.
+Factor and offset of an input are changed (:attr:`~.buses.Buses.linear`), with which every input
+gets the value of its source. What changes at every exchange is computed for many of them, and the
+loop takes it from there; all else is done between two exchanges.
 """
 
 import math
@@ -9,11 +10,15 @@ from collections.abc import Iterator, Mapping
 from zlib import crc32
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..fmu.slave import Slave
 from ..system.plan import Plan, PlannedFault, Switch
 from .buses import Buses
 from .changes import set_between_steps
+
+_OF_A_COUNT = 4
+"""Random numbers that Philox gives for one count."""
 
 
 class Course:
@@ -27,7 +32,14 @@ class Course:
         Whose linear inputs it changes.
     slaves : mapping of str to Slave
         By component.
+
+    Attributes
+    ----------
+    asks_always : bool
+        Whether conditions are looked at after each exchange, as the exchanges do not end for them.
     """
+
+    asks_always = False
 
     def __init__(self, buses: Buses, slaves: Mapping[str, Slave]) -> None:
         self._buses = buses
@@ -43,18 +55,47 @@ class Course:
     # ------------------------------------------------------------------ when
 
     def next(self, exchange: int) -> int:
-        """Return the number of exchanges, more than these, after which something is due."""
-        scenario = self._scenario
-        noisy = any(f.kind == "noise" and f.begin <= exchange < f.stop for f in scenario.faults)
-        if scenario.driven or noisy or np.any(self._buses.fired < 0):
+        """Return the number of exchanges, more than these, after which something is due.
+
+        Until then, the loop has what it needs of the course of inputs.
+        """
+        buses = self._buses
+        buses.conditions["waits"] = waits = buses.fired < 0
+        if self.asks_always and waits.any():
             return exchange + 1
         later = [moment for moment in self._moments() if moment > exchange]
+        if buses.course_rows.size:
+            self._compute_course(exchange)
+            later.append(int(buses.course_span.sum()))
         return min(later, default=self._plan.timing.exchanges)
 
     def _moments(self) -> Iterator[int]:
         yield from (s.exchange for s in self._scenario.switches if s.exchange is not None)
         for fault in self._scenario.faults:
             yield from (fault.begin, fault.stop)
+
+    def _compute_course(self, first: int) -> None:
+        """Compute what inputs get at many exchanges from one on, if that has not been done."""
+        course, span = self._buses.course, self._buses.course_span
+        if span[0] <= first < span[0] + span[1]:
+            return
+        timing = self._plan.timing
+        end = min(first + len(course), timing.exchanges)
+        times = np.array([timing.seconds(exchange) for exchange in range(first, end)])
+        columns = {name: column for column, name in enumerate(self._scenario.restless)}
+        course[:] = np.nan
+        for driven in self._scenario.driven:
+            values = self._scenario.signals.over(times, driven.name, driven.port.is_held)
+            course[: times.size, columns[driven.name], 0] = 0.0
+            course[: times.size, columns[driven.name], 1] = values
+        for fault in self._scenario.noisy:
+            begin, stop = max(first, fault.begin), min(end, fault.stop)
+            if begin < stop:
+                factor, offset = self._way(fault.end.name)
+                rows = course[begin - first : stop - first, columns[fault.end.name]]
+                rows[:, 0] = factor
+                rows[:, 1] = offset + fault.deviation * noises(fault, begin, stop - begin)
+        span[:] = first, end - first
 
     # ------------------------------------------------------------------ what
 
@@ -67,9 +108,6 @@ class Course:
             A component refuses a value.
         """
         time = self._plan.timing.seconds(exchange)
-        for end in self._scenario.driven:
-            value = self._scenario.signals.at(time, end.name, end.port.is_held)
-            self._deliver(end.name, 0.0, value)
         for switch in self._scenario.switches:
             if switch.exchange == exchange:
                 self._set(switch, time)
@@ -102,11 +140,9 @@ class Course:
     def _disturb(self, fault: PlannedFault, exchange: int) -> None:
         name = fault.end.name
         factor, offset = self._way(name)
-        if fault.kind == "noise":
-            self._deliver(name, factor, offset + fault.deviation * noise(fault, exchange))
-        elif fault.kind == "cut":
+        if fault.kind == "cut":
             self._deliver(name, 0.0, fault.instead)
-        elif fault.begin == exchange:
+        elif fault.kind == "frozen" and fault.begin == exchange:
             source = float(self._buses.outputs[self._plan.source[self._places[name]]])
             self._deliver(name, 0.0, factor * source + offset)
 
@@ -151,10 +187,10 @@ class Course:
         ]
 
 
-def noise(fault: PlannedFault, exchange: int) -> float:
-    """Return a number of the standard normal distribution.
+def noises(fault: PlannedFault, first: int, count: int) -> NDArray[np.float64]:
+    """Return numbers of the standard normal distribution, one for each exchange.
 
-    It follows from the seed, the name of the input and the exchange alone: a run that goes on, and
+    They follow from the seed, the name of the input and the exchange alone: a run that goes on, and
     one with another fault beside this one, have the same numbers. Philox counts [1]_, and two of
     its numbers make one that is normally distributed [2]_.
 
@@ -162,12 +198,12 @@ def noise(fault: PlannedFault, exchange: int) -> float:
     ----------
     fault : PlannedFault
         Whose seed and input count.
-    exchange : int
-        Number of exchanges before.
+    first, count : int
+        Number of exchanges before the first one, and how many there are.
 
     Returns
     -------
-    float
+    array of float, shape (count,)
         Mean 0, standard deviation 1.
 
     References
@@ -176,7 +212,16 @@ def noise(fault: PlannedFault, exchange: int) -> float:
     .. [2] Box and Muller, A note on the generation of random normal deviates, 1958.
     """
     key = np.array([fault.seed, crc32(fault.end.name.encode())], np.uint64)
-    first, second = np.random.Philox(key=key, counter=exchange).random_raw(2)
-    uniform = ((int(first) >> 11) + 1) * 2.0**-53  # above 0, at most 1
-    angle = 2.0 * math.pi * (int(second) >> 11) * 2.0**-53
+    drawn = np.random.Philox(key=key, counter=first).random_raw(_OF_A_COUNT * count)
+    pairs = drawn.reshape(count, _OF_A_COUNT)[:, :2].tolist()
+    return np.array([_normal(one, other) for one, other in pairs])
+
+
+def _normal(one: int, other: int) -> float:
+    """Return a normally distributed number of two random ones with 64 bits.
+
+    The functions are those for single numbers: those for arrays have other bits on some processors.
+    """
+    uniform = ((one >> 11) + 1) * 2.0**-53  # above 0, at most 1
+    angle = 2.0 * math.pi * (other >> 11) * 2.0**-53
     return math.sqrt(-2.0 * math.log(uniform)) * math.cos(angle)

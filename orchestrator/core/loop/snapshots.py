@@ -49,7 +49,7 @@ class Snapshots:
         self.every = plan.timing.output_every
         self.blocks = make_blocks(self.ends[self.exchanged :], self.exchanged)
         self.place = {end.name: i for i, end in enumerate(self.ends)}
-        channels = sum(bond.force.size for bond in plan.bonds)
+        channels = sum(bond.force.size for bond in plan.channels)
         self.taken = slice(len(self.ends), len(self.ends) + channels)
         self.given_back = slice(self.taken.stop, self.taken.stop + channels)
         self.waiting: list[int] = []

@@ -83,6 +83,11 @@ the newest value."""
 DISCRETE = _record("place", "last")
 """An output that changes at events alone, and its value before the newest one."""
 
+CONDITION = _record("place sign waits", "number")
+"""A comparison of an output with a number. sign: 0 to 3, see :data:`SIGNS`. waits: whether it has
+not been true yet, and the loop stops for it."""
+SIGNS = ("<", "<=", ">", ">=")
+
 TAKER, GIVER = range(2)
 POSTED = _record("channel side")
 """A side of a force of a power bond, TAKER or GIVER."""
@@ -145,6 +150,15 @@ class Tables(NamedTuple):
         Watched outputs.
     snapshots : array of float64
         Rows of :class:`rockshed.core.loop.snapshots.Snapshots`, one after the other.
+    course : array of float64
+        Factor and offset of each input of a course at each exchange, one exchange after the other;
+        NaN where it is not changed.
+    course_rows : array of int64
+        Its inputs, by their rows in ``linear``.
+    course_span : array of int64, shape (2,)
+        The first exchange in it, and how many.
+    conditions : array of CONDITION
+        The loop stops behind the exchange after which one of them is true.
     journal : array of int64, shape (2,)
         Exchange and operation under way, -1 while none is.
     warned : array of int64
@@ -186,6 +200,10 @@ class Tables(NamedTuple):
     posted: Records
     watched: Records
     snapshots: FloatTable
+    course: FloatTable
+    course_rows: IntegerTable
+    course_span: IntegerTable
+    conditions: Records
     journal: IntegerTable
     warned: IntegerTable
     returned: IntegerTable
@@ -227,6 +245,10 @@ KINDS = {
     "posted": POSTED,
     "watched": WATCHED,
     "snapshots": np.dtype(np.float64),
+    "course": np.dtype(np.float64),
+    "course_rows": np.dtype(np.int64),
+    "course_span": np.dtype(np.int64),
+    "conditions": CONDITION,
     "journal": np.dtype(np.int64),
     "warned": np.dtype(np.int64),
     "returned": np.dtype(np.int64),

@@ -40,7 +40,8 @@ class Energies:
         known = _read(slaves, given) if isinstance(given, End) else given
         self._given = abs(known) if known is not None else None
         self._kinetic = sum(_read(slaves, end) for end in plan.kinetic)
-        self._begins = np.cumsum([0, *(bond.force.size for bond in plan.bonds)])[:-1]
+        places = np.cumsum([0, *(bond.force.size for bond in plan.bonds)])
+        self._begins, self._end = places[:-1], int(places[-1])
         self._works = np.zeros(0)
         self._forces = np.zeros(0)
         self._positions = np.zeros(0)
@@ -48,7 +49,7 @@ class Energies:
 
     def enter(self) -> None:
         """Begin an exchange with the present values."""
-        channels = self._buses.channels
+        channels = self._buses.channels[: self._end]  # those of bonds
         self._works = channels["taken"].copy()
         self._forces = self._buses.outputs[channels["force"]]
         self._positions = self._buses.outputs[channels["position"]]

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
+WORK_OF_SCENARIO = "coupling.scenario.work"
+"""Column with the work (J) of what a scenario imposes on power ports."""
 ArrowColumn = tuple[Any, Any]
 """Values of a column, and its field: name, type and metadata."""
 

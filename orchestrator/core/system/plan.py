@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +60,8 @@ class BondPlaces:
         Of the bond in the system.
     given, seen : array of int, shape (channels,)
         Places among the inputs: the force that is set in the taker, the position that is shown to
-        the giver. Without a connection that shows it, ``seen`` is -1, and ``work`` is there.
+        the giver. Without a connection that shows it, ``seen`` is -1, and ``work`` is there. One of
+        both is -1 where a scenario imposes the other.
     force, position : array of int, shape (channels,)
         Places among the outputs: the force that the giver computes, the position of the taker.
     work : End or None
@@ -186,6 +188,16 @@ class PlannedScenario:
         return dict.fromkeys(self.inputs, (1.0, 0.0))
 
     @property
+    def noisy(self) -> list[PlannedFault]:
+        """Faults that add noise."""
+        return [fault for fault in self.faults if fault.kind == "noise"]
+
+    @property
+    def restless(self) -> list[str]:
+        """Names of the inputs that may change at every exchange."""
+        return list(dict.fromkeys(e.name for e in (*self.driven, *(f.end for f in self.noisy))))
+
+    @property
     def asked(self) -> list[End]:
         """Outputs that conditions ask for."""
         return [switch.condition.end for switch in self.switches if switch.condition is not None]
@@ -263,6 +275,8 @@ class Plan:
         at the start.
     scenario : PlannedScenario
         What changes during the run; all its inputs are in ``linear``.
+    imposed : BondPlaces or None
+        Channels in which the scenario does work; None where it does none that can be counted.
     extrapolated : tuple of Extrapolated
         Inputs that do not hold between exchanges, by rising place.
     longer : tuple of Schedule
@@ -294,11 +308,22 @@ class Plan:
     texts: tuple[tuple[End, End], ...] = ()
     recorded_texts: tuple[End, ...] = ()
     scenario: PlannedScenario = PlannedScenario()
+    imposed: BondPlaces | None = None
     extrapolated: tuple[Extrapolated, ...] = ()
     longer: tuple[Schedule, ...] = ()
     iteration: PlannedIteration | None = None
     loops: tuple[str, ...] = ()
     loops_at_start: tuple[str, ...] = ()
+
+    @cached_property
+    def place_of_input(self) -> Mapping[str, int]:
+        """Places of the inputs by their names."""
+        return {end.name: place for place, end in enumerate(self.inputs)}
+
+    @property
+    def channels(self) -> tuple[BondPlaces, ...]:
+        """Everything that has channels of work: the power bonds, then what a scenario imposes."""
+        return self.bonds if self.imposed is None else (*self.bonds, self.imposed)
 
     @property
     def fed(self) -> Iterator[tuple[int, End, End]]:

@@ -18,6 +18,7 @@ from .bonding import BondEnds, Bonder, bond_places
 from .describing import Describer
 from .extrapolation import Extrapolating, extrapolation_problems
 from .finding import Finder
+from .imposing import imposed_ends, imposed_places
 from .iterated import iteration_problems, plan_iteration
 from .limits import amount_problems, internal_step_problems
 from .linking import Linker, Links
@@ -156,6 +157,12 @@ class _Planner:
         targets = [*(target for _, target in parts.links), *parts.scenario.inputs.values()]
         inputs = _sorted(order, with_whole_arrays(self.finder.descriptions, targets))
         exchanged = [*(s for s, _ in parts.links), *parts.watched, *at_bonds, *parts.scenario.asked]
+        imposed = imposed_ends(
+            self.finder.descriptions,
+            parts.scenario.inputs.values(),
+            (target.name for _, target in parts.links),
+        )
+        exchanged += [pair.shown for pair in imposed]
         outputs = _sorted(order, with_whole_arrays(self.finder.descriptions, exchanged))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
@@ -188,6 +195,7 @@ class _Planner:
             texts=tuple((target, source) for source, target in parts.texts),
             recorded_texts=tuple(parts.recorded_texts),
             scenario=parts.scenario,
+            imposed=imposed_places(imposed, place, place_of_input),
             extrapolated=extrapolating.inputs(inputs, outputs, source),
             longer=schedules[1:],
         )

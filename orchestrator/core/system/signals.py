@@ -45,14 +45,34 @@ class Signals:
         float
             The value.
         """
+        return float(self.over(np.array([time]), name, held)[0])
+
+    def over(self, times: NDArray[np.float64], name: str, held: bool) -> NDArray[np.float64]:
+        """Return a value at many times, see :meth:`at`.
+
+        Parameters
+        ----------
+        times : ndarray of float64, shape (n,)
+            Times (s).
+        name, held
+            As :meth:`at` has them.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+        """
         values = self.columns[name]
-        now = time + 8.0 * np.spacing(abs(time))  # a time that is computed may lie before a row
-        row = int(np.searchsorted(self.time, now, side="right")) - 1
-        if row < 0 or held or row == len(self.time) - 1:
-            return float(values[max(row, 0)])
-        begin, end = self.time[row], self.time[row + 1]
-        left = min(max((end - time) / (end - begin), 0.0), 1.0)
-        return float(left * values[row] + (1.0 - left) * values[row + 1])
+        now = times + 8.0 * np.spacing(np.abs(times))  # a computed time may lie before a row
+        row = np.searchsorted(self.time, now, side="right") - 1
+        found = values[np.maximum(row, 0)]
+        between = (row >= 0) & (row < len(self.time) - 1)
+        if held or not between.any():
+            return found
+        first = row[between]
+        begin, end = self.time[first], self.time[first + 1]
+        left = np.clip((end - times[between]) / (end - begin), 0.0, 1.0)
+        found[between] = left * values[first] + (1.0 - left) * values[first + 1]
+        return found
 
 
 def signals_of(table: Mapping[str, Sequence[float]], where: str) -> Signals:
