@@ -288,16 +288,23 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         posted=buses.posted,
         watched=buses.watched,
         snapshots=snapshots.rows.ravel(),
-        course=buses.course.ravel(),
-        course_rows=buses.course_rows,
-        course_span=buses.course_span,
-        conditions=buses.conditions,
+        **_of_scenario(buses),
         journal=buses.journal,
         warned=np.zeros(len(operations), np.int64),
         returned=np.zeros(len(operations), np.int64),
         told=np.zeros(1, np.int64),
         reached=np.zeros(1),
     )
+
+
+def _of_scenario(buses: Buses) -> dict[str, Any]:
+    """Return the tables of what a scenario changes, and waits for, within the loop."""
+    return {
+        "course": buses.course.ravel(),
+        "course_rows": buses.course_rows,
+        "course_span": buses.course_span,
+        "conditions": buses.conditions,
+    }
 
 
 def _calls(

@@ -41,7 +41,8 @@ class Energies:
         self._given = abs(known) if known is not None else None
         self._kinetic = sum(_read(slaves, end) for end in plan.kinetic)
         places = np.cumsum([0, *(bond.force.size for bond in plan.bonds)])
-        self._begins, self._end = places[:-1], int(places[-1])
+        self._begins = places[:-1]
+        self._end = int(places[-1])
         self._works = np.zeros(0)
         self._forces = np.zeros(0)
         self._positions = np.zeros(0)

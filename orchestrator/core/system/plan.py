@@ -189,7 +189,7 @@ class PlannedScenario:
 
     @property
     def noisy(self) -> list[PlannedFault]:
-        """Faults that add noise."""
+        """Faults that add noise to what a connection delivers, in the order of the scenario."""
         return [fault for fault in self.faults if fault.kind == "noise"]
 
     @property

@@ -18,7 +18,7 @@ from .bonding import BondEnds, Bonder, bond_places
 from .describing import Describer
 from .extrapolation import Extrapolating, extrapolation_problems
 from .finding import Finder
-from .imposing import imposed_ends, imposed_places
+from .imposing import Imposed, imposed_ends, imposed_places
 from .iterated import iteration_problems, plan_iteration
 from .limits import amount_problems, internal_step_problems
 from .linking import Linker, Links
@@ -68,6 +68,7 @@ class _Parts(NamedTuple):
     recorded_texts: list[End]
     reference: float | End | None
     scenario: PlannedScenario
+    imposed: list[Imposed]
 
 
 @dataclass
@@ -120,13 +121,15 @@ class _Planner:
         linker = Linker(self.finder, self.sources)
         links = linker.links()
         starter = Starter(self.finder)
-        starts = starter.starts({target.name for _, target in links})
+        fed = {target.name for _, target in links}
+        starts = starter.starts(fed)
         starter.check_arrays(links, starts)
         bonder = Bonder(self.finder)
         bonds = [bonder.bond(name, bond, links) for name, bond in self.system.bonds.items()]
         self.finder.problems += extrapolation_problems(
             self.system, self.finder.descriptions, (target for _, target in links)
         )
+        scenario = self._scenario(links, starts, timing)
         return _Parts(
             [link for link in links if link[0].port.is_number],
             linker.linear,
@@ -137,7 +140,8 @@ class _Planner:
             self.finder.selected("record", self.system.record),
             self.finder.texts_selected(self.system.record),
             bonder.reference(),
-            self._scenario(links, starts, timing),
+            scenario,
+            imposed_ends(self.finder.descriptions, scenario.inputs.values(), fed),
         )
 
     def _scenario(
@@ -157,12 +161,7 @@ class _Planner:
         targets = [*(target for _, target in parts.links), *parts.scenario.inputs.values()]
         inputs = _sorted(order, with_whole_arrays(self.finder.descriptions, targets))
         exchanged = [*(s for s, _ in parts.links), *parts.watched, *at_bonds, *parts.scenario.asked]
-        imposed = imposed_ends(
-            self.finder.descriptions,
-            parts.scenario.inputs.values(),
-            (target.name for _, target in parts.links),
-        )
-        exchanged += [pair.shown for pair in imposed]
+        exchanged += [pair.shown for pair in parts.imposed]
         outputs = _sorted(order, with_whole_arrays(self.finder.descriptions, exchanged))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
@@ -195,7 +194,7 @@ class _Planner:
             texts=tuple((target, source) for source, target in parts.texts),
             recorded_texts=tuple(parts.recorded_texts),
             scenario=parts.scenario,
-            imposed=imposed_places(imposed, place, place_of_input),
+            imposed=imposed_places(parts.imposed, place, place_of_input),
             extrapolated=extrapolating.inputs(inputs, outputs, source),
             longer=schedules[1:],
         )
