@@ -257,7 +257,7 @@ class Excerpt:
 def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) -> Tables:
     plan, snapshots = buses.plan, buses.snapshots
     operations, moves = _calls(buses, addresses, texts)
-    buffer = np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int64)
+    longs = np.zeros(max(len(plan.inputs), len(snapshots.ends)), np.int64)
     return Tables(
         start=plan.timing.start,
         exchange=plan.schedule.exchange,
@@ -279,11 +279,8 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         extrapolated=buses.extrapolated,
         discrete=buses.discrete,
         jumps=buses.jumps,
-        singles=buffer.view(np.float32),
-        bytes=buffer.view(np.int8),
-        shorts=buffer.view(np.int16),
-        integers=buffer.view(np.int32),
-        longs=buffer,
+        **_buffers(longs),
+        longs=longs,
         channels=buses.channels,
         posted=buses.posted,
         watched=buses.watched,
@@ -295,6 +292,16 @@ def _tables(buses: Buses, addresses: Mapping[str, Addresses], texts: TextCalls) 
         told=np.zeros(1, np.int64),
         reached=np.zeros(1),
     )
+
+
+def _buffers(longs: NDArray[np.int64]) -> dict[str, Any]:
+    """Return the buffer of values on their way in the forms other than that of whole numbers."""
+    return {
+        "singles": longs.view(np.float32),
+        "bytes": longs.view(np.int8),
+        "shorts": longs.view(np.int16),
+        "integers": longs.view(np.int32),
+    }
 
 
 def _of_scenario(buses: Buses) -> dict[str, Any]:

@@ -157,12 +157,9 @@ class _Planner:
 
     def _resolved(self, order: tuple[str, ...], timing: Timing, parts: _Parts) -> Plan:
         """Replace ports by places on the buses."""
-        at_bonds = [end for bond in parts.bonds for end in bond.force + bond.position]
         targets = [*(target for _, target in parts.links), *parts.scenario.inputs.values()]
         inputs = _sorted(order, with_whole_arrays(self.finder.descriptions, targets))
-        exchanged = [*(s for s, _ in parts.links), *parts.watched, *at_bonds, *parts.scenario.asked]
-        exchanged += [pair.shown for pair in parts.imposed]
-        outputs = _sorted(order, with_whole_arrays(self.finder.descriptions, exchanged))
+        outputs = _sorted(order, with_whole_arrays(self.finder.descriptions, _exchanged(parts)))
         place = {end.name: i for i, end in enumerate(outputs)}
         place_of_input = {end.name: i for i, end in enumerate(inputs)}
         feeds = {target.name: place[source.name] for source, target in parts.links}
@@ -281,6 +278,15 @@ def _sorted(order: tuple[str, ...], ends: Iterable[End]) -> tuple[End, ...]:
             ),
         )
     )
+
+
+def _exchanged(parts: _Parts) -> Iterator[End]:
+    """Yield the outputs that an exchange has to read."""
+    yield from (source for source, _ in parts.links)
+    yield from parts.watched
+    yield from (end for bond in parts.bonds for end in bond.force + bond.position)
+    yield from parts.scenario.asked
+    yield from (pair.shown for pair in parts.imposed)
 
 
 def _held(end: End, starts: Mapping[str, Starts]) -> float:
