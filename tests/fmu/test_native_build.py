@@ -15,7 +15,9 @@ from pathlib import Path
 
 import psutil
 import pytest
+from typer.testing import CliRunner
 
+from rockshed.commands.app import app
 from rockshed.components.catalogue import NAMES, component
 from rockshed.fmus.build import (
     BuildError,
@@ -24,11 +26,12 @@ from rockshed.fmus.build import (
     build_component,
     build_if_needed,
     file_name,
+    folder_name,
     native_is_fresh,
 )
 from rockshed.fmus.native import fmu as native_fmu
 from rockshed.fmus.native.fmu import CPU, compiler, model_header, native_files
-from rockshed.platforms import Platform
+from rockshed.platforms import Platform, platforms_of
 
 from .host import Host
 
@@ -200,35 +203,52 @@ def test_a_library_offers_fmi_and_needs_the_c_library_only(native_fmus, fmi3_fmu
         assert b"python" not in content.lower().replace(b"runs in python", b"")
 
 
+FOLDERS = {
+    "x86_64-linux": ("linux64", ".so"),
+    "x86_64-windows": ("win64", ".dll"),
+    "x86_64-darwin": ("darwin64", ".dylib"),
+    "aarch64-linux": ("aarch64-linux", ".so"),
+    "aarch64-darwin": ("aarch64-darwin", ".dylib"),
+}
+"""Folder of a platform in FMI 2.0, and suffix of its libraries; in FMI 3.0 its name is the folder."""
+OF_THE_LOADER = {"_mh_dylib_header", "__dso_handle"}
+
+
 @pytest.mark.slow
 @needs_zig
-@pytest.mark.parametrize(
-    ("fmi", "names", "linux64", "win64", "darwin64"),
-    [
-        (Fmi.TWO, NAMES, "linux64", "win64", "darwin64"),
-        (Fmi.THREE, NAMES[:1], "x86_64-linux", "x86_64-windows", "x86_64-darwin"),
-    ],
-)  # the rest differs in the kernels only
-def test_windows_and_macos_libraries_offer_fmi_and_linux_ones_need_the_c_library_of_2012(
-    monkeypatch, fmi, names, linux64, win64, darwin64
-):
+@pytest.mark.parametrize("fmi", list(Fmi))
+def test_one_command_builds_all_components_for_all_platforms(monkeypatch, tmp_path, fmi):
     monkeypatch.delenv("CC", raising=False)
-    for name in names:
-        files = native_files(
-            component(name), component(name).with_sizes(), ("linux64", "win64", "darwin64"), fmi
-        )
-        assert {path.split("/")[1] for path in files if path.startswith("binaries/")} == {
-            linux64,
-            win64,
-            darwin64,
-        }
-        assert newest_c_library(files[f"binaries/{linux64}/{name}.so"]) <= (2, 17)
-        assert dll_exports(files[f"binaries/{win64}/{name}.dll"]) == FUNCTIONS[fmi]
-        needed, offered = dylib_symbols(files[f"binaries/{darwin64}/{name}.dylib"])
-        assert (
-            offered - {"_mh_dylib_header", "__dso_handle"} == FUNCTIONS[fmi]
-        )  # these two are the loader's
-        assert needed - C_LIBRARY - ALSO_IN_FMI_3 <= MACOS_ONLY
+    words = ["--runtime", "native", "--fmi", str(int(fmi)), "--platform", "all"]
+    done = CliRunner().invoke(app, ["build", *words, "--output-dir", str(tmp_path)])
+    assert done.exit_code == 0, done.stderr
+    for name in NAMES:
+        with zipfile.ZipFile(tmp_path / folder_name(Runtime.NATIVE, fmi) / f"{name}.fmu") as fmu:
+            paths = [path for path in fmu.namelist() if path.startswith("binaries/")]
+            libraries = {path: fmu.read(path) for path in paths}
+        for platform, (in_fmi2, suffix) in FOLDERS.items():
+            folder = in_fmi2 if fmi is Fmi.TWO else platform
+            library = libraries.pop(f"binaries/{folder}/{name}{suffix}")
+            assert platforms_of(library) == {platform}
+            assert_offers_fmi(library, platform, fmi)
+        assert not libraries
+
+
+def assert_offers_fmi(library, platform, fmi):
+    """A library offers the functions of FMI and nothing else, and needs its C library alone."""
+    if platform.endswith("windows"):
+        assert dll_exports(library) == FUNCTIONS[fmi]
+        return
+    if platform.endswith("linux"):
+        assert newest_c_library(library) <= (2, 17)
+        needed, offered = elf_symbols(library)
+        others = set()
+    else:
+        kind = ARM64 if platform.startswith("aarch64") else X86_64
+        needed, offered = dylib_symbols(library, kind)
+        others = MACOS_ONLY
+    assert offered - OF_THE_LOADER == FUNCTIONS[fmi]
+    assert needed - C_LIBRARY - ALSO_IN_FMI_3 <= others
 
 
 @needs_zig
@@ -239,24 +259,6 @@ def test_zig_builds_what_runs_here(monkeypatch, probe, tmp_path):
     with Host(build_component(probe, destination=tmp_path, runtime=Runtime.NATIVE)) as host:
         host.start(inflow=1.0).steps(3, 0.1)
         assert not host.messages
-
-
-@pytest.mark.slow
-@needs_zig
-@pytest.mark.parametrize("fmi", list(Fmi))
-def test_libraries_for_arm_offer_fmi_and_need_the_c_library_only(monkeypatch, fmi):
-    monkeypatch.delenv("CC", raising=False)
-    rock = component("FallingRock")
-    files = native_files(rock, rock.with_sizes(), ("aarch64-linux", "aarch64-darwin"), fmi)
-    linux64 = files["binaries/aarch64-linux/FallingRock.so"]
-    assert struct.unpack_from("<H", linux64, 18)[0] == 183  # ARM of 64 bits
-    assert newest_c_library(linux64) <= (2, 28)
-    needed, offered = elf_symbols(linux64)
-    assert offered == FUNCTIONS[fmi]
-    assert needed - C_LIBRARY - ALSO_IN_FMI_3 == set()
-    needed, offered = dylib_symbols(files["binaries/aarch64-darwin/FallingRock.dylib"], ARM64)
-    assert offered - {"_mh_dylib_header", "__dso_handle"} == FUNCTIONS[fmi]
-    assert needed - C_LIBRARY - ALSO_IN_FMI_3 <= MACOS_ONLY
 
 
 def newest_c_library(library):

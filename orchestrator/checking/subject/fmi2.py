@@ -13,8 +13,8 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
     fmi2CoSimulation,
 )
-from fmpy.logging import addLoggerProxy
 
+from ...core.fmu.logger import set_logger
 from .calls import Called, CallRefused, NoInstance, Said, Stepped, Trail, as_ctypes, as_numbers
 
 _LAST_SUCCESSFUL_TIME, _TERMINATED = 2, 3
@@ -36,10 +36,9 @@ def _hear(environment: Any, name: bytes, status: int, category: bytes, text: byt
 def _common_callbacks() -> fmi2CallbackFunctions:
     """Return callbacks that serve all instances: those of fmpy's proxy are never freed."""
     callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(_hear)
     callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
     callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-    addLoggerProxy(ctypes.byref(callbacks))
+    set_logger(callbacks, fmi2CallbackLoggerTYPE(_hear))
     return callbacks
 
 

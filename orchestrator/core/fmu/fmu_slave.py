@@ -35,7 +35,6 @@ from fmpy.fmi2 import (
     fmi2FMUstate,
     free,
 )
-from fmpy.logging import addLoggerProxy
 from fmpy.model_description import (
     ModelDescription,
     ModelVariable,
@@ -50,6 +49,7 @@ from .annotations import NOTHING, Annotation, read_annotations
 from .archive import MOST_DESCRIPTION, Archive, ArchiveError
 from .description import Dependencies, Description, Port, UnitDefinition
 from .fmi3_slave import Fmi3Slave
+from .logger import set_logger
 from .slave import (
     ERROR,
     FATAL,
@@ -467,10 +467,7 @@ _keys = itertools.count(1)
 
 
 def _log(environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
-    """Pass a message of an FMU to the slave it belongs to.
-
-    One function for all: fmpy's proxy remembers only the last one.
-    """
+    """Pass a message of an FMU to the slave it belongs to."""
     slave = _slaves.get(environment)
     if slave is not None:
         slave.messages.append((status, (message or b"").decode("utf-8", "replace")))
@@ -489,12 +486,13 @@ def _callbacks(environment: int, generation_tool: str) -> fmi2CallbackFunctions:
     pythonfmu logs plain text where FMI asks for a format: a percent sign in it must not be read.
     """
     callbacks = fmi2CallbackFunctions()
-    callbacks.logger = _LOGGER
     callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
     callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
     callbacks.componentEnvironment = environment
-    if not _made_by_pythonfmu(generation_tool):
-        addLoggerProxy(ctypes.byref(callbacks))
+    if _made_by_pythonfmu(generation_tool):
+        callbacks.logger = _LOGGER
+    else:
+        set_logger(callbacks, _LOGGER)
     return callbacks
 
 
