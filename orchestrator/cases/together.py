@@ -10,8 +10,8 @@ from rockshed.components.sand_cushion.models import SPREAD
 
 from ..core.system.fields import Value
 from ..core.system.system import SystemSpec
-from ..sites.shed.geometry import axis_below_top, discs_in, element_length
-from ..sites.shed.words import length_in_words, mass_in_words
+from ..sites.shed.discretisation import axis_below_top, discs_in, element_length
+from ..sites.words import length_in_words, mass_in_words
 from .sand_models import SandLayer, lattice_height
 
 ComponentSizes = Mapping[str, Mapping[str, int]]

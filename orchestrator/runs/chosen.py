@@ -6,11 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ..cases.registry import Case, case, is_case
-from ..cases.shed import prepared, shed_case
 from ..core.errors import InputRefused, Problem
 from ..core.system.fields import Value
 from ..input_files.form import read_toml
-from ..sites.shed.preparation import is_field, is_project
 from ..ssp.package import is_ssp
 from .request import Request
 from .target import wrong_target
@@ -83,12 +81,15 @@ def is_project_file(target: str) -> bool:
     Returns
     -------
     bool
-        False also where it cannot be read, which a system file is refused for.
+        Whether it has a table of a project and no components, as a system has; False also where
+        it cannot be read, which a system file is refused for.
     """
     try:
-        return is_project(read_toml(Path(target))[0])
+        content = read_toml(Path(target))[0]
     except InputRefused:
         return False
+    meant = any(key in content for key in ("cushion", "roof"))
+    return meant and not any(key in content for key in ("components", "hammer", "profile"))
 
 
 def has_slope(target: str) -> bool:
@@ -112,6 +113,10 @@ def _of_project(
     InputRefused
         The project, together with the problems of the caller.
     """
+    # a project's models of its file take a tenth of the start of a run that has none
+    from ..cases.shed import prepared, shed_case
+    from ..sites.shed.preparation import is_field
+
     changes = {name: value for name, value in request.values.items() if is_field(name)}
     others = {name: value for name, value in request.values.items() if name not in changes}
     try:

@@ -16,7 +16,7 @@ LONGEST_TEXT = 4096
 
 
 _kept: dict[int, Any] = {}
-"""What lives as long as the process, by address: loggers, and the owners of proxies."""
+"""Loggers and owners of proxies, by address: FMUs may call them as long as the process lives."""
 
 
 def set_logger(callbacks: fmi2CallbackFunctions, logger: fmi2CallbackLoggerTYPE) -> None:

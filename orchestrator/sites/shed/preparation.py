@@ -96,23 +96,6 @@ class PreparedShed:
         return self.project.name or (self.source.file.stem if self.source.file else "shed")
 
 
-def is_project(content: Mapping[str, Any]) -> bool:
-    """Tell whether the content of a TOML file is meant as a project.
-
-    Parameters
-    ----------
-    content : mapping
-        Of the file.
-
-    Returns
-    -------
-    bool
-        Whether it has a table of a project and no components, as a system has.
-    """
-    meant = any(key in content for key in ("cushion", "roof"))
-    return meant and not any(key in content for key in ("components", "hammer", "profile"))
-
-
 def is_field(name: str) -> bool:
     """Tell whether a name is that of a field of a project, ``cushion.thickness`` for instance.
 

@@ -2,8 +2,7 @@
 
 import math
 
-from rockshed.components.common.units import cm, tonne
-
+from ..words import length_in_words, mass_in_words
 from .geometry import CushionPart, RockPart, RoofPart, ShedLayout
 
 
@@ -33,19 +32,9 @@ def rock_in_words(rock: RockPart) -> str:
     return f"{mass_in_words(rock.mass)} at {rock.speed:.3g} m/s, {angle:.3g}° from the vertical,"
 
 
-def mass_in_words(mass: float) -> str:
-    """Return a mass (kg) in t or kg."""
-    return f"{mass / tonne:.3g} t" if mass >= 0.1 * tonne else f"{mass:.3g} kg"
-
-
 def cushion_in_words(cushion: CushionPart) -> str:
     """Return thickness and material of a cushion."""
     return f"{length_in_words(cushion.thickness)} of {cushion.material}"
-
-
-def length_in_words(length: float) -> str:
-    """Return a length (m) in m or cm."""
-    return f"{length:.3g} m" if length >= 1.0 else f"{length / cm:.3g} cm"
 
 
 def roof_in_words(roof: RoofPart) -> str:
