@@ -1,6 +1,6 @@
 """FMU files behind the interface of :mod:`rockshed.core.fmu.slave`.
 
-The only module that imports fmpy.
+It imports fmpy, as do the modules beside it for FMI 3.0 and for messages.
 """
 
 import contextlib
