@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, cast
@@ -18,6 +18,7 @@ from ..core.system.system import SystemSpec
 from ..references import References
 from . import full_scale, shed_on_piles, slope_to_cushion, sonoda1993, spt
 from . import static_loading as static_test
+from .iterated import AS_IMPULSE, IteratedTimes, couplings_with_implicit, deriving, making
 from .sand_models import Changes, SandLayer, Soil, changes, sand_model
 from .together import ComponentSizes, declared_value, described, moved
 
@@ -57,6 +58,8 @@ class Case:
     model : str or None
         Model of the sand that fits the case best, where none is asked for; None for the case as
         it is.
+    coupling : str or None
+        Scheme of exchange where none is asked for; None for the first.
     other_names : tuple of str
         Further names of the case.
     follows : mapping of str to str
@@ -84,6 +87,7 @@ class Case:
     layer: SandLayer | None = None
     references: Callable[[Mapping[str, Value]], References] = lambda changed: References()
     model: str | None = None
+    coupling: str | None = None
     other_names: tuple[str, ...] = ()
     follows: Mapping[str, str] = field(default_factory=dict)
     described: Callable[[SystemSpec, SystemSpec, ComponentSizes], str] = _as_it_is
@@ -97,17 +101,39 @@ def cases() -> dict[str, Case]:
     """Return all cases by name, ``lab-impact`` first."""
     found = [_laboratory(test) for test in sonoda1993.tests().values()]
     found.sort(key=lambda case: case.name != sonoda1993.case_name(sonoda1993.DEFAULT_TEST))
+    listed = [
+        *found,
+        _static_test(),
+        *map(_full_scale, full_scale.impacts().values()),
+        _slope_to_cushion(),
+    ]
     return {
         case.name: case
         for case in [
-            *found,
-            _static_test(),
-            *map(_full_scale, full_scale.impacts().values()),
-            _slope_to_cushion(),
-            _shed_on_piles(),
+            *map(with_implicit, listed),
+            with_implicit(_shed_on_piles(), shed_on_piles.WINDOW),
             _spt(),
         ]
     }
+
+
+def with_implicit(chosen: Case, window: IteratedTimes = AS_IMPULSE) -> Case:
+    """Return a case that can be run by the scheme ``implicit`` too.
+
+    Parameters
+    ----------
+    chosen : Case
+        Its coupling ``impulse`` is what is iterated.
+    window : IteratedTimes
+        Times that are other than there.
+    """
+    rods = [name for name, made in chosen.models.items() if made == "PileRod"]
+    return replace(
+        chosen,
+        couplings=couplings_with_implicit(chosen.couplings, window),
+        make=making(chosen.make, rods, window),
+        derived=deriving(chosen.derived),
+    )
 
 
 def case(name: str) -> Case:

@@ -24,7 +24,7 @@ from ..sites.shed.site import ShedProject
 from ..sites.shed.words import in_words
 from ..sites.source import SiteLike, SiteSource
 from .on_rods import SIDES, loads_at_rest, on_rods, rod_sizes
-from .registry import Case, ComponentSizes, weight_on_beam
+from .registry import Case, ComponentSizes, weight_on_beam, with_implicit
 from .sand_models import SandLayer, Soil, changes, sand_model
 from .sonoda1993 import impact_bonds, impact_connections
 
@@ -123,7 +123,7 @@ def shed_case(shed: PreparedShed) -> Case:
     if shed.slope is not None and not shed.project.description:
         origin = shed.slope.origin
         words += f"; the rock is trial {origin.trial} on the slope {origin.slope.name}"
-    return Case(
+    made = Case(
         shed.name,
         words,
         models={
@@ -143,6 +143,7 @@ def shed_case(shed: PreparedShed) -> Case:
             "impulse": "sand first, kinematics extrapolated, mean forces, exchange every "
             f"{found.exchange_step / ms:g} ms"
         },
+        coupling=shed.project.numerics.coupling,
         make=partial(_make, shed, words),
         one_size=("sand.elements", "beam.elements"),
         derived=partial(_derived, found),
@@ -151,6 +152,7 @@ def shed_case(shed: PreparedShed) -> Case:
         warnings=shed.warnings,
         files=None if shed.slope is None else partial(_keep, shed.slope),
     )
+    return with_implicit(made)
 
 
 def _follows(shed: PreparedShed) -> Mapping[str, str]:

@@ -17,6 +17,7 @@ from ..core.system.fields import Value
 from ..core.system.parts import ComponentSpec, Connection, PowerBond
 from ..core.system.system import SystemSpec
 from . import full_scale
+from .iterated import IteratedTimes
 from .spt import toe_bond, toe_connections
 
 NAME = "shed-on-piles"
@@ -33,6 +34,9 @@ EXCHANGE = 5e-6
 The sand takes it too, with the impulse-conserving scheme: a longer step of its own would show its
 forces late, which costs 1.6 % of the impact energy at 0.2 ms.
 """
+WINDOW = IteratedTimes(exchange_step=1e-5, length=4e-4)
+"""Times of the scheme ``implicit`` (s): the longest exchange step at which an explicit master is
+stable, and a window of 40 of these, which 6 to 8 iterations make fit together."""
 
 
 @dataclass(frozen=True)

@@ -127,6 +127,9 @@ def options_named(
 
 def _place(where: str, arguments: Collection[str], target: str) -> str:
     name, blank, rest = where.removeprefix(f"{target}: ").partition(" ")
+    table, dot, entry = name.partition(".")
+    if dot and table in arguments:
+        return f"{_option(table)} {entry}{blank}{rest}"
     return f"{_option(name)}{blank}{rest}" if name in arguments else where
 
 

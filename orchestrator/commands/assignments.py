@@ -7,7 +7,9 @@ from ..core.errors import Problem
 from ..core.system.fields import Value
 
 
-def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dict[str, Value]:
+def values_of(
+    option: str, texts: Sequence[str], problems: list[Problem], name_of: str = "component.name"
+) -> dict[str, Value]:
     """Read values by name.
 
     Parameters
@@ -18,6 +20,8 @@ def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dic
         ``name=value``, ``sand.modulus=3e6`` for instance.
     problems : list of Problem
         Texts that are no assignments, and names that are given twice, are appended.
+    name_of : str
+        What is assigned to, for messages.
 
     Returns
     -------
@@ -33,7 +37,7 @@ def values_of(option: str, texts: Sequence[str], problems: list[Problem]) -> dic
         elif name and equals and value:
             values[name] = _value(value)
         else:
-            remedy = f"write {option} component.name=value"
+            remedy = f"write {option} {name_of}=value"
             problems.append(Problem(option, f"{text!r} is no assignment", remedy))
     return values
 

@@ -39,7 +39,7 @@ CouplingScheme = Annotated[
     str | None,
     typer.Option(
         "--coupling",
-        metavar="paper|impulse|jacobi",
+        metavar="paper|impulse|jacobi|implicit",
         help="Scheme of exchange of a case, by default its first; waves or plain for spt.",
     ),
 ]

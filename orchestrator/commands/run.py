@@ -49,6 +49,8 @@ OPTIONS = (
     "output_interval",
     "state_interval",
     "master",
+    "iteration",
+    "adaptive",
     "tolerance",
     "isolate",
     "time_limit",
@@ -83,6 +85,24 @@ _Master = Annotated[
     typer.Option(
         metavar="sequential|jacobi|implicit",
         help="One component after the other, all at once, or each exchange until it fits together.",
+    ),
+]
+_Iteration = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--iteration",
+        metavar="KEY=VALUE",
+        help="How the implicit master repeats exchanges, a key of [iteration]: window=4e-4. May be "
+        "repeated.",
+    ),
+]
+_Adaptive = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--adaptive",
+        metavar="KEY=VALUE",
+        help="Let the exchange step follow the error, by keys of [adaptive]: tolerance=1e-4, "
+        "largest_step=1.28e-4, control=doubling|ledger. May be repeated.",
     ),
 ]
 _Tolerance = Annotated[
@@ -152,6 +172,8 @@ def command(
     output_interval: _OutputInterval = None,
     state_interval: _StateInterval = None,
     master: _Master = None,
+    iteration: _Iteration = None,
+    adaptive: _Adaptive = None,
     tolerance: _Tolerance = None,
     isolate: _Isolate = None,
     time_limit: _TimeLimit = None,
@@ -176,6 +198,7 @@ def command(
     values, sizes = values_of("--set", set_ or [], problems), sizes_of(size or [], problems)
     options = _chosen(stop_time=stop_time, exchange_step=exchange_step, master=master)
     options |= _chosen(output_interval=output_interval, state_interval=state_interval)
+    options |= _tables(problems, iteration=iteration, adaptive=adaptive)
     options |= _chosen(tolerance=tolerance, isolate=isolate or None, time_limit=time_limit)
     asked = Request(target, values, sizes, coupling, options, in_process, load_cell, model, runtime)
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
@@ -206,6 +229,15 @@ def _with_band(band: bool, done: Run, request: Request, screen: Screen) -> Run:
 def _chosen(**options: Any) -> dict[str, Any]:
     """Return the options that are given."""
     return {name: value for name, value in options.items() if value is not None}
+
+
+def _tables(problems: list[Problem], **texts: list[str] | None) -> dict[str, Any]:
+    """Return the tables whose keys are given."""
+    return {
+        name: values_of(f"--{name}", given, problems, "key")
+        for name, given in texts.items()
+        if given
+    }
 
 
 def _given(request: Request) -> set[str]:

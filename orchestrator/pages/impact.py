@@ -62,11 +62,26 @@ def refuse_unfit(system: System) -> None:
     problems += [Problem(name, "is driven and does not fall", _REMEDY) for name in driven]
     if system.spec.scenario:
         problems.append(Problem("scenario", "has no place in a page", "leave it out"))
+    problems += [
+        Problem(key, "exchanges are made in turn in a page, all of one length", "choose another")
+        for key, asked in _other_exchanges(system.spec).items()
+        if asked
+    ]
     if any(c.factor is not None or c.offset is not None for c in system.spec.connections):
         text = "a connection with a factor or an offset has no place in a page"
         problems.append(Problem(system.name, text, "leave it out"))
     if problems:
         raise InputRefused(problems)
+
+
+def _other_exchanges(spec: SystemSpec) -> dict[str, bool]:
+    """Return the keys that have exchanges made as a page cannot, and whether a system has them."""
+    return {
+        "master": spec.master == "implicit",
+        "adaptive": spec.adaptive is not None,
+        "extrapolation": bool(spec.extrapolation)
+        or any(component.extrapolation for component in spec.components.values()),
+    }
 
 
 def _is_driven(system: System, name: str) -> bool:

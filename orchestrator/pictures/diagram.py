@@ -11,8 +11,8 @@ Letters have one width, so that the place of every text is known without a font.
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import accumulate
+from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 from math import inf
 from pathlib import Path
 from textwrap import wrap
@@ -24,6 +24,9 @@ from ..core.system.system import SystemSpec
 
 _INK, _GREY, _LINE, _BOX = "#222222", "#666666", "#8a99a8", "#e8eef4"
 _BOND, _BOND_BOX = "#b5540f", "#fbeee2"
+_LOOP = "#6a2c91"
+_DASHES = "6 3"
+"""Colour and dashes of what stands in an algebraic loop; dashes are seen without colours too."""
 _FONT = "'DejaVu Sans Mono', Menlo, Consolas, monospace"
 _ADVANCE = 0.61
 """Width of a letter, in sizes of the font; that of the fonts above is 0.55 to 0.602."""
@@ -74,11 +77,19 @@ class _Box:
     lines: Sequence[Text]
     title: str
     is_bond: bool = False
+    in_loop: bool = False
 
     @property
     def width(self) -> float:
         """Width of the frame (px), around its longest line."""
         return max(line.width for line in self.lines) + 2 * _PAD
+
+    @property
+    def colour(self) -> str:
+        """Colour of the way of these values."""
+        if self.in_loop:
+            return _LOOP
+        return _BOND if self.is_bond else _LINE
 
     @property
     def height(self) -> float:
@@ -90,13 +101,16 @@ Cell = tuple[int, int]
 """Row, of the component that gives, and column, of the one that takes."""
 
 
-def system_diagram(system: SystemSpec) -> str:
+def system_diagram(system: SystemSpec, loops: Sequence[str] = ()) -> str:
     """Draw a system.
 
     Parameters
     ----------
     system : SystemSpec
         Its FMUs are not looked at.
+    loops : sequence of str
+        Its algebraic loops, ``a.y -> b.u -> b.y -> a.u -> a.y``; components and connections in one
+        are marked.
 
     Returns
     -------
@@ -107,7 +121,20 @@ def system_diagram(system: SystemSpec) -> str:
     order += [name for name in system.components if name not in order]
     boxes = {(i, i): _component(system, name, i) for i, name in enumerate(order)}
     boxes |= _cells(system, order, next(room for most, room in _ROOM if len(order) <= most))
+    for cell in _in_loops(loops, order) & boxes.keys():
+        boxes[cell] = replace(boxes[cell], in_loop=True)
     return _Drawing(system, len(order), boxes).svg()
+
+
+def _in_loops(loops: Iterable[str], order: Sequence[str]) -> set[Cell]:
+    """Return the cells of all components and connections that stand in a loop."""
+    turns = {name: turn for turn, name in enumerate(order)}
+    cells: set[Cell] = set()
+    for loop in loops:
+        names = [split_name(port, turns)[0] for port in loop.split(" -> ")]
+        owners = [turns[name] for name in names if name in turns]
+        cells |= {*zip(owners, owners), *pairwise(owners)}
+    return cells
 
 
 # ---------------------------------------------------------------------- what stands in the boxes
@@ -255,10 +282,9 @@ class _Drawing:
         ElementTree.SubElement(picture, "title").text = self.system.name
         picture.append(_rectangle(0.0, 0.0, width, height, "#ffffff", "none"))
         _write(picture, head, _MARGIN, _MARGIN, "start")
-        for is_bond in (False, True):
-            for cell in self.boxes:
-                if cell[0] != cell[1] and self.boxes[cell].is_bond is is_bond:
-                    self._line(picture, cell)
+        between = [cell for cell in self.boxes if cell[0] != cell[1]]
+        for cell in sorted(between, key=lambda c: (self.boxes[c].in_loop, self.boxes[c].is_bond)):
+            self._line(picture, cell)
         for cell, box in self.boxes.items():
             self._box(picture, cell, box)
         _write(picture, legend, _MARGIN, below, "start")
@@ -287,7 +313,14 @@ class _Drawing:
         if any(box.is_bond for box in self.boxes.values()):
             said = "Orange: a power bond, whose energy is accounted for."
             lines += [Text(line, colour=_BOND) for line in _wrapped(said, width)]
+        if any(box.in_loop for box in self.boxes.values()):
+            said = f"Purple, dashed: an algebraic loop{self._way_of_loops()}."
+            lines += [Text(line, colour=_LOOP) for line in _wrapped(said, width)]
         return lines
+
+    def _way_of_loops(self) -> str:
+        is_solved = self.system.master == "implicit"
+        return ", whose values are iterated" if is_solved else ", which has a delay of an exchange"
 
     def _line(self, picture: ElementTree.Element, cell: Cell) -> None:
         """Draw the way of values: along the row of the giver, then along the taker's column."""
@@ -297,10 +330,12 @@ class _Drawing:
         begin = self.x[row] + to_right * 0.5 * giver.width
         end = self.y[column] - to_right * 0.5 * taker.height
         x, y = self.x[column], self.y[row]
-        colour = _BOND if self.boxes[cell].is_bond else _LINE
-        thick = "2.4" if self.boxes[cell].is_bond else "1.2"
+        box = self.boxes[cell]
+        colour = box.colour
+        thick = "1.2" if colour == _LINE else "2.4"
         points = f"M{begin:.1f} {y:.1f}H{x:.1f}V{end - to_right * 6.0:.1f}"
         style = {"fill": "none", "stroke": colour, "stroke-width": thick}
+        style |= {"stroke-dasharray": _DASHES} if box.in_loop else {}
         ElementTree.SubElement(picture, "path", {"d": points, **style})
         tip = f"M{x:.1f} {end:.1f}l-4 {-to_right * 8.0:.1f}h8z"
         ElementTree.SubElement(picture, "path", {"d": tip, "fill": colour})
@@ -314,6 +349,13 @@ class _Drawing:
         fill, edge = (_BOX, _INK) if is_component else of_values
         frame = _rectangle(x, y, box.width, box.height, fill, edge)
         frame.set("rx", "5" if is_component else "2")
+        if box.in_loop:
+            for key, value in (
+                ("stroke", _LOOP),
+                ("stroke-width", "2"),
+                ("stroke-dasharray", _DASHES),
+            ):
+                frame.set(key, value)
         group.append(frame)
         _write(group, box.lines, self.x[cell[1]], y + _PAD, "middle")
 

@@ -6,7 +6,7 @@ from typing import Any
 from rockshed.components.common.units import ms, tonne
 
 from ..core.errors import InputRefused
-from ..core.results.facts import number_of, table_of, tables_of
+from ..core.results.facts import number_of, table_of, tables_of, texts_of
 from ..core.results.reading import StoredRun
 from ..core.system.reading import system_from
 from ..files import write_file
@@ -243,9 +243,10 @@ def _system(run: StoredRun) -> Iterator[Chapter]:
         system = system_from(table_of(run.provenance, "system"))
     except InputRefused:  # another version wrote it
         return
+    loops = texts_of(run.provenance, "loops")
     drawn = Illustration(
         "Components, their steps, and the values that go between them",
-        draw=lambda file: write_file(file, system_diagram(system)),
+        draw=lambda file: write_file(file, system_diagram(system, loops)),
         printed=_SHARP,
         shown=_SHARP,
     )

@@ -36,7 +36,7 @@ from ..metrics.filtering import LOAD_CELL_ROWS
 from ..ssp.package import is_ssp
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .chosen import choose
-from .request import AUTO, Request
+from .request import AUTO, Request, with_keys
 from .scenario import placed, refuse_misfit, told, with_inputs_read, without_file
 
 if TYPE_CHECKING:
@@ -326,7 +326,7 @@ def _from_case(
     InputRefused
         Coupling, runtime, model or sizes that are not to be had.
     """
-    coupling = request.coupling or next(iter(chosen.couplings))
+    coupling = request.coupling or chosen.coupling or next(iter(chosen.couplings))
     problems += _coupling_problems(chosen, coupling) + _runtime_problems(request)
     model = model_changes(chosen, request.model, request.values)
     sizes = case_sizes(chosen, {**model.sizes, **request.sizes}, problems)
@@ -415,7 +415,7 @@ def _changed(system: SystemSpec, request: Request, problems: list[Problem]) -> S
             with suppress(InputRefused):  # told already
                 system = with_values(system, {name: value})
     try:
-        return system_from({**system.model_dump(), **request.options}, request.target)
+        return system_from(with_keys(system.model_dump(), request.options), request.target)
     except InputRefused as refusal:
         problems += refusal.problems
         return system

@@ -32,6 +32,28 @@ def plain(entries: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+_TABLES = ("iteration", "adaptive")
+
+
+def with_keys(keys: Mapping[str, Any], options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a system with some replaced; of a table, the entries that are named.
+
+    Parameters
+    ----------
+    keys : mapping of str to Any
+        Of a system, or options that it was changed with before.
+    options : mapping of str to Any
+        Keys that are other. ``iteration`` and ``adaptive`` keep the entries that are not among
+        them.
+    """
+    tables = {
+        name: {**keys[name], **options[name]}
+        for name in _TABLES
+        if isinstance(keys.get(name), Mapping) and isinstance(options.get(name), Mapping)
+    }
+    return {**keys, **options, **tables}
+
+
 @dataclass(frozen=True)
 class Request:
     """A case or a system file, and what is to be other than it is there.

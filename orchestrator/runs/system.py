@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Container, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
@@ -17,6 +18,7 @@ from ..core.system.fields import Value
 from ..core.system.names import split_name
 from ..core.system.other_values import with_values
 from ..core.system.parts import ComponentSpec, PowerBond
+from ..core.system.planning import make_plan
 from ..core.system.reading import system_from
 from ..core.system.system import SystemSpec
 from ..ssp.package import is_ssp
@@ -25,7 +27,7 @@ from .building import Note, silent
 from .export import export_ssp, export_system, is_ssp_name, refuse_place
 from .inspection import Overview, describe_system
 from .job import Job, plan_problems, prepare
-from .request import Request, plain
+from .request import Request, plain, with_keys
 from .scenario import read_inputs, told
 from .subsystem import Subsystem, component_of, whole_sizes
 from .target import SYSTEM
@@ -209,7 +211,7 @@ class System:
         Returns
         -------
         System
-            With these keys replaced.
+            With these keys replaced; of ``iteration`` and ``adaptive`` the entries that are named.
 
         Raises
         ------
@@ -217,7 +219,7 @@ class System:
             Keys that do not exist, values that do not fit.
         """
         if self.request is not None:
-            merged = {**self.request.options, **plain(options)}
+            merged = with_keys(self.request.options, plain(options))
             return System.prepared(replace(self.request, options=merged))
         return self._with(self._checked(plain(options)), plain(options))
 
@@ -462,7 +464,7 @@ class System:
         return System(replace(self.job, system=spec, facts=facts), self.request)
 
     def _checked(self, entries: Mapping[str, Any]) -> SystemSpec:
-        return system_from({**self._data(), **entries}, self.name)
+        return system_from(with_keys(self._data(), entries), self.name)
 
     def _data(self) -> dict[str, Any]:
         return self.spec.model_dump()
@@ -557,7 +559,9 @@ class System:
         )
 
     def diagram(self) -> str:
-        """Draw components, their steps, what goes from one to another, and power bonds.
+        """Draw components, their steps, what goes from one to another, power bonds and loops.
+
+        Algebraic loops are marked as far as the FMUs can be read and fit together.
 
         Returns
         -------
@@ -567,7 +571,10 @@ class System:
         from ..pictures.diagram import system_diagram  # the room of pictures imports matplotlib
 
         self.refuse_empty()
-        return system_diagram(self.spec)
+        loops: tuple[str, ...] = ()
+        with suppress(InputRefused):
+            loops = make_plan(self.spec, self.job.sources).loops
+        return system_diagram(self.spec, loops)
 
     def _repr_svg_(self) -> str | None:
         return self.diagram() if self.spec.components else None

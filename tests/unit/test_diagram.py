@@ -94,8 +94,8 @@ def inside(inner, outer):
     )
 
 
-def assert_legible(system):
-    root = ElementTree.fromstring(system_diagram(system))
+def assert_legible(system, loops=()):
+    root = ElementTree.fromstring(system_diagram(system, loops))
     whole = 0.0, 0.0, float(root.get("width")), float(root.get("height"))
     boxes = [
         (rectangle(group.find(f"{SVG}rect")), list(map(extents, group.findall(f"{SVG}text"))))
@@ -139,6 +139,27 @@ def test_it_tells_turns_steps_bonds_and_what_goes_where():
     assert len(arrows) == 4  # to the sand from both, and back
     of_chain = ElementTree.fromstring(system_diagram(chain(12)))
     assert "10 an exchange" in [text.text for text in of_chain.iter(f"{SVG}text")]
+
+
+LOOP = "part_0.force.x[1] -> part_1.ux[1] -> part_1.force.x[1] -> part_0.ux[1] -> part_0.force.x[1]"
+
+
+@pytest.mark.parametrize(
+    ("master", "told"), [("sequential", "a delay of an exchange"), ("implicit", "are iterated")]
+)
+def test_components_and_connections_of_an_algebraic_loop_are_dashed_and_in_the_legend(master, told):
+    """Two components, and what each gives the other."""
+    system = chain(4).model_copy(update={"master": master})
+    root, _ = assert_legible(system, [LOOP])
+    dashed = [r for r in root.iter(f"{SVG}rect") if r.get("stroke-dasharray")]
+    assert len(dashed) == 4
+    assert len([p for p in root.iter(f"{SVG}path") if p.get("stroke-dasharray")]) == 2
+    legend = " ".join(text.text for text in root.findall(f"{SVG}text"))
+    assert "algebraic loop" in legend
+    assert told in legend
+    plain, _ = assert_legible(system)
+    assert not any(element.get("stroke-dasharray") for element in plain.iter())
+    assert "algebraic loop" not in " ".join(text.text for text in plain.findall(f"{SVG}text"))
 
 
 def test_names_of_ports_are_put_together():

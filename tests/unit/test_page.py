@@ -29,6 +29,19 @@ def test_a_system_that_is_no_impact_is_refused(case, words, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("key", "changes"),
+    [
+        ("master", {"coupling": "implicit"}),
+        ("adaptive", {"adaptive": {"tolerance": 1e-3, "largest_step": 2e-5}}),
+        ("extrapolation", {"extrapolation": 1}),
+    ],
+)
+def test_exchanges_that_a_page_does_not_make_are_refused(key, changes, tmp_path):
+    system = rockshed.case("lab-impact", in_process=True, **changes)
+    assert f"{key}: exchanges are made in turn" in refusal(system, tmp_path / "page.html")
+
+
 def test_a_system_that_was_built_by_hand_from_an_fmu_file_is_refused(tmp_path):
     (tmp_path / "any.fmu").write_bytes(b"")
     system = rockshed.System.new("own", exchange_step=1e-3, stop_time=1.0)

@@ -188,6 +188,10 @@ def _given(plan: Plan, own: int, name: str, step: tuple[int, int]) -> _Given:
     for row, (place, source) in enumerate(zip(fed, sources)):
         every = _every(plan, plan.outputs[source].component)
         moment = plan.iteration.moments[place]
-        table[row] = weights(moment, times, every, plan.schedule.period)
-    rows = table.argmax(axis=1) if np.all(table.max(axis=1, initial=0.0) == 1.0) else None
+        order = plan.system.iteration.interpolation
+        table[row] = weights(moment, times, every, plan.schedule.period, order)
+    is_one = np.all(
+        (table.max(axis=1, initial=0.0) == 1.0) & (np.count_nonzero(table, axis=1) == 1)
+    )
+    rows = table.argmax(axis=1) if is_one else None
     return _Given(own + np.array(fed, np.int64), sources, table, rows)

@@ -37,6 +37,22 @@ def tables_of(facts: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
     return [dict(entry) for entry in found if isinstance(entry, Mapping)]
 
 
+def texts_of(facts: Mapping[str, Any], key: str) -> list[str]:
+    """Return the texts of a list; an empty list where there is none.
+
+    Parameters
+    ----------
+    facts : mapping
+        Has the list.
+    key : str
+        Its name.
+    """
+    found = facts.get(key)
+    if not isinstance(found, Sequence) or isinstance(found, str):
+        return []
+    return [entry for entry in found if isinstance(entry, str)]
+
+
 def number_of(facts: Mapping[str, Any], key: str) -> float | None:
     """Return a number; None where there is none.
 

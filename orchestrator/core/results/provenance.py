@@ -40,6 +40,7 @@ def describe_run(
         "started": datetime.now(UTC).isoformat(),
         "components": {name: _component(plan, sources[name], slaves[name]) for name in plan.order},
         "system": plan.system.model_dump(mode="json"),
+        "loops": list(plan.loops),
         "versions": versions(*_PACKAGES),
         "platform": platform.platform(),
     }

@@ -36,7 +36,7 @@ def make_schedules(
         One alone where the system is not adaptive.
     """
     if system.master == "implicit":
-        return (iterated_schedule(order, timing.steps, timing.exchange),)
+        return (iterated_schedule(order, timing.steps, timing.exchange, timing.window),)
     scheme: Scheme = system.master
     made = [make_schedule(order, timing.steps, timing.exchange, scheme, extrapolated)]
     for level in range(1, timing.longest.bit_length()):

@@ -6,7 +6,7 @@ steps of the window. Each step has inputs of its own, between the values at exch
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import ceil, lcm
+from math import ceil, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,12 @@ from .names import nearest, select
 from .plan import End, PlannedIteration
 from .schedule import Action, Operation, Schedule
 from .system import SystemSpec
+from .timing import Timing
 
 
-def iterated_schedule(order: Sequence[str], steps: Mapping[str, int], exchange: int) -> Schedule:
+def iterated_schedule(
+    order: Sequence[str], steps: Mapping[str, int], exchange: int, window: int
+) -> Schedule:
     """Order the operations of each exchange of a window.
 
     Parameters
@@ -31,18 +34,19 @@ def iterated_schedule(order: Sequence[str], steps: Mapping[str, int], exchange: 
         Communication step of each component (ticks).
     exchange : int
         Exchange step (ticks).
+    window : int
+        Exchanges that are iterated together, a multiple of those of each step.
 
     Returns
     -------
     Schedule
-        Its period is a window. Inputs are set before each step, and carry the times of that step.
+        Its period is the window. Inputs are set before each step, and carry the times of that step.
     """
-    period = lcm(*(max(1, steps[name] // exchange) for name in order))
     return Schedule(
         exchange,
         tuple(
             tuple(o for name in order for o in _turn(number, name, steps[name], exchange))
-            for number in range(period)
+            for number in range(window)
         ),
     )
 
@@ -124,8 +128,35 @@ def iteration_problems(iteration: Iteration, links: Iterable[tuple[End, End]]) -
     ]
 
 
+def window_problems(system: SystemSpec, timing: Timing) -> list[Problem]:
+    """Return what does not go together with the length of a window.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        With the implicit master.
+    timing : Timing
+        Of its run.
+    """
+    problems = []
+    order = system.iteration.interpolation
+    if timing.window < order:
+        has = "one exchange" if timing.window == 1 else f"{timing.window} exchanges"
+        window = timing.lasts(order * timing.exchange)
+        what = f"is {order}, and the window has {has}"
+        remedy = f"let iteration.window be {window:g} s or more, or leave it out"
+        problems.append(Problem("iteration.interpolation", what, remedy))
+    slow = [name for name in timing.steps if timing.steps[name] > timing.exchange]
+    if timing.window > 1 and system.scenario:
+        why = f", while {', '.join(slow)} steps over several exchanges" if slow else ""
+        what = f"with the implicit master and a window of {timing.window} exchanges{why}"
+        remedy = "choose another master, or a window and steps of one exchange"
+        problems.append(Problem("scenario", what, remedy))
+    return problems
+
+
 def weights(
-    moment: InputMoment, step: tuple[float, float], every: int, period: int
+    moment: InputMoment, step: tuple[float, float], every: int, period: int, order: int = 1
 ) -> NDArray[np.float64]:
     """Return how much each exchange of a window counts for an input.
 
@@ -139,6 +170,8 @@ def weights(
         Number of exchanges after which the source has new values.
     period : int
         Number of exchanges in the window.
+    order : int
+        Of the polynomial between the values; lower where the window has too few of them.
 
     Returns
     -------
@@ -153,8 +186,21 @@ def weights(
             found[last] += max(0.0, overlap) / (end - begin) if last <= period else 0.0
         return found
     at = {"begin": begin, "middle": 0.5 * (begin + end), "end": end}[moment]
-    last = max(every, ceil(at / every) * every)
-    part = (at - (last - every)) / every
-    found[last - every] = 1.0 - part
-    found[last] = part
+    interval = max(1, ceil(at / every)) - 1
+    known = period // every
+    degree = min(order, known)
+    first = min(max(0, interval - degree // 2), known - degree)
+    points = [at / every - first]
+    if moment == "middle" and degree > 1:  # two points have the mean of a polynomial up to cubic
+        apart = 0.5 * (end - begin) / every / sqrt(3.0)
+        points = [points[0] - apart, points[0] + apart]
+    nodes = slice(every * first, every * (first + degree) + 1, every)
+    found[nodes] = np.mean([_counts(degree, point) for point in points], axis=0)
     return found
+
+
+def _counts(degree: int, at: float) -> NDArray[np.float64]:
+    """Return how much values at 0, 1, 2, ... count in the value of their polynomial (Lagrange)."""
+    nodes = np.arange(degree + 1.0)
+    others = [np.delete(nodes, node) for node in range(degree + 1)]
+    return np.array([np.prod((at - other) / (node - other)) for node, other in enumerate(others)])

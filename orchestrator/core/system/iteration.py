@@ -2,18 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from .fields import Seconds, SystemData, Tolerance
 
 InputMoment = Literal["begin", "middle", "end", "mean"]
 """InputMoment of a step whose values a component gets for that step."""
-_Share = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 
 
-class _Data(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
-
-
-class IteratedConnection(_Data):
+class IteratedConnection(SystemData):
     """Tolerances and moment of the connections between some ports.
 
     Attributes
@@ -30,7 +27,7 @@ class IteratedConnection(_Data):
 
     source: str = "*"
     target: str = "*"
-    tolerance: _Share | None = None
+    tolerance: Tolerance | None = None
     absolute: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = None
     input: InputMoment | None = None
 
@@ -44,7 +41,7 @@ class IteratedConnection(_Data):
         return self
 
 
-class Iteration(_Data):
+class Iteration(SystemData):
     """How the implicit master iterates.
 
     Attributes
@@ -52,6 +49,14 @@ class Iteration(_Data):
     method : str
         ``fixed_point`` (with Aitken's relaxation), ``anderson``, or ``quasi_newton`` (on the
         interface, with what earlier exchanges have taught).
+    window : float, optional
+        Time (s) that is iterated as a whole, a multiple of the exchange step and of all steps of
+        components; without it, an exchange, or as many as all components need to come to a common
+        one. What components show at each exchange within it is found together: in an iteration
+        they pass on the course of a value, and not the end of it alone.
+    interpolation : int
+        Order of the polynomial between values at exchanges: 1, a straight line; 2 and 3 through the
+        nearest exchanges of the window, which has to have as many of them at least.
     tolerance : float
         Largest difference between a value that was given and the one that came back, relative to
         the largest amount that this output has had so far.
@@ -62,7 +67,8 @@ class Iteration(_Data):
     input : str
         Values of an exchange that components get for a step. ``end``: those of its end (first
         order); ``middle``: those of its middle, between those of its beginning and its end, for
-        components that hold their inputs (second order); ``begin``: those of its beginning, for
+        components that hold their inputs (second order), with ``interpolation`` above 1 the mean
+        over the step, which is the middle of a line; ``begin``: those of its beginning, for
         positions that the component itself moves on with a velocity; ``mean``: the values of the
         end for the whole of the source's step, for outputs that are means over it.
     unconverged : str
@@ -73,9 +79,11 @@ class Iteration(_Data):
     """
 
     method: Literal["fixed_point", "anderson", "quasi_newton"] = "quasi_newton"
-    tolerance: _Share = 1e-6
+    window: Seconds | None = None
+    interpolation: Literal[1, 2, 3] = 1
+    tolerance: Tolerance = 1e-6
     absolute: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 1e-9
     most: int = Field(default=50, ge=1, le=1000)
     input: InputMoment = "end"
     unconverged: Literal["fail", "continue"] = "fail"
-    connections: list[IteratedConnection] = []
+    connections: list[IteratedConnection] = Field(default_factory=list)

@@ -19,7 +19,7 @@ from .describing import Describer
 from .extrapolation import Extrapolating, extrapolation_problems
 from .finding import Finder
 from .imposing import Imposed, imposed_ends, imposed_places
-from .iterated import iteration_problems, plan_iteration
+from .iterated import iteration_problems, plan_iteration, window_problems
 from .limits import amount_problems, internal_step_problems
 from .linking import Linker, Links
 from .loops import algebraic_loops, told
@@ -245,12 +245,8 @@ class _Planner:
             self.finder.refuse("extrapolation", what, "leave it out, and choose iteration.input")
         if self.system.adaptive is not None:
             self.finder.refuse("adaptive", "is for the other masters", "leave it out")
-        slow = [n for n in timing.steps if timing.steps[n] > timing.exchange] if timing else []
-        if slow and self.system.scenario:
-            what = f"with the implicit master, while {', '.join(slow)} steps over several exchanges"
-            self.finder.refuse(
-                "scenario", what, "choose another master, or no step beyond the exchange's"
-            )
+        if timing is not None:
+            self.finder.problems += window_problems(self.system, timing)
 
     def _of_role(self, order: Iterable[str], role: Role) -> Iterator[End]:
         """Yield the outputs that are declared with a role, or a kind of it."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
 
 from ..errors import Problem
 from .clock import exact, fraction_near, ticks_per_second, to_seconds, to_ticks
@@ -28,6 +29,8 @@ class Timing:
         Ticks in a second.
     longest : int
         Most exchange steps that are made in one; a power of two.
+    window : int
+        Exchanges that the implicit master iterates together.
     """
 
     start: int
@@ -38,6 +41,7 @@ class Timing:
     steps: Mapping[str, int]
     rate: int
     longest: int = 1
+    window: int = 1
 
     def seconds(self, exchange: int) -> float:
         """Return the time (s) at the beginning of an exchange."""
@@ -111,7 +115,20 @@ def _fitted(
         steps=steps,
         rate=rate,
         longest=max(1, ticks.get("adaptive.largest_step", exchange) // exchange),
+        window=_window(system, ticks, steps),
     )
+
+
+_WINDOW = "iteration.window"
+
+
+def _window(system: SystemSpec, ticks: Mapping[str, int], steps: Mapping[str, int]) -> int:
+    """Return the exchanges after which all components have come to the end of a window."""
+    if system.master != "implicit":
+        return 1
+    exchange = ticks["exchange_step"]
+    lengths = [ticks.get(_WINDOW, exchange), *steps.values()]
+    return lcm(*(max(1, length // exchange) for length in lengths))
 
 
 def _exact_times(system: SystemSpec, problems: list[Problem]) -> dict[str, Fraction] | None:
@@ -122,6 +139,7 @@ def _exact_times(system: SystemSpec, problems: list[Problem]) -> dict[str, Fract
         "output_interval": system.output_interval or system.exchange_step,
         "state_interval": system.state_interval or system.exchange_step,
         **({"adaptive.largest_step": system.adaptive.largest_step} if system.adaptive else {}),
+        **_window_asked(system),
         **{f"{name}.step": spec.step for name, spec in system.components.items() if spec.step},
     }
     found = {}
@@ -132,6 +150,11 @@ def _exact_times(system: SystemSpec, problems: list[Problem]) -> dict[str, Fract
             remedy = 'round it to 1e-12 s or multiples of it, or write a fraction, "1/60"'
             problems.append(Problem(key, str(error), remedy))
     return found if len(found) == len(times) else None
+
+
+def _window_asked(system: SystemSpec) -> dict[str, float]:
+    asked = system.iteration.window if system.master == "implicit" else None
+    return {} if asked is None else {_WINDOW: asked}
 
 
 def _ticks(key: str, time: Fraction, rate: int, problems: list[Problem]) -> int | None:
@@ -151,6 +174,7 @@ def _misfits(
     length = ticks["stop_time"] - start
     problems = [
         *_longest_problems(ticks.get("adaptive.largest_step"), exchange, rate),
+        *_window_problems(ticks.get(_WINDOW), max(exchange, *steps.values()), rate),
         *(
             problem
             for name, step in steps.items()
@@ -164,7 +188,7 @@ def _misfits(
     fitting = {key: _nearest(lengths[key], exchange) for key in lengths}
     for key, near in fitting.items():
         problems += _multiple_problems(key, (0, lengths[key]), exchange, near, rate)
-    longest = max(exchange, *steps.values())
+    longest = max(exchange * _window(system, ticks, steps), *steps.values())
     fitting["stop_time"] = _nearest(length, longest) if length > 0 else []
     problems += _multiple_problems(
         "stop_time", (start, length), longest, fitting["stop_time"], rate
@@ -200,6 +224,13 @@ def _longest_problems(longest: int | None, exchange: int, rate: int) -> list[Pro
         f"{to_seconds(exchange, rate):g} s, which is the smallest step"
     )
     return [Problem("adaptive.largest_step", what, f"nearest are {near}")]
+
+
+def _window_problems(window: int | None, longest: int, rate: int) -> list[Problem]:
+    """Refuse a window (ticks) that is no multiple of the longest step."""
+    if window is None:
+        return []
+    return _multiple_problems(_WINDOW, (0, window), longest, _nearest(window, longest), rate)
 
 
 def _step_problems(key: str, step: int, exchange: int, rate: int) -> list[Problem]:

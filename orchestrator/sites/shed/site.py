@@ -308,6 +308,10 @@ class Numerics(Data):
     exchange_step: Duration | None = field(
         "time between two exchanges", usual=(1e-7, 1e-2), likely=("ms",)
     )
+    coupling: Literal["impulse", "implicit"] = field(
+        "scheme of exchange; implicit repeats each exchange until all values fit together",
+        "impulse",
+    )
     output_interval: Duration | None = field(
         "time between two rows of the results", usual=(1e-6, 1.0), likely=("ms",)
     )
