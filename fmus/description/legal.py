@@ -1,5 +1,7 @@
 """Files inside an FMU about its license and about what it needs that it does not bring."""
 
+import re
+from collections.abc import Mapping
 from importlib.metadata import distribution
 
 from ..parts import Files
@@ -55,3 +57,36 @@ def needed_by_python() -> Files:
             if line.startswith(package) and ";" not in line:
                 wanted[package] = line.removeprefix(package).strip()
     return {NEEDED: _NEEDED_BY_PYTHON.format(**wanted).encode()}
+
+
+_NEEDED_BY_NATIVE = """\
+The binaries of this FMU need nothing but an operating system with its C library:
+
+{libraries}
+
+Nothing is downloaded or installed, and no program is started.
+"""
+
+
+def needed_by_native(libraries: Mapping[str, tuple[str, bytes]]) -> Files:
+    """Return what the binaries of a native FMU need on the computer.
+
+    Parameters
+    ----------
+    libraries : mapping of str to (str, bytes)
+        Processor that a library is compiled for, and its content, by its path.
+    """
+    lines = [
+        f"{path}: processor {processor} or later{_c_library(content)}"
+        for path, (processor, content) in libraries.items()
+    ]
+    return {NEEDED: _NEEDED_BY_NATIVE.format(libraries="\n".join(lines)).encode()}
+
+
+def _c_library(content: bytes) -> str:
+    """Return the C library that a library for Linux asks for, in words; empty for others."""
+    asked = re.findall(rb"GLIBC_([0-9.]+)\0", content)
+    if not asked:
+        return ""
+    newest = max(asked, key=lambda version: tuple(map(int, version.split(b"."))))
+    return f", glibc {newest.decode()} or later"

@@ -37,6 +37,8 @@ def experiments(sizes: Sizes) -> tuple[Experiment, ...]:
         _reflected(segments, "free"),
         _ram(segments),
         _soil(segments),
+        _slipping_toe(),
+        _slipping_shaft(segments),
         _repaired(),
         *(_other_rod(area) for area in (0.9, 0.95, 1.05)),
     )
@@ -203,6 +205,76 @@ def _soil(segments: int) -> Experiment:
         },
         {"head.force": _FORCE},
         first=1,
+    )
+
+
+_SHORTEST_QUAKE = 1e-9
+"""Quake (m) of soil that slips from the first."""
+
+
+def _slipping_toe() -> Experiment:
+    steps, first = 3 * _PARTS - 1, _PARTS + 1
+    since = rows(_STEP, steps, first) - _TRAVEL
+    most, damping = 3e3, 0.5
+    speed = (2.0 * _FORCE - most) / (_IMPEDANCE + damping * most)
+    tolerance = 1e-5
+    return Experiment(
+        "slipping-toe",
+        Purpose.VALIDATION,
+        "The wave of a force on the head meets soil at the toe that slips from the first, with "
+        "Smith's damping: 2 F = Z v + R_u (1 + J v). Off by the quake of the first step.",
+        _STEP,
+        steps,
+        {
+            "toe.velocity": near(speed, tolerance),
+            "toe.position": near(speed * since, tolerance),
+            "toe.contact_force": near(most * (1.0 + damping * speed), tolerance),
+            "energy.damping": near(damping * most * speed**2 * since, tolerance),
+            "energy.plastic": near(most * speed * since, tolerance),
+        },
+        {
+            "toe.condition": "soil",
+            "toe.quake": _SHORTEST_QUAKE,
+            "toe.resistance": most,
+            "toe.damping": damping,
+        },
+        {"head.force": _FORCE},
+        first=first,
+    )
+
+
+def _slipping_shaft(segments: int) -> Experiment:
+    parts, steps, first = 3, _PARTS + 3, _PARTS + 1
+    held = parts * segments // _PARTS
+    t = rows(_STEP, steps, first)
+    since = t - parts * _STEP
+    most, damping = 2e3, 0.3
+    speed = (2.0 * _FORCE - most) / (2.0 * _IMPEDANCE + damping * most)
+    tolerance = 1e-5
+    resistance = np.zeros(segments)
+    resistance[held - 1] = most
+    return Experiment(
+        "slipping-shaft",
+        Purpose.VALIDATION,
+        "The wave of a force on the head passes soil at the shaft of one segment that slips from "
+        "the first, with Smith's damping: 2 F = 2 Z v + R_u (1 + J v). What goes on comes to a "
+        "matched toe. Off by the quake of the first step.",
+        _STEP,
+        steps,
+        {
+            "toe.velocity": near(speed, tolerance),
+            "toe.position": near(speed * (t - _TRAVEL), tolerance),
+            "energy.damping": near(damping * most * speed**2 * since, tolerance),
+            "energy.plastic": near(most * speed * since, tolerance),
+        },
+        {
+            "toe.condition": "matched",
+            "shaft.resistance": tuple(resistance),
+            "shaft.quake": (_SHORTEST_QUAKE,) * segments,
+            "shaft.damping": (damping,) * segments,
+        },
+        {"head.force": _FORCE},
+        first=first,
     )
 
 

@@ -36,6 +36,7 @@ def experiments(sizes: Sizes) -> tuple[Experiment, ...]:
         _slip_ends(cells),
         _bounce(cells, 0.4, Purpose.VALIDATION),
         _soil(cells),
+        _received(cells),
         *(_bounce(cells, share, Purpose.UNCERTAINTY) for share in (0.3, 0.35, 0.45)),
     )
 
@@ -108,6 +109,59 @@ def _flight(cells: int) -> Experiment:
             **_energies(1.5**2 + speed**2, np.zeros_like(t), y),
         },
         {"end.x": _stairs(cells, 6.0, 0.0), "end.y": _stairs(cells, -4.0, 100.0)},
+    )
+
+
+_RECEIVER = {
+    "receiver.present": 1.0,
+    "receiver.left": 0.0,
+    "receiver.right": 20.0,
+    "receiver.bottom": 10.0,
+    "receiver.top": 40.0,
+}
+"""Box above the plane in which the rock is from the start on."""
+
+
+def _received(cells: int) -> Experiment:
+    """Rock in the receiver under force and torque."""
+    step, steps, dt = 1e-3, 20, 1e-5
+    t = rows(step, steps)
+    force_x, force_y, torque, spin0 = 2e3, 5e3, 300.0, 0.5
+    ax, ay = force_x / _MASS, force_y / _MASS - _g
+    alpha = torque / (0.4 * _MASS * _RADIUS**2)
+    way_x, way_y = 3.0 * t + ax * t**2 / 2.0, -2.0 * t + ay * t**2 / 2.0
+    turned = spin0 * t + alpha * t**2 / 2.0
+    late = 1.1 * dt * steps * step / 2.0
+    return Experiment(
+        "received",
+        Purpose.VALIDATION,
+        "In the receiver the rock moves under force, torque and weight: v = v0 + a t, x = x0 + v0 "
+        "t + a t2/2, angle and spin likewise. Semi-implicit Euler has velocities and work to "
+        "rounding, and places off by a dt t/2.",
+        step,
+        steps,
+        {
+            "position.x": Expected(10.0 + way_x, late * abs(ax)),
+            "position.y": Expected(30.0 + way_y, late * abs(ay)),
+            "angle": Expected(turned, late * alpha),
+            "velocity.x": near(3.0 + ax * t, _PICOSECOND),
+            "velocity.y": near(-2.0 + ay * t, _PICOSECOND),
+            "angular_velocity": near(spin0 + alpha * t, _PICOSECOND),
+            "energy.work.contact": near(
+                force_x * way_x + force_y * way_y + torque * turned, _PICOSECOND
+            ),
+            "handovers": Expected(1.0, 0.0),
+        },
+        {
+            **_plane(cells, 0.3),
+            "position0.x": 10.0,
+            "position0.y": 30.0,
+            "velocity0.x": 3.0,
+            "velocity0.y": -2.0,
+            "angular_velocity0": spin0,
+            **_RECEIVER,
+        },
+        {"force.x": force_x, "force.y": force_y, "torque": torque},
     )
 
 

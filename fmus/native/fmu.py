@@ -34,7 +34,7 @@ from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
 
 from ..description.documentation import documentation
-from ..description.legal import license_files
+from ..description.legal import license_files, needed_by_native
 from ..parts import (
     DESCRIPTION,
     EXPERIMENTS,
@@ -205,12 +205,14 @@ def native_files(
         platforms = tuple(PLATFORMS)
     compilers = {name: compiler(name) for name in platforms}
     files = described_files(component, sizes, fmi)
+    libraries = {}
     for name, sources in library_sources(component, sizes, platforms, fmi).items():
         path = _library(component, name, fmi)
         files[path] = _linked(
             component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources
         )
-    return files
+        libraries[path] = (PLATFORMS[name].processor, files[path])
+    return files | needed_by_native(libraries)
 
 
 def library_sources(

@@ -150,6 +150,78 @@ FAULTS = {
         "load_x[i] = force_x[i]",
         "load_x[i] = force_x[before]",
     ),
+    "rock: force in y with the wrong sign": (
+        "FallingRock",
+        "common/rigid_body.py",
+        "(load.force_y / mass - gravity)",
+        "(-load.force_y / mass - gravity)",
+    ),
+    "slope: force in y with the wrong sign": (
+        "SlopeRockfall",
+        "slope_rockfall/kernel.py",
+        "load = Load(w[V.force_x], w[V.force_y], w[V.torque])",
+        "load = Load(w[V.force_x], -w[V.force_y], w[V.torque])",
+    ),
+    "slope: a hundredth less of the acceleration in y": (
+        "SlopeRockfall",
+        "slope_rockfall/flight.py",
+        "b[BODY.y] += span * (b[BODY.vy] + 0.5 * span",
+        "b[BODY.y] += span * (b[BODY.vy] + 0.49 * span",
+    ),
+    "slope: velocities exchanged where forces begin": (
+        "SlopeRockfall",
+        "slope_rockfall/kernel.py",
+        "b[BODY.vx], b[BODY.vy], b[BODY.omega])\n",
+        "b[BODY.vy], b[BODY.vx], b[BODY.omega])\n",
+    ),
+    "slope: inertia of a disc for a sphere": (
+        "SlopeRockfall",
+        "slope_rockfall/events.py",
+        "return 0.4 * w[V.mass] * w[V.radius] * w[V.radius]",
+        "return 0.5 * w[V.mass] * w[V.radius] * w[V.radius]",
+    ),
+    "ground: the clock begins a step late": (
+        "ImpulsiveGround",
+        "impulsive_ground/motion.py",
+        "            if load <= g.r0:\n                b[BODY.clock] = 0.0",
+        "            if load <= g.r0:\n                b[BODY.clock] = -1e-5",
+    ),
+    "hammer: the cushion loses nothing": (
+        "Hammer",
+        "hammer/cushion.py",
+        "return stiffness / (restitution * restitution)",
+        "return stiffness",
+    ),
+    "rod: no damping at the shaft": (
+        "PileRod",
+        "pile_rod/bookkeeping.py",
+        "view(w, k, A.shaft_damping)[at], True",
+        "0.0, True",
+    ),
+    "rod: no damping under the toe": (
+        "PileRod",
+        "pile_rod/bookkeeping.py",
+        "        w[V.toe_damping],\n",
+        "        0.0,\n",
+    ),
+    "beam: no damping by mass": (
+        "RBSMBeam",
+        "rbsm_beam/chain.py",
+        "        w[V.damping_mass],\n",
+        "        0.0,\n",
+    ),
+    "beam: no damping by stiffness": (
+        "RBSMBeam",
+        "rbsm_beam/chain.py",
+        "        w[V.damping_stiffness],\n",
+        "        0.0,\n",
+    ),
+    "beam: axes of the forces exchanged": (
+        "RBSMBeam",
+        "rbsm_beam/chain.py",
+        "load_y[i] = force_y[i] +",
+        "load_y[i] = force_x[i] +",
+    ),
 }
 """Faults in kernels that run as Python too."""
 
@@ -163,8 +235,14 @@ COMPILED = {
 }
 """Faults in the sand, whose law is compiled to vectors."""
 SHORT = {
-    "RBSMBeam": ("own-weight", "fixed-ends", "pull"),
-    "PileRod": ("step-of-force", "fixed-toe", "masses-and-springs"),
+    "RBSMBeam": ("own-weight", "fixed-ends", "pull", "damped-load"),
+    "PileRod": (
+        "step-of-force",
+        "fixed-toe",
+        "masses-and-springs",
+        "slipping-toe",
+        "slipping-shaft",
+    ),
 }
 """Experiments that find the faults of a component, where all of them take long as Python."""
 
