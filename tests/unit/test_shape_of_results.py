@@ -54,3 +54,15 @@ def test_a_panel_of_no_curves_in_an_fmu_is_passed_over():
     )
     ((picture),) = read_annotations(root).pictures
     assert [panel["label"] for panel in picture["panels"]] == ["force"]
+
+
+def test_a_bond_that_names_no_members_is_passed_over():
+    """So they stand in FMUs of older versions, which are connected variable by variable."""
+    member = '<Member name="force.y" variable="rock.force.y"/>'
+    for inside, found in (("", 0), (member, 1)):
+        root = ElementTree.fromstring(
+            f'<fmiModelDescription><VendorAnnotations><Tool name="{TOOL}"><Component>'
+            f'<Bond name="rock" prefix="rock.">{inside}</Bond></Component></Tool>'
+            "</VendorAnnotations></fmiModelDescription>"
+        )
+        assert len(read_annotations(root).bonds) == found

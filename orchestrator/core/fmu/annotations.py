@@ -84,7 +84,7 @@ def read_annotations(root: Element) -> Annotations:
         },
         "" if component is None else component.get("contents", ""),
         () if component is None else tuple(map(_picture, component.findall("Picture"))),
-        () if component is None else tuple(map(_bond, component.findall("Bond"))),
+        () if component is None else _bonds(component),
     )
 
 
@@ -125,6 +125,11 @@ def _picture(element: Element) -> dict[str, Any]:
     panels = [readers[child.tag](child) for child in element if child.tag in readers]
     shown = [panel for panel in panels if panel.get("curves", True)]
     return {"name": element.get("name", ""), "panels": shown}
+
+
+def _bonds(component: Element) -> tuple[dict[str, Any], ...]:
+    """Read the bonds; one without members, as older FMUs have them, is passed over."""
+    return tuple(bond for bond in map(_bond, component.findall("Bond")) if bond["members"])
 
 
 def _bond(element: Element) -> dict[str, Any]:
