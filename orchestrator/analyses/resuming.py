@@ -1,4 +1,4 @@
-"""A run, a study or a campaign that was ended goes on."""
+"""A run or an analysis that was ended goes on."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -23,17 +23,18 @@ def resume(
     progress: Callable[[float, float], None] | None = None,
     strict: bool = False,
 ) -> Run | Result:
-    """Let a run, a study or a rockfall campaign go on that was killed, interrupted or has failed.
+    """Let a run or an analysis go on that was killed, interrupted or has failed.
 
     Its results are those of one that nothing has ended, to the bit. A run begins at the last
     checkpoint but one and has to come by the last one with the same values: an FMU whose
     serialized state does not hold everything is found out. A study goes on from the runs that have
-    ended, a campaign from the trials.
+    ended, and so do a calibration of a sand and a convergence study of meshes; a campaign from the
+    trials. A convergence study of exchange steps begins again.
 
     Parameters
     ----------
     folder : str or Path
-        Folder of the results: of a run with ``checkpoint_every``, a study or a campaign.
+        Folder of the results: of a run with ``checkpoint_every``, or of an analysis.
     system : System, optional
         For a run with components of one's own in this process: the same system.
     progress : callable, optional
@@ -128,8 +129,37 @@ def _campaign(asked: Asked, pictures: bool | None) -> _Again:
     return lambda progress, note: carry_out_campaign(chosen, asked.folder, progress)
 
 
+def _calibration(asked: Asked, pictures: bool | None) -> _Again:
+    from .calibration.measurement import from_data
+    from .calibration.run import calibrate
+
+    given = {**asked.arguments, "folder": asked.folder}
+    given["measurement"] = from_data(given["measurement"])
+    given |= {} if pictures is None else {"pictures": pictures}
+    return lambda progress, note: calibrate(**given, progress=progress, note=note)
+
+
+def _meshes(asked: Asked, pictures: bool | None) -> _Again:
+    from .convergence.run import converge
+
+    given = {**asked.arguments, "folder": asked.folder}
+    given |= {} if pictures is None else {"pictures": pictures}
+    return lambda progress, note: converge(**given, progress=progress, note=note)
+
+
+def _exchange_steps(asked: Asked, pictures: bool | None) -> _Again:
+    from .exchange_steps.run import converge_exchange
+
+    given = {**asked.arguments, "folder": asked.folder}
+    given |= {} if pictures is None else {"pictures": pictures}
+    return lambda progress, note: converge_exchange(**given, progress=progress, note=note)
+
+
 _KINDS: Mapping[str, Callable[[Asked, bool | None], _Again]] = {
     "study": _study,
     "rockfall": _campaign,
+    "calibration": _calibration,
+    "convergence": _meshes,
+    "exchange-steps": _exchange_steps,
 }
 """Readers of the arguments of an analysis, by its kind."""

@@ -27,7 +27,7 @@ COMMANDS = {
     "check": "Check any FMU: description, life cycle, steps, states, wrong values.",
     "export": "Write a system with its FMUs as TOML or SSP, or a run for others.",
     "run": "Run a case, a project or a system file, compare, draw.",
-    "resume": "Let a run, a study or a campaign that was ended go on.",
+    "resume": "Let a run or an analysis that was ended go on.",
     "branch": "Run variants of a run from one of its states.",
     "verify": "Run a run again and compare every bit of its results.",
     "plot": "Draw a run again, also one that failed; or variables of several.",

@@ -14,7 +14,7 @@ from ..analyses.calibration.result import CalibrationResult
 from ..analyses.calibration.run import COMPUTED, MeasurementLike, calibrate, measurements_of
 from ..core.errors import InputRefused, Problem, RunFailed, all_causes
 from ..runs.building import is_cold
-from .analysis import options_named, stages
+from .analysis import kept_if_ended, options_named, stages
 from .assignments import values_of
 from .options import Assignments, Json, Quiet, Workers
 from .results_place import Origin, free_folder, look_at_place
@@ -80,15 +80,17 @@ def command(
             measurement = measurement_from(target, stiffness)
         if is_cold(COMPUTED):
             screen.note(COLD_START)
+        folder = output_dir or _folder(measurement, screen)
+        kept = kept_if_ended(screen, folder)
         try:
-            with options_named(_OPTIONS), stages(screen) as progress:
+            with kept, options_named(_OPTIONS), stages(screen) as progress:
                 result = calibrate(
                     measurement,
                     rotation=rotation,
                     values=values,
                     seeds=seeds,
                     workers=workers,
-                    folder=output_dir or _folder(measurement, screen),
+                    folder=folder,
                     pictures=True,
                     progress=progress,
                     note=screen.note,

@@ -21,7 +21,7 @@ from ..runs.chosen import is_project_file
 from ..runs.job import look_at_target
 from ..runs.request import Request
 from .analysis import as_json as data_of
-from .analysis import options_named, show, stages
+from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .options import (
     Assignments,
@@ -198,7 +198,8 @@ def _meshes(project: Path, asked: Mapping[str, Any], screen: Screen) -> None:
     folder = asked["folder"] or free_folder(
         f"{project.stem}-convergence", origin, _reader(DATA), screen
     )
-    with options_named(("packings", "finest", "folder")), stages(screen) as progress:
+    named = options_named(("packings", "finest", "folder"))
+    with kept_if_ended(screen, folder), named, stages(screen) as progress:
         result = converge(
             project, **{**asked, "folder": folder}, progress=progress, note=screen.note
         )
@@ -211,7 +212,8 @@ def _steps(target: str, asked: Mapping[str, Any], screen: Screen) -> None:
     try:
         given = {*_OF_STEPS, *asked["options"]}
         named = options_named((*_OF_STEPS, *_TIMES), target, given)
-        with named, stages(screen) as progress, stdout_for_results():
+        kept = kept_if_ended(screen, folder)
+        with kept, named, stages(screen) as progress, stdout_for_results():
             result: ExchangeStepsResult = converge_exchange(
                 target, **{**asked, "folder": folder}, progress=progress, note=screen.note
             )

@@ -1,7 +1,9 @@
 """The command ``rockshed reproduce``: the studies of a paper."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from shlex import quote
+from typing import Annotated, Any
 
 import typer
 
@@ -35,15 +37,37 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         folder = output_dir or RESULTS / paper
-        with options_named(("only", "folder")), screen.counting("runs") as done:
-            made = reproduce(paper, folder, only or [], quick, workers, screen.note, done)
-        if as_json:
-            screen.dump(made.content)
-        else:
-            _show(made, folder, screen)
-        if made.interrupted:
-            screen.warn("interrupted: rows without a value were not run")
-            raise typer.Exit(INTERRUPTED)
+        show_reproduction(
+            {"paper": paper, "only": only or [], "quick": quick}, folder, workers, screen
+        )
+
+
+def show_reproduction(
+    asked: Mapping[str, Any], folder: Path, workers: int | None, screen: Screen
+) -> None:
+    """Carry out a reproduction, or let one go on, and show it.
+
+    Parameters
+    ----------
+    asked : mapping of str to Any
+        Paper, names of studies, and whether one run stands for all seeds.
+    folder : Path
+        Of the results.
+    workers : int or None
+        Number of processes.
+    screen : Screen
+        Of the command.
+    """
+    with options_named(("only", "folder")), screen.counting("runs") as done:
+        made = reproduce(**asked, folder=folder, workers=workers, note=screen.note, counted=done)
+    if screen.as_json:
+        screen.dump(made.content)
+    else:
+        _show(made, folder, screen)
+    if made.interrupted:
+        again = f"`rockshed resume {quote(str(folder))}` goes on"
+        screen.warn(f"interrupted: rows without a value were not run; {again}")
+        raise typer.Exit(INTERRUPTED)
 
 
 def _show(made: Reproduction, folder: Path, screen: Screen) -> None:

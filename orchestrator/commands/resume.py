@@ -8,6 +8,7 @@ import typer
 from ..analyses.asked import Asked, find_asked
 from ..analyses.resuming import go_on
 from ..core.errors import RunFailed, counted
+from ..core.results.reading import undamaged
 from ..core.supervisor import announce
 from ..runs.continuing import resume, stopped_at
 from ..runs.run import Run
@@ -17,8 +18,10 @@ from .run import show_run
 from .screen import CHECK_FAILED, Screen, opened
 from .streams import stdout_for_results
 
+REPRODUCTION = "reproduction"
+"""Kind of what is asked for by `rockshed reproduce`."""
 _StoppedRun = Annotated[
-    Path, typer.Argument(metavar="RUN", help="Folder of a run, a study or a rockfall campaign.")
+    Path, typer.Argument(metavar="RUN", help="Folder of a run, or of an analysis.")
 ]
 
 
@@ -29,12 +32,15 @@ def command(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Let a run, a study or a campaign that was ended go on.
+    """Let a run or an analysis that was ended go on.
 
     The results are those of one that nothing has ended, to the bit.
     """
     with opened(quiet, as_json) as screen:
         asked = find_asked(run)
+        if asked is not None and asked.kind == REPRODUCTION:
+            _show_reproduction(asked, screen)
+            return
         if asked is not None:
             _show_analysis(asked, screen, not no_figures, strict)
             return
@@ -44,9 +50,21 @@ def command(
         show_run(done, screen, not no_figures, strict)
 
 
+def _show_reproduction(asked: Asked, screen: Screen) -> None:
+    """Let a reproduction go on, and show it."""
+    from .reproduce import show_reproduction  # the papers are needed for nothing else
+
+    screen.note(f"a {asked.kind} goes on")
+    with undamaged(asked.file):
+        given = {key: asked.arguments[key] for key in ("paper", "only", "quick")}
+        workers = asked.arguments["workers"]
+    show_reproduction(given, asked.folder, workers, screen)
+
+
 def _show_analysis(asked: Asked, screen: Screen, with_figures: bool, strict: bool) -> None:
     """Let an analysis go on, and show its result."""
-    screen.note(f"a {asked.kind} goes on")
+    article = "an" if asked.kind[0] in "aeiou" else "a"
+    screen.note(f"{article} {asked.kind} goes on")
     pictures = None if with_figures else False
     with kept_if_ended(screen, asked.folder), stages(screen) as progress:
         result = go_on(asked, pictures=pictures, progress=progress, note=screen.note)

@@ -3,6 +3,7 @@
 import shutil
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
@@ -12,6 +13,7 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
+from ..analyses.asked import remembering
 from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..core.results.own_files import is_foreign_picture, refuse_foreign
 from ..core.system.names import nearest
@@ -36,6 +38,8 @@ PAPERS = {
 }
 """Papers that have studies: package of this name."""
 DATA, PAGE, FIGURES = "reproduction.json", "reproduction.html", "figures"
+KIND = "reproduction"
+"""Kind of the analysis, where it is kept what it was asked."""
 _REMEDY = "name another folder: folder=..."
 _PACKAGES = ("numpy", "numba", "fmpy", "pythonfmu")
 
@@ -173,6 +177,30 @@ def reproduce(
     _refuse_place(folder)
     with refusing_unwritable(folder / FIGURES, _REMEDY):
         (folder / FIGURES).mkdir(parents=True, exist_ok=True)
+    arguments = {"paper": paper, "only": list(only), "quick": quick, "workers": workers}
+    made = None
+    with suppress(_InterruptedError), remembering(folder / FINISHED, KIND, arguments):
+        made = _carried_out(paper, selected, folder, (quick, workers), note, counted)
+        if made.interrupted:  # what it was asked is kept
+            raise _InterruptedError
+    assert made is not None
+    return made
+
+
+class _InterruptedError(Exception):
+    """A reproduction was interrupted, and has results of what had ended."""
+
+
+def _carried_out(
+    paper: str,
+    selected: Sequence[Study],
+    folder: Path,
+    how: tuple[bool, int | None],
+    note: Note,
+    counted: Counted,
+) -> Reproduction:
+    """Carry out studies, one run or all seeds, with a number of processes; write the files."""
+    quick, workers = how
     began = time.perf_counter()
     started = datetime.now(UTC).isoformat(timespec="seconds")
     tasks = [task for study in selected for task in study.tasks(quick)]

@@ -1,8 +1,9 @@
 """Measured static loading tests: spring constants, and load-penetration curves."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,30 @@ class Measurement:
     def stiffness(self) -> float:
         """Secant spring constant (N/m) at the deepest point."""
         return float(self.load[-1] / self.depth[-1])
+
+
+def as_data(measurement: Any) -> Any:
+    """Return measurements as plain data, anything else as it is.
+
+    Parameters
+    ----------
+    measurement : Any
+        Measurements, or what a calibration takes else.
+    """
+    listed = [measurement] if isinstance(measurement, Measurement) else measurement
+    if not isinstance(listed, Sequence) or isinstance(listed, str):
+        return listed
+    return [{**vars(one), "depth": one.depth.tolist(), "load": one.load.tolist()} for one in listed]
+
+
+def from_data(data: Any) -> Any:
+    """Return what a calibration takes of what :func:`as_data` gives."""
+    if not isinstance(data, list):
+        return data
+    return [
+        Measurement(one["name"], np.array(one["depth"]), np.array(one["load"]), one["printed"])
+        for one in data
+    ]
 
 
 def of_stiffness(stiffness: float, name: str = "", printed: float | None = None) -> Measurement:

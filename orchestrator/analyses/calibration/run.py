@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from rockshed.components.catalogue import component
 
@@ -12,9 +13,10 @@ from ...core.system.fields import Value
 from ...runs.building import Note, silent
 from ...runs.first_compilation import tell_first_compilation
 from ...runs.kept import FINISHED, KeptRuns
+from ..asked import remembering
 from ..frame import StageProgress, counter, no_progress
 from .curve_file import read_curve
-from .measurement import Measurement, is_spring_constant, of_stiffness, of_text
+from .measurement import Measurement, as_data, is_spring_constant, of_stiffness, of_text
 from .result import CalibrationResult
 from .search import ROTATIONS, SOUGHT, Means, by_misfit, calibration_of
 
@@ -86,11 +88,46 @@ def calibrate(
     >>> result.metrics["e_bar"].unit  # doctest: +SKIP
     'Pa'
     """
+    place = Path(folder) / FINISHED if folder else None
+    files = [measurement.absolute()] if isinstance(measurement, Path) else []
+    if isinstance(measurement, str) and not is_spring_constant(measurement):
+        files = [Path(measurement).absolute()]
+    asked = {
+        "measurement": str(files[0]) if files else as_data(measurement),
+        "rotation": rotation,
+        "values": values,
+        "seeds": seeds,
+        "workers": workers,
+        "pictures": pictures,
+    }
+    with remembering(place, CalibrationResult.kind, asked, files):
+        measurements = _checked(measurement, rotation, dict(values or {}), seeds)
+        search = _Search(measurements, rotation, dict(values or {}), seeds, workers)
+        return _calibrated(search, Path(folder) if folder else None, pictures, progress, note)
+
+
+class _Search(NamedTuple):
+    """A search for the moduli of measurements, and how it is made."""
+
+    measurements: list[Measurement]
+    rotation: str
+    values: dict[str, Value]
+    seeds: int
+    workers: int | None
+
+
+def _calibrated(
+    search: _Search,
+    folder: Path | None,
+    pictures: bool,
+    progress: StageProgress | None,
+    note: Note,
+) -> CalibrationResult:
+    """Carry out a calibration, and save it where a folder is given."""
     show = progress or no_progress
-    changes = dict(values or {})
-    measurements = _checked(measurement, rotation, changes, seeds)
+    measurements, rotation, changes, seeds, workers = search
     models = list(ROTATIONS) if rotation == BEST else [rotation]
-    kept = KeptRuns(Path(folder) / FINISHED) if folder else None
+    kept = KeptRuns(folder / FINISHED) if folder else None
     means = Means(workers, note, counter(show, "static tests"), kept)
     with ExitStack() as opened:
         place = opened.enter_context(CalibrationResult.opened(folder)) if folder else None
@@ -106,7 +143,7 @@ def calibrate(
             result.write(place, pictures, show)
     if kept is not None:
         kept.clear()
-    result.folder = Path(folder) if folder else None
+    result.folder = folder
     return result
 
 

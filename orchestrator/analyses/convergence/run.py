@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...cases.shed import prepared
 from ...core.errors import InputRefused, Problem
@@ -11,6 +11,7 @@ from ...runs.batch import INTERRUPTED, run_all
 from ...runs.building import Note, silent
 from ...runs.kept import FINISHED, KeptRuns
 from ...sites.shed.preparation import is_field
+from ..asked import remembering
 from ..frame import StageProgress, counter, no_progress
 from .figures import common_cut_off, measured
 from .meshes import DISC_FIELD, ELEMENT_FIELD, SEED_FIELD, meshes, tasks
@@ -76,15 +77,44 @@ def converge(
     ...     print(refusal)
     packings: 1 shows no scatter of the packings; give two at least
     """
-    show = progress or no_progress
-    given = dict(values or {})
-    source = Path(project) if isinstance(project, str | Path) else project
+    source = Path(project).absolute() if isinstance(project, str | Path) else project
+    files = [source] if isinstance(source, Path) else []
+    asked = {
+        "project": source,
+        "packings": packings,
+        "finest": finest,
+        "values": values,
+        "workers": workers,
+        "pictures": pictures,
+    }
+    place = Path(folder) if folder else None
+    with remembering(place and place / FINISHED, ConvergenceResult.kind, asked, files):
+        source = Path(project) if isinstance(project, str | Path) else project
+        study = _MeshStudy(source, packings, finest, dict(values or {}), workers)
+        return _carried_out(study, place, pictures, progress or no_progress, note)
+
+
+class _MeshStudy(NamedTuple):
+    """Meshes of a project to be compared, and the number of processes."""
+
+    source: Path | Mapping[str, Any]
+    packings: int
+    finest: float
+    values: dict[str, Value]
+    workers: int | None
+
+
+def _carried_out(
+    study: _MeshStudy, folder: Path | None, pictures: bool, show: StageProgress, note: Note
+) -> ConvergenceResult:
+    """Carry out the runs of all meshes, and save what they give where a folder is given."""
+    source, packings, finest, given, workers = study
     _check(packings, finest, given)
     fields = {name: value for name, value in given.items() if is_field(name)}
     shed = prepared(source, fields)
     found = meshes(source, fields, finest)
     runs = {mesh: tasks(source, given, mesh, shed.layout.seed, packings) for mesh in found}
-    kept = KeptRuns(Path(folder) / FINISHED) if folder else None
+    kept = KeptRuns(folder / FINISHED) if folder else None
     wanted = [task for listed in runs.values() for task in listed]
     outcomes = run_all(wanted, workers, note, counter(show, "runs"), kept)
     if any(outcome.status == INTERRUPTED for outcome in outcomes.values()):

@@ -12,9 +12,11 @@ from ...core.system.fields import Value
 from ...core.system.names import nearest
 from ...runs.building import Note, silent
 from ...runs.job import recorded_names
+from ...runs.kept import FINISHED
 from ...runs.request import Request, plain
 from ...runs.simulation import simulate
 from ...runs.system import System
+from ..asked import remembering
 from ..frame import StageProgress, counter, no_progress
 from .figures import Level, figures, level_of, told_first
 from .ladder import ladder
@@ -98,21 +100,54 @@ def converge_exchange(
     >>> rockshed.converge_exchange(fall, watch=["rock.position.y"])
     <ExchangeStepsResult fall: 4 steps, 0 figures with an order, 2 independent of the step>
     """
+    files = _files(target)
+    asked = {
+        "target": files[0] if files else target,
+        "levels": levels,
+        "accuracy": accuracy,
+        "watch": list(watch),
+        "metrics": list(metrics),
+        "values": values,
+        "options": options,
+        "coupling": coupling,
+        "pictures": pictures,
+    }
+    place = Path(folder) / FINISHED if folder else None
+    with remembering(place, ExchangeStepsResult.kind, asked, files):
+        problems = _problems(levels, accuracy)
+        found = _system(target, values or {}, options or {}, coupling, problems, note)
+        found[0].refuse_empty()
+        made = _carried_out(found, (levels, accuracy, watch, metrics), problems, progress)
+        if folder:
+            made.save(folder, pictures=pictures, progress=progress or no_progress)
+        return made
+
+
+def _files(target: ExchangeTarget) -> list[Path]:
+    """Return the file of a target, absolute; nothing of a case."""
+    if isinstance(target, str | Path) and Request(str(target)).is_file:
+        return [Path(target).absolute()]
+    return []
+
+
+def _carried_out(
+    found: tuple[System, dict[str, Any]],
+    wanted: tuple[int, float, Sequence[str], Sequence[str]],
+    problems: list[Problem],
+    progress: StageProgress | None,
+) -> ExchangeStepsResult:
+    """Run a system, of some origin, with all steps, and find the orders."""
     show = progress or no_progress
-    problems = _problems(levels, accuracy)
-    system, origin = _system(target, values or {}, options or {}, coupling, problems, note)
-    system.refuse_empty()
+    system, origin = found
+    levels, accuracy, watch, metrics = wanted
     watched = tuple(dict.fromkeys(watch))
     steps = ladder(system, levels, watched) if levels >= FEWEST else [system]
     _refuse(steps, watched, problems)
-    found = list(_levels(steps, watched, show))
-    _refuse_unknown(metrics, found)
-    names = list(metrics) or ([] if watched else told_first(found))
-    followed = figures(found, watched, names)
-    result = ExchangeStepsResult(system.name, found, followed, accuracy, origin)
-    if folder:
-        result.save(folder, pictures=pictures, progress=show)
-    return result
+    runs = list(_levels(steps, watched, show))
+    _refuse_unknown(metrics, runs)
+    names = list(metrics) or ([] if watched else told_first(runs))
+    followed = figures(runs, watched, names)
+    return ExchangeStepsResult(system.name, runs, followed, accuracy, origin)
 
 
 def _system(
