@@ -7,6 +7,7 @@ from pathlib import Path
 from .convergence import TABLES as CONVERGENCE
 from .kept import NotKeptError
 from .other_papers import TABLES as OTHERS
+from .platforms import TABLES as PLATFORMS
 from .sonoda1993 import TABLES as SONODA
 from .systems import TABLES as SYSTEMS
 
@@ -27,6 +28,7 @@ TABLES: Mapping[str, Mapping[str, Callable[[], str]]] = {
     "others": OTHERS,
     "convergence": CONVERGENCE,
     "systems": SYSTEMS,
+    "platforms": PLATFORMS,
 }
 """Functions that write a block, by paper and name."""
 

@@ -4,6 +4,7 @@ FOLDER is that of a finished ``rockshed bench systems``. Its data and its figure
 what is kept; then ``python -m docs.tables`` writes the tables of the pages.
 """
 
+import re
 import shutil
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -11,15 +12,19 @@ from functools import cache
 from pathlib import Path
 
 from rockshed.systems.catalogue import NAMES, impact_system
+from rockshed.systems.findings import findings as found_out
 from rockshed.systems.jobs import VARIANTS
 from rockshed.systems.masters.table import MASTERS
-from rockshed.systems.measuring import MasterRun, SuiteRuns, from_text
+from rockshed.systems.measured import MasterRun, SuiteRuns, from_text
 from rockshed.systems.results import Summary, number, summaries, verdict
+from rockshed.systems.stamps import stamp
 
 from .forms import table
 from .kept import FOLDER, NotKeptError
 
 DATA = FOLDER / "systems.json"
+_PLACE = re.compile(r" ?\(line \d+, column \d+\)")
+"""Of a fault in a file, which is another one in each system."""
 FIGURE = FOLDER.parent / "impact-systems.png"
 
 
@@ -52,6 +57,12 @@ def take(folder: Path) -> None:
     kept.cache_clear()
 
 
+@cache
+def present_stamp(name: str) -> str:
+    """Return the stamp of a system by the present kernels."""
+    return stamp(impact_system(name))
+
+
 def outdated(measured: SuiteRuns) -> list[str]:
     """Return why a measurement is not that of the present suite, a line for each reason."""
     remedy = "run `rockshed bench systems`, then `python -m docs.tables.systems results/systems`"
@@ -65,6 +76,8 @@ def outdated(measured: SuiteRuns) -> list[str]:
         steps = {r.step for r in measured.rows if (r.system, r.variant) == (name, "fmi2-native")}
         if steps != set(impact_system(name).steps):
             found.append(f"{name}: has other exchange steps; {remedy}")
+        if measured.stamps.get(name) != present_stamp(name):
+            found.append(f"{name}: other than when measured, by kernels or truth; {remedy}")
     return found
 
 
@@ -136,6 +149,17 @@ def reasons() -> str:
     return table(["master", "system", "what it says"], lines)
 
 
+def findings() -> str:
+    """Return what the numbers say about each master."""
+    lines = []
+    for each in found_out(kept()):
+        cannot = ["all"] if len(each.cannot) == len(NAMES) else each.cannot
+        cells = (cannot, each.beyond, each.lost, each.gained, each.energy)
+        lines.append([each.master, *("; ".join(cell) or "-" for cell in cells)])
+    titles = ["no result", "error > tolerance", "order lost", "order gained", "energy made"]
+    return table(["master", *titles], lines)
+
+
 def tools() -> str:
     """Return the versions of all tools and how they are used."""
     versions = kept().versions
@@ -143,7 +167,11 @@ def tools() -> str:
         [master.name, master.package, versions[master.package] or "cannot be had", master.how]
         for master in MASTERS
     ]
-    note = f"\n\nMeasured on: {kept().platform}."
+    measured = kept()
+    note = (
+        f"\n\nMeasured on: {measured.platform}, in {measured.rounds} rounds, "
+        f"in {measured.wall_time / 60.0:.0f} minutes."
+    )
     return table(["master", "package", "version", "how it is used"], lines) + note
 
 
@@ -163,7 +191,8 @@ def _compatibility(variant: str) -> str:
             rows = [found.get((name, master.name)) for name in NAMES]
             lines.append([master.name, version, *(_verdict(row, notes) for row in rows)])
     foot = "\n".join(f"{place}. {note}" for place, note in enumerate(notes, 1))
-    return f"{table(['tool', 'version', *NAMES], lines)}\n\n{foot}"
+    shown = table(["tool", "version", *NAMES], lines)
+    return f"{shown}\n\nPlatform: {kept().platform}.\n\n{foot}"
 
 
 def _verdict(row: MasterRun | None, notes: list[str]) -> str:
@@ -180,7 +209,8 @@ def _verdict(row: MasterRun | None, notes: list[str]) -> str:
 
 def _in_words(reason: str) -> str:
     """Return a reason as text of a table."""
-    return reason.replace("|", "/").replace("<", "&lt;").strip()
+    told = _PLACE.sub("", reason)
+    return told.replace("|", "/").replace("<", "&lt;").strip()
 
 
 def _kinds(names: Sequence[str]) -> Mapping[str, Callable[[], str]]:
@@ -193,6 +223,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "costs": costs,
     "equal-costs": equal_costs,
     "reasons": reasons,
+    "findings": findings,
     "tools": tools,
     **_kinds([variant.name for variant in VARIANTS]),
 }

@@ -101,6 +101,11 @@ def of_run(request: Request) -> str:
         )
 
 
+def of_series(columns: Mapping[str, "NDArray[Any]"]) -> str:
+    """Return the digest of columns: of each the largest value, and mean and end in parts of it."""
+    return _digest({name: _summary(column) for name, column in columns.items()})
+
+
 def of_rows(rows: Sequence[Row]) -> str:
     """Return the digest of computed values, spreads and verdicts."""
     return _digest(

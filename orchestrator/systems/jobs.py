@@ -13,16 +13,16 @@ from rockshed.fmus.build import BuildError, Fmi, Runtime, build_component
 
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Port
-from ..core.fmu.slave import BOOLEAN, INTEGER
+from ..core.fmu.slave import BOOLEAN, INTEGER, Source
 from ..core.run import sources_of
+from ..core.system.iteration import IteratedConnection, Iteration
 from ..core.system.plan import End, Plan
 from ..core.system.planning import make_plan
-from ..core.system.schedule import Scheme
 from ..core.system.system import SystemSpec
 from ..ssp.links import linked
 from ..ssp.package import MAIN
 from ..ssp.writing import MULTI_RATE, write_ssp
-from .system import FmuPart, ImpactSystem
+from .system import ExchangeOrder, FmuPart, ImpactSystem
 
 SSP_OF = {Fmi.TWO: "1.0", Fmi.THREE: "2.0"}
 """Version of SSP that goes with a version of FMI."""
@@ -116,8 +116,9 @@ def planned(
     system: ImpactSystem,
     files: Mapping[str, str],
     step: float,
-    scheme: Scheme,
+    master: ExchangeOrder,
     options: Mapping[str, Any] = MappingProxyType({}),
+    sources: Mapping[str, Source] | None = None,
 ) -> Plan:
     """Return the plan of a system, with every row and what is watched in its results.
 
@@ -129,10 +130,12 @@ def planned(
         FMUs by component.
     step : float
         Exchange step (s).
-    scheme : Scheme
-        Order of an exchange.
+    master : ExchangeOrder
+        Order of an exchange; of the implicit one, inputs have the moments of the system.
     options : mapping
         Further keys of the system.
+    sources : mapping of str to Source, optional
+        What takes the place of the files.
 
     Returns
     -------
@@ -143,10 +146,13 @@ def planned(
     InputRefused
         The system does not fit its FMUs.
     """
-    made = system.make(files, step, scheme)
+    made = system.make(files, step, master)
+    if master == "implicit":
+        entries = [IteratedConnection(target=name, input=m) for name, m in system.moments.items()]
+        made = made.model_copy(update={"iteration": Iteration(connections=entries)})
     record = [".".join(port) for port in watched(system)]
     made = made.model_copy(update={"record": record, "output_interval": step, **options})
-    return make_plan(made, sources_of(made))
+    return make_plan(made, sources or sources_of(made))
 
 
 def write_job(

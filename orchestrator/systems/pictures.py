@@ -13,11 +13,12 @@ from ..pictures.style import BEAM, GREY, INK, ROCK, SAND, TRANSMITTED, WIDTH
 from .catalogue import impact_system
 from .jobs import NATIVE
 from .masters.table import MASTERS
-from .measuring import MasterRun, SuiteRuns
+from .measured import MasterRun, SuiteRuns
+from .results import mean_step
 
 _COLUMNS = 2
 _COLOURS = (TRANSMITTED, ROCK, BEAM, INK, SAND, GREY)
-_MARKERS = "osD^v<>pPX*hd+x"
+_MARKERS = "osD^v<>pPX*hd+x8H|"
 _ROOM = 0.16
 """Part of an axis that the label of a step needs."""
 _SHOWN = (1e-7, 3.0)
@@ -75,7 +76,7 @@ def _panel(axes: Axes, name: str, rows: Sequence[MasterRun]) -> None:
     system = impact_system(name)
     for number, master in enumerate(MASTERS):
         points = sorted(
-            (row.step, row.error)
+            (mean_step(row), row.error)
             for row in rows
             if row.master == master.name and row.error and _SHOWN[0] < row.error < _SHOWN[1]
         )
@@ -84,7 +85,7 @@ def _panel(axes: Axes, name: str, rows: Sequence[MasterRun]) -> None:
                 *zip(*points, strict=True),
                 color=_COLOURS[number % len(_COLOURS)],
                 marker=_MARKERS[number],
-                markersize=9.0 - 0.45 * number,
+                markersize=9.0 - 0.35 * number,
                 markerfacecolor="none",
                 linewidth=0.8,
                 label=master.name,
@@ -96,5 +97,5 @@ def _panel(axes: Axes, name: str, rows: Sequence[MasterRun]) -> None:
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.minorticks_off()
     axes.set_title(name, fontsize="small")
-    axes.set_xlabel("exchange step (ms)")
+    axes.set_xlabel("mean exchange step (ms)")
     axes.set_ylabel("error / largest value")

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..tables import Table
+from .bench import REFERENCE
 from .catalogue import impact_system
 from .jobs import NATIVE
 from .masters.table import MASTERS
-from .measuring import REFERENCE, MasterRun, SuiteRuns
+from .measured import MasterRun, SuiteRuns
 
 _SMALLEST, _LARGEST = 1e-10, 0.3
 """Errors outside of these say nothing about an order: rounding, and runs that have lost the way."""
@@ -58,9 +59,9 @@ def summaries(measured: SuiteRuns) -> list[Summary]:
 
 
 def order(rows: Iterable[MasterRun]) -> float | None:
-    """Return the slope of the error over the exchange step, both logarithmic."""
+    """Return the slope of the error over the mean exchange step, both logarithmic."""
     points = [
-        (math.log(row.step), math.log(row.error))
+        (math.log(mean_step(row)), math.log(row.error))
         for row in rows
         if row.error is not None and _SMALLEST < row.error < _LARGEST
     ]
@@ -68,6 +69,11 @@ def order(rows: Iterable[MasterRun]) -> float | None:
         return None
     steps, errors = zip(*points, strict=True)
     return float(np.polyfit(steps, errors, 1)[0])
+
+
+def mean_step(row: MasterRun) -> float:
+    """Return the mean exchange step (s) of a run: that of an adaptive one is shorter than told."""
+    return impact_system(row.system).stop_time / row.exchanges
 
 
 def budget(rows: Iterable[MasterRun], system: str) -> float | None:

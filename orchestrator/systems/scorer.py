@@ -3,12 +3,14 @@
     python score.py SYSTEM RESULT ...
 
 SYSTEM is a folder of this suite. RESULT is a CSV with a column ``time`` (s) and one of the name
-that the system's page tells, or an answer of ``run.py``. Exit code 0: all within the tolerance, 3:
+that the system's page tells, each with its unit in brackets behind or not, or an answer of
+``run.py``. Exit code 0: all within the tolerance, 3:
 some are not, 2: a file is not in order.
 """
 
 import csv
 import json
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,8 @@ import numpy as np
 
 SAME_TIME = 1e-6
 """Two times are the same if they differ by less than this part of the truth's step."""
+UNIT = re.compile(r"\s+\[[^\]]*\]$")
+"""Unit behind a name, as in ``time [s]``; a place in an array has no space in front."""
 
 
 class NotInOrderError(Exception):
@@ -33,7 +37,7 @@ def read_csv(file: Path) -> dict[str, Any]:
         raise NotInOrderError(f"{file}: {reason}") from None
     if not rows or len(values) != len(rows[0]):
         raise NotInOrderError(f"{file}: is no table with a head and rows of numbers")
-    return dict(zip([name.strip() for name in rows[0]], values, strict=True))
+    return dict(zip([UNIT.sub("", name.strip()) for name in rows[0]], values, strict=True))
 
 
 def read_result(file: Path) -> dict[str, Any]:

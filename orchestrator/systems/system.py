@@ -2,17 +2,21 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockshed.components.common.component import Component
 
-from ..core.system.schedule import Scheme
+from ..core.system.iteration import InputMoment
 from ..core.system.system import SystemSpec
 
 NumberArray = NDArray[np.float64]
+ExchangeOrder = Literal["sequential", "jacobi", "implicit"]
+"""In which order a system exchanges."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,7 @@ class ImpactSystem:
     parts : mapping of str to FmuPart
         By the component of the system.
     make : callable
-        Returns the system for files, an exchange step (s) and a scheme of exchange.
+        Returns the system for files, an exchange step (s) and a master.
     quantity : str
         Output, ``component.port``, that is compared with the truth.
     unit : str
@@ -74,13 +78,16 @@ class ImpactSystem:
         The sum of :attr:`energies` at the start (J).
     finer : mapping of str to int
         How many steps a component makes in an exchange; 1 for all others.
+    moments : mapping of str to str
+        Moment of whose values inputs of the implicit master are, by ``component.port`` with ``*``
+        for any text; the end for all others. The page derives them.
     """
 
     name: str
     title: str
     folder: Path
     parts: Mapping[str, FmuPart]
-    make: Callable[[FmuPaths, float, Scheme], SystemSpec]
+    make: Callable[[FmuPaths, float, ExchangeOrder], SystemSpec]
     quantity: str
     unit: str
     truth: Callable[[NumberArray], NumberArray]
@@ -92,13 +99,14 @@ class ImpactSystem:
     impact_energy: float = 1.0
     start_energy: float = 0.0
     finer: Mapping[str, int] = field(default_factory=dict)
+    moments: Mapping[str, InputMoment] = field(default_factory=dict)
 
     @property
     def page(self) -> str:
         """Page that derives the truth (Markdown), without what is declared here."""
         return (self.folder / "README.md").read_text(encoding="utf-8")
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """Largest true value, in :attr:`unit`."""
         return float(np.abs(self.truth(self.times(self.steps[-1]))).max())

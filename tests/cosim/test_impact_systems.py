@@ -1,6 +1,7 @@
 """The suite of impact systems: exported, run without this program, scored, measured."""
 
 import json
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -9,15 +10,19 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import rockshed
 from rockshed.commands.app import app
 from rockshed.core.errors import InputRefused
 from rockshed.core.run import simulate
+from rockshed.core.system.iteration import Iteration
+from rockshed.systems import hammer_on_rod
 from rockshed.systems.catalogue import NAMES, impact_system, impact_systems
 from rockshed.systems.files import export_systems, page
-from rockshed.systems.jobs import build_parts
+from rockshed.systems.jobs import build_parts, planned
 from rockshed.systems.masters.table import MASTERS
-from rockshed.systems.measuring import MasterRun, SuiteRuns, from_text
+from rockshed.systems.measured import MasterRun, SuiteRuns, from_text
 from rockshed.systems.results import budget, error_at, order, overview, verdict
+from rockshed.systems.stamps import in_process
 from tests.fmu.test_peers import needs
 
 WITHOUT_US = (
@@ -64,8 +69,6 @@ def test_the_exported_ssp_and_system_file_run_here_with_the_values_of_fmpys_slav
         result = suite / f"run of {file}"
         words = ["run", str(folder / file), "--output-dir", str(result), "--no-figures", "--quiet"]
         assert CliRunner().invoke(app, words).exit_code == 0
-        import rockshed
-
         np.testing.assert_array_equal(rockshed.read_run(result)["upper.position.y"], theirs)
 
 
@@ -153,8 +156,8 @@ def test_the_error_of_the_algebraic_loop_is_of_first_order_and_halved_in_turn(tm
 
 def measurements(errors, costs=(1.0, 2.0, 4.0)):
     return [
-        MasterRun("terminals", MASTERS[0].name, "fmi2-native", step, 10, "", error, 0.1, cost, 0.0)
-        for step, error, cost in zip((4.0, 2.0, 1.0), errors, costs)
+        MasterRun("terminals", MASTERS[0].name, "fmi2-native", 40 / n, n, "", error, 0.1, cost, 0.0)
+        for n, error, cost in zip((10, 20, 40), errors, costs)
     ]
 
 
@@ -220,3 +223,131 @@ def test_a_quick_measurement_has_a_row_for_every_master_and_a_figure(tmp_path):
         assert row.error < system.tolerance
         assert row.deviation < 1e-12
         assert row.cost > 0.0
+
+
+# ---------------------------------------------------------------------- in the implicit master
+
+
+def solved(name, step, master, folder, **options):
+    """Error of a system in this process, and energy made, as parts; iterations of the exchanges."""
+    system, sources = impact_system(name), in_process(impact_system(name))
+    plan = planned(system, dict.fromkeys(system.parts, ""), step, master, options, sources)
+    run = simulate(plan.system, folder / f"{master}-{step}", sources=sources, allow_unstable=True)
+    values = np.asarray(run.series[system.quantity])
+    error = np.abs(values - system.truth(np.asarray(run.series["time"]))).max() / system.scale
+    end = sum(float(run.series[each][-1]) for each in system.energies)
+    made = (end - system.start_energy) / system.impact_energy
+    return float(error), made, run.provenance.get("iteration", {}).get("iterations")
+
+
+def test_the_hammer_on_a_rod_has_the_values_of_the_sequential_master_in_one_iteration(tmp_path):
+    for step in (8e-5, 2e-5):
+        expected = solved("hammer-on-rod", step, "sequential", tmp_path)[:2]
+        *found, iterations = solved("hammer-on-rod", step, "implicit", tmp_path)
+        assert found == pytest.approx(expected, rel=1e-9)
+        assert iterations == {"1": round(8e-3 / step)}
+    assert found[0] < 2e-6
+
+
+def test_with_values_of_the_end_the_wave_of_the_rod_comes_a_step_too_early(tmp_path):
+    """The page derives the error, 2 abs(alpha) r H, which no iteration takes away."""
+    truth = hammer_on_rod.truth
+    for step in (8e-5, 4e-5):
+        tight = Iteration(tolerance=1e-12)
+        error, _, _ = solved("hammer-on-rod", step, "implicit", tmp_path, iteration=tight)
+        early = 2.0 * abs(truth.REFLECTION) * truth.IMPEDANCE / truth.MASS * step
+        assert error == pytest.approx(early, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("name", "steps", "least"),
+    [
+        ("stiff-contact", (2e-5, 1e-5), 1.9),
+        ("terminals", (1e-3, 5e-4), 1.9),
+        pytest.param("bouncing-ball", (4e-3, 1e-3), 1.5, marks=pytest.mark.slow),
+        pytest.param("two-rates", (4e-3, 1e-3), 1.5, marks=pytest.mark.slow),
+    ],
+)
+def test_inputs_of_the_moments_of_a_page_have_an_order_that_those_of_the_end_have_not(
+    tmp_path, name, steps, least
+):
+    def order_of(folder, **options):
+        errors = [solved(name, s, "implicit", folder, **options)[0] for s in steps]
+        return np.log(errors[0] / errors[1]) / np.log(steps[0] / steps[1])
+
+    assert order_of(tmp_path / "moments") > least
+    assert order_of(tmp_path / "end", iteration=Iteration()) < 1.1
+
+
+def test_the_exported_file_for_the_implicit_master_has_the_moments_of_the_page(suite):
+    text = (suite / "terminals" / "fmi2-native" / "implicit.toml").read_text()
+    assert 'master = "implicit"' in text
+    assert 'target = "joint.*"' in text
+    folder = suite / "implicit run"
+    words = ["run", str(suite / "terminals" / "fmi2-native" / "implicit.toml"), "--quiet"]
+    words += ["--no-figures", "--output-dir", str(folder)]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    run = rockshed.read_run(folder)
+    truth = impact_system("terminals").truth(np.asarray(run["time"]))
+    assert np.abs(np.asarray(run["upper.position.y"]) - truth).max() < 1e-4
+
+
+# ---------------------------------------------------------------------- misuse of the folder
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        ([], 2, "run.py TOOL"),
+        (["nothing", "a.json", "b.json"], 2, "invalid choice: 'nothing'"),
+        (["fmpy", "a.json"], 2, "each JOB.json needs an ANSWER.json"),
+        (["fmpy", "nowhere/job.json", "b.json"], 1, "No such file"),
+        (["fmpy", "algebraic-loop/fmi2-native/job.json", "no/where.json"], 2, "No such file"),
+        (["fmpy", "step=3e-3", "JOB", "b.json"], 1, "is no part of the 0.64 s"),
+        (["fmpy", "step=-1", "JOB", "b.json"], 1, "is no part of the 0.64 s"),
+        (["libcosim", "step=4e-3", "JOB", "b.json"], 1, "reads its exchange step from"),
+        (["fmpy", "step=no", "JOB", "b.json"], 2, "step=no: is no number"),
+    ],
+)
+def test_the_script_of_the_folder_says_what_is_wrong_with_its_words(suite, words, code, said):
+    job = "algebraic-loop/fmi2-native/job.json"
+    ran = alone(suite, "run.py", *[job if word == "JOB" else word for word in words])
+    assert ran.returncode == code, ran.stderr
+    assert said in ran.stderr
+    assert "Traceback" not in ran.stderr
+
+
+def test_a_job_runs_with_another_exchange_step_and_its_error_is_of_first_order(suite):
+    job = "algebraic-loop/fmi2-native/job.json"
+    errors = []
+    for step in ("4e-3", "8e-3"):
+        ran = alone(suite, "run.py", "fmpy", f"step={step}", job, "other.json")
+        assert ran.returncode == 0, ran.stderr
+        scored = alone(suite, "score.py", "algebraic-loop", "other.json")
+        errors.append(float(scored.stdout.split()[1].rstrip(",")))
+    assert errors[1] / errors[0] == pytest.approx(2.0, rel=0.01)
+
+
+def test_an_fmu_that_is_missing_is_named(suite, tmp_path):
+    copy = tmp_path / "copy"
+    shutil.copytree(suite / "terminals" / "fmi2-native", copy)
+    next(copy.glob("*.fmu")).unlink()
+    ran = alone(suite, "run.py", "fmpy", str(copy / "job.json"), str(tmp_path / "answer.json"))
+    assert ran.returncode == 1
+    assert "there is no " in ran.stderr
+    assert ".fmu" in ran.stderr
+
+
+def test_truths_tell_their_units(suite):
+    with (suite / "terminals" / "truth.csv").open() as opened:
+        assert opened.readline() == "time [s],upper.position.y [m]\n"
+
+
+def test_an_export_that_fails_leaves_nothing_behind(tmp_path, monkeypatch):
+    def fails(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rockshed.systems.files._write_variant", fails)
+    with pytest.raises(KeyboardInterrupt):
+        export_systems(impact_systems(("terminals",)), tmp_path / "made" / "suite")
+    assert [path.name for path in (tmp_path / "made").iterdir()] == []

@@ -25,6 +25,7 @@ OF_OTHERS = {
     "--dist",
     "--max-worker-restart",
     "--hypothesis-profile",
+    "--junitxml",
     "--path",
     "--stepSize",
     "--stopTime",

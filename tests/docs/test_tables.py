@@ -3,18 +3,23 @@
 import copy
 import json
 import re
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from docs.tables import convergence, kept, systems
+from docs.tables import convergence, kept, platforms, systems
 from docs.tables.filling import BLOCK, PAGES, TABLES, filled
 from docs.tables.forms import beside, number
 from docs.tables.kept import Kept, NotKeptError, outdated, take
 from docs.tables.pictures import PICTURES, STAMPS, stamp
 from docs.tables.sonoda1993 import PEAK
+from rockshed.components.catalogue import NAMES
 from rockshed.papers.reproduction import DATA, PAPERS, studies
 from rockshed.papers.sonoda1993 import full_scale, laboratory, mesh, one_law
+from rockshed.systems.findings import findings
+from rockshed.systems.masters.table import MASTERS
 
 ROOT = Path(__file__).parents[2]
 
@@ -53,9 +58,48 @@ def test_the_kept_study_of_convergence_comes_from_the_present_kernels():
     assert convergence.trial()[convergence.STAMP] == convergence.stamp()
 
 
-def test_the_kept_measurement_of_the_impact_systems_has_their_present_steps():
+def test_the_kept_measurement_of_the_impact_systems_comes_from_the_present_kernels_and_steps():
     """Otherwise: `rockshed bench systems`, then `python -m docs.tables.systems results/systems`."""
     assert systems.outdated(systems.kept()) == []
+
+
+def test_a_measurement_of_impact_systems_by_an_older_kernel_is_refused_with_the_remedy():
+    kept_stamps = systems.kept().stamps
+    older = replace(systems.kept(), stamps={**kept_stamps, "terminals": "0" * 64})
+    assert systems.outdated(older) == [
+        "terminals: other than when measured, by kernels or truth; run `rockshed bench systems`, "
+        "then `python -m docs.tables.systems results/systems`"
+    ]
+
+
+def test_something_was_found_about_every_master_of_the_impact_systems():
+    found = findings(systems.kept())
+    assert len(found) == len(MASTERS)
+    assert [each.master for each in found if each.are_none] == []
+
+
+def test_fmus_of_all_components_were_run_on_every_other_platform():
+    """Otherwise: see `docs/tables/platforms.py`."""
+    assert platforms.outdated(platforms.kept()["rows"]) == []
+
+
+def test_runs_on_other_platforms_are_kept_from_the_results_of_the_tests(tmp_path, monkeypatch):
+    monkeypatch.setattr(platforms, "DATA", tmp_path / "platforms.json")
+    monkeypatch.setattr(platforms, "kept", cache(platforms.kept.__wrapped__))
+    cases = [
+        f'<testcase classname="{module}" name="test_x[{name}-{platform}]">'
+        f"{'<skipped message=no wine/>' if platform == 'win64' else ''}</testcase>"
+        for module in platforms.TESTS
+        for name in NAMES
+        for platform in platforms.RUNNERS
+    ]
+    text = "".join(cases).replace("message=no wine", 'message="no wine"')
+    (tmp_path / "results.xml").write_text(f"<testsuites>{text}</testsuites>")
+    platforms.take([tmp_path / "results.xml"])
+    assert "| FallingRock | 2.0 | native | not run: no wine | equal bits |" in platforms.platforms()
+    (tmp_path / "results.xml").write_text("<testsuites/>")
+    with pytest.raises(NotKeptError, match="FallingRock, FMI 3"):
+        platforms.take([tmp_path / "results.xml"])
 
 
 def test_every_picture_of_a_run_of_the_sand_has_a_stamp():

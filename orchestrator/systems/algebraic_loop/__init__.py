@@ -3,15 +3,14 @@
 from pathlib import Path
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
 from ..parts.loaded_spring import COMPONENT as LOADED
 from ..parts.soft_spring import COMPONENT as SOFT
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import AMPLITUDE, FIRST, RATE, SECOND, displacement
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return both springs, each of which feeds the other."""
     loaded = {"stiffness": SECOND, "amplitude": AMPLITUDE, "angular_frequency": RATE}
     return system_from(

@@ -6,17 +6,16 @@ from rockshed.components.falling_rock import COMPONENT as ROCK
 from rockshed.components.rbsm_beam import COMPONENT as BEAM
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
 from ..parts.beam_contact import COMPONENT as CONTACT
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import AREA, DENSITY, MASS, MODULUS, SECOND_MOMENT, SPAN, SPEED, STIFFNESS, deflection
 
 ELEMENTS = 49
 """Discs of the beam; an odd number has one in the middle."""
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return ball, contact and beam, without gravity."""
     ball = {"mass": MASS, "position0.y": 0.0, "velocity0.y": -SPEED, "gravity": 0.0}
     beam = {
@@ -83,4 +82,5 @@ SYSTEM = ImpactSystem(
     ),
     impact_energy=0.5 * MASS * SPEED**2,
     start_energy=0.5 * MASS * SPEED**2,
+    moments={"contact.*": "middle"},
 )

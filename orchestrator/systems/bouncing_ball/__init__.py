@@ -3,15 +3,14 @@
 from pathlib import Path
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
 from ..parts.ball import COMPONENT as BALL
 from ..parts.table import COMPONENT as TABLE
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import AMPLITUDE, HEIGHT, RATE, RESTITUTION, ball_height
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return ball and table; nothing acts on the table."""
     return system_from(
         {
@@ -52,4 +51,5 @@ SYSTEM = ImpactSystem(
     steps=(1.6e-2, 8e-3, 4e-3, 1e-3),
     step=4e-3,
     tolerance=1e-3,
+    moments={"ball.*": "begin"},
 )

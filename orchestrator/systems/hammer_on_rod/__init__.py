@@ -6,20 +6,19 @@ from rockshed.components.hammer import COMPONENT as HAMMER
 from rockshed.components.pile_rod import COMPONENT as ROD
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import LENGTH, MASS, REFLECTION, SPEED, hammer_velocity
 
 SEGMENTS = 200
 """Of 10 us each."""
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return the blow; the rod is told whether its partner has made the step already."""
     rod = {
         "head.port": "waves",
-        "exchange": "sequential" if scheme == "sequential" else "parallel",
+        "exchange": "parallel" if scheme == "jacobi" else "sequential",
         "toe.condition": "reflection",
         "toe.reflection": REFLECTION,
         "section.length[1]": LENGTH,
@@ -68,4 +67,5 @@ SYSTEM = ImpactSystem(
     tolerance=1e-4,
     energies=("rod.energy.work.head", "hammer.energy.work.head"),
     impact_energy=0.5 * MASS * SPEED**2,
+    moments={"hammer.head.*": "begin"},
 )

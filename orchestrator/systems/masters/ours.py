@@ -5,7 +5,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockshed.core.errors import InputRefused, RunFailed
+from rockshed.core.results.reading import StoredRun
 from rockshed.core.run import simulate
 from rockshed.core.system.system import SystemSpec
 from rockshed.temporary import TemporaryFolder
@@ -23,7 +26,19 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
             "times": list(found.series["time"]),
             "values": {name: list(found.series[name]) for name in map(".".join, job["watch"])},
             "cpu": found.provenance["cpu_time"]["exchanges"],
+            "exchanges": exchanges(found),
         }
+
+
+def exchanges(run: StoredRun) -> int:
+    """Return the number of exchanges whose values were kept, of a run with a row after each step.
+
+    With an adaptive exchange step there are several of them between two rows.
+    """
+    between = np.diff(run.series["time"])
+    if "coupling.step" not in run.series:
+        return len(between)
+    return round(float((between / run.series["coupling.step"][1:]).sum()))
 
 
 def main() -> None:

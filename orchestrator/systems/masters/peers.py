@@ -1,10 +1,12 @@
 """Other tools that run an impact system, each as its documentation says.
 
-Run as a script, ``peers.py TOOL JOB.json ANSWER.json ...``, by any Python that has the tool. It
-needs nothing else: the job has everything. The answer has the times of the exchanges, the values
-that were watched there, and the processor time of the steps (s), or the reason why there is none.
+Run as a script, ``run.py TOOL [step=S] JOB.json ANSWER.json ...``, by any Python that has the
+tool. It needs nothing else: the job has everything. The answer has the times of the exchanges, the
+values that were watched there, and the processor time of the steps (s), or the reason why there is
+none.
 """
 
+import argparse
 import ctypes
 import json
 import shutil
@@ -418,31 +420,78 @@ TOOLS: Mapping[str, Callable[[JobData], ToolAnswer]] = {
 }
 
 
-def read_job(file: Path) -> dict[str, Any]:
-    """Return a job; its files are relative to its folder."""
+SSP_TOOLS = ("fmpy-ssp", "libcosim", "ecos-ssp")
+"""Tools that read an SSP, in which exchange steps are written down."""
+STEP = "step="
+"""Beginning of the word for another exchange step (s)."""
+SAME = 1e-9
+"""Two times are the same if they differ by less than this part."""
+
+
+def read_job(file: Path, step: float | None = None) -> dict[str, Any]:
+    """Return a job, of another exchange step (s) where one is given.
+
+    Its files are relative to its folder. The steps of all FMUs change in the same ratio.
+    """
     job: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     folder = file.resolve().parent
     job["fmus"] = {name: str(folder / fmu) for name, fmu in job["fmus"].items()}
+    if missing := [fmu for fmu in job["fmus"].values() if not Path(fmu).is_file()]:
+        raise ValueError(f"there is no {', no '.join(missing)}")
     for key in ("ssp", "multi_rate_ssp"):
         job[key] = str(folder / job.get(key, ""))
+    if step is not None:
+        stop = job["step"] * job["exchanges"]
+        exchanges = round(stop / step) if 0.0 < step <= stop else 0
+        if abs(exchanges * step - stop) > SAME * stop:
+            raise ValueError(f"{step:g} s is no part of the {stop:g} s until the end")
+        steps = {name: step * own / job["step"] for name, own in job["steps"].items()}
+        job |= {"step": step, "exchanges": exchanges, "steps": steps}
     return {"scheme": "jacobi", "fmpy": sys.executable, "inputs": {}, **job}
 
 
-def main() -> None:
-    """Run some jobs one after the other; a job that fails has its reason as its answer."""
-    tool, *places = sys.argv[1:]
-    for job, place in zip(places[::2], places[1::2], strict=True):
-        work = Path(f"{place}.parts")
+def answer_of(tool: str, file: Path, work: Path, step: float | None) -> ToolAnswer:
+    """Run a job, and return its answer or the reason why there is none."""
+    try:
+        if step is not None and tool in SSP_TOOLS:
+            raise ValueError(f"{tool} reads its exchange step from the SSP")
         work.mkdir(exist_ok=True)
+        return TOOLS[tool]({**read_job(file, step), "work": str(work)})
+    except Exception as error:
+        words = str(error).strip().splitlines() or [""]
+        return {"reason": f"{type(error).__name__}: {words[-1]}"}
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def main() -> int:
+    """Run some jobs one after the other, and return the exit code: 1 if one has no result."""
+    parser = argparse.ArgumentParser(
+        description="Run jobs of impact systems in a tool.",
+        usage="run.py TOOL [step=S] JOB.json ANSWER.json ...",
+    )
+    parser.add_argument("tool", choices=TOOLS)
+    parser.add_argument("files", nargs="+", metavar="JOB.json ANSWER.json")
+    steps = [word.removeprefix(STEP) for word in sys.argv[1:] if word.startswith(STEP)]
+    words = parser.parse_args([word for word in sys.argv[1:] if not word.startswith(STEP)])
+    try:
+        step = float(steps[-1]) if steps else None
+    except ValueError:
+        parser.error(f"{STEP}{steps[-1]}: is no number")
+    if len(words.files) % 2:
+        parser.error("each JOB.json needs an ANSWER.json behind it")
+    code = 0
+    for job, place in zip(words.files[::2], words.files[1::2], strict=True):
+        found = answer_of(words.tool, Path(job), Path(f"{place}.parts"), step)
+        if "reason" in found:
+            print(f"{job}: {found['reason']}", file=sys.stderr)
+            code = 1
         try:
-            found = TOOLS[tool]({**read_job(Path(job)), "work": str(work)})
-        except Exception as error:
-            words = str(error).strip().splitlines() or [""]
-            found = {"reason": f"{type(error).__name__}: {words[-1]}"}
-        finally:
-            shutil.rmtree(work, ignore_errors=True)
-        Path(place).write_text(json.dumps(found), encoding="utf-8")
+            Path(place).write_text(json.dumps(found), encoding="utf-8")
+        except OSError as error:
+            parser.error(f"{place}: {error.strerror}")
+    return code
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -3,17 +3,61 @@
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from ...core.system.schedule import Scheme
+from ...core.system.adaptivity import Adaptive
+from ...core.system.iteration import Iteration
+from ..system import ExchangeOrder, ImpactSystem
 
 PEERS = Path(__file__).with_name("peers.py")
 OURS = Path(__file__).with_name("ours.py")
 ENVIRONMENT = "ROCKSHED_PEER_"
 """Beginning of environment variables that name the Python of a tool: ``ROCKSHED_PEER_COFMUPY``."""
+
+
+Options = Callable[[ImpactSystem, float], Mapping[str, Any]]
+"""Returns further keys of a system of this program, for an exchange step (s)."""
+
+
+def nothing(_system: ImpactSystem, _step: float) -> Mapping[str, Any]:
+    """Return no keys, for a master that has all that it needs from the system."""
+    return {}
+
+
+def with_lines(_system: ImpactSystem, _step: float) -> Mapping[str, Any]:
+    """Return the keys for inputs that follow lines between exchanges."""
+    return {"extrapolation": 1}
+
+
+def with_ends(_system: ImpactSystem, _step: float) -> Mapping[str, Any]:
+    """Return the keys for inputs that have the values of the end of the exchange, all of them."""
+    return {"iteration": Iteration()}
+
+
+def adaptive(
+    control: Literal["doubling", "ledger"], system: ImpactSystem, step: float
+) -> Mapping[str, Any]:
+    """Return the keys for an exchange step that follows the error: a step, its half, its quarter.
+
+    Parameters
+    ----------
+    control : str
+        Of the step.
+    system : ImpactSystem
+        The system.
+    step : float
+        Exchange step (s), the longest, and the time between two rows. The tolerance is 0.1, that of
+        the ledger 0.01, at the coarsest step, and goes down as errors of an exchange do: with the
+        step, energies with its square.
+    """
+    part = step / system.steps[0]
+    tolerance = 0.1 * part if control == "doubling" else 0.01 * part**2
+    made = Adaptive(tolerance=tolerance, largest_step=step, control=control)
+    return {"exchange_step": step / 4.0, "adaptive": made}
 
 
 @dataclass(frozen=True)
@@ -32,9 +76,9 @@ class MasterRow:
         The algorithm, in the words of the tool's own configuration.
     how : str
         How it is used.
-    given : Scheme
-        Scheme of our systems that describes it: values of parameters may follow from it.
-    options : mapping
+    given : ExchangeOrder
+        ExchangeOrder of our systems that describes it: values of parameters may follow from it.
+    options : callable
         Further keys of a system of this program.
     """
 
@@ -43,8 +87,8 @@ class MasterRow:
     package: str
     scheme: str
     how: str
-    given: Scheme = "jacobi"
-    options: Mapping[str, Any] = field(default_factory=dict)
+    given: ExchangeOrder = "jacobi"
+    options: Options = nothing
 
 
 MASTERS = (
@@ -64,16 +108,43 @@ MASTERS = (
         "sequential",
         "its system, forces first, `extrapolation = 1`",
         "sequential",
-        {"extrapolation": 1},
+        with_lines,
+    ),
+    MasterRow(
+        "rockshed, adaptive",
+        "rockshed",
+        "rockshed",
+        "sequential",
+        "its system, `[adaptive]` with `doubling`: half of the exchange step or a quarter",
+        "sequential",
+        partial(adaptive, "doubling"),
+    ),
+    MasterRow(
+        "rockshed, adaptive, ledger",
+        "rockshed",
+        "rockshed",
+        "sequential",
+        "`[adaptive]` with `ledger`: the exchange step, its half or its quarter",
+        "sequential",
+        partial(adaptive, "ledger"),
     ),
     MasterRow(
         "rockshed, implicit",
         "rockshed",
         "rockshed",
         "implicit",
-        "its system, exchanges repeated until all values fit",
-        "jacobi",
-        {"master": "implicit"},
+        "its system, exchanges repeated until all values fit; inputs of the moments that the "
+        "system's page derives",
+        "implicit",
+    ),
+    MasterRow(
+        "rockshed, implicit, end",
+        "rockshed",
+        "rockshed",
+        "implicit",
+        "the same with the values of the end for all inputs, the default",
+        "implicit",
+        with_ends,
     ),
     MasterRow(
         "libcosim",

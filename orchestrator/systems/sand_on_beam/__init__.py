@@ -7,15 +7,14 @@ from rockshed.components.rbsm_beam import COMPONENT as BEAM
 from rockshed.components.sand_cushion import COMPONENT as SAND
 
 from ...cases.sonoda1993 import lab_system, tests
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import STOP, TEST, rock_velocity
 
 _COUPLINGS = {"sequential": "paper", "jacobi": "jacobi"}
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return test 4 of the laboratory with held inputs, without recorded states."""
     system = lab_system(files, tests()[TEST], _COUPLINGS.get(scheme, "jacobi"))
     components = {

@@ -3,11 +3,10 @@
 from pathlib import Path
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
 from ..parts.mass import COMPONENT as MASS
 from ..parts.spring import COMPONENT as SPRING
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import SPEED, STIFFNESS, STRIKER, STRUCK, struck_velocity
 
 CONNECTIONS = [
@@ -20,7 +19,7 @@ CONNECTIONS = [
 ]
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return striker, struck body and the contact between them."""
     ends = {"striker": "lower", "struck": "upper"}
     return system_from(
@@ -67,4 +66,5 @@ SYSTEM = ImpactSystem(
     energies=("striker.energy.kinetic", "struck.energy.kinetic", "contact.energy.elastic"),
     impact_energy=0.5 * STRIKER * SPEED**2,
     start_energy=0.5 * STRIKER * SPEED**2,
+    moments={"contact.*": "middle"},
 )

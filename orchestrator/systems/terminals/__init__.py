@@ -3,15 +3,14 @@
 from pathlib import Path
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
 from ..parts.mass import COMPONENT as MASS
 from ..parts.spring import COMPONENT as SPRING
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import JOINING, MASSES, SPEED, SPRINGS, upper_position
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return the bodies and the spring between; each connection joins two terminals."""
     lower = {"mass": MASSES[0], "stiffness": SPRINGS[0], "velocity0.y": SPEED}
     upper = {"mass": MASSES[1], "stiffness": SPRINGS[1]}
@@ -63,4 +62,5 @@ SYSTEM = ImpactSystem(
     ),
     impact_energy=0.5 * MASSES[0] * SPEED**2,
     start_energy=0.5 * MASSES[0] * SPEED**2,
+    moments={"joint.*": "middle"},
 )

@@ -3,11 +3,10 @@
 from pathlib import Path
 
 from ...core.system.reading import system_from
-from ...core.system.schedule import Scheme
 from ...core.system.system import SystemSpec
 from ..parts.light_mass import COMPONENT as LIGHT
 from ..parts.mass import COMPONENT as MASS
-from ..system import FmuPart, FmuPaths, ImpactSystem
+from ..system import ExchangeOrder, FmuPart, FmuPaths, ImpactSystem
 from .truth import (
     HEAVY,
     HEAVY_SPRING,
@@ -24,7 +23,7 @@ RATIO = 100
 """Steps of the light mass in one of the heavy mass."""
 
 
-def make(files: FmuPaths, step: float, scheme: Scheme) -> SystemSpec:
+def make(files: FmuPaths, step: float, scheme: ExchangeOrder) -> SystemSpec:
     """Return the two masses; the light one is stepped a hundred times in each exchange."""
     slow = {"mass": HEAVY, "stiffness": HEAVY_SPRING, "position0.y": START}
     light = {
@@ -82,4 +81,5 @@ SYSTEM = ImpactSystem(
     impact_energy=0.5 * HEAVY_SPRING * START**2,
     start_energy=start_energy(),
     finer={"light": RATIO},
+    moments={"light.*": "middle", "slow.*": "middle"},
 )
