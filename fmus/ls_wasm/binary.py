@@ -23,7 +23,7 @@ from rockshed.temporary import TemporaryFolder
 
 from ..native.fmu import slave_sources
 from ..parts import BuildError, Files, Fmi
-from ..wasm.module import kernel_object, refuse_without_linker
+from ..wasm.module import FMA, kernel_object, refuse_without_linker
 from .interface import WORLD, wit
 
 FOLDER = "binaries/wasm32-wasip2"
@@ -81,6 +81,7 @@ def component_files(component: Component, sizes: Sizes) -> Files:
         sources = slave_sources(component, sizes, Fmi.THREE) | {
             "kernels.o": kernel_object(component, VARIANT),
             _SHIM.name: _SHIM.read_bytes(),
+            FMA.name: FMA.read_bytes(),
             "fmi3.wit": wit().encode(),
         }
         for name, content in sources.items():

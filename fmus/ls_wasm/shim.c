@@ -13,6 +13,8 @@ int64_t sized_initialise(double *w, double *x, int64_t *k) { return any_initiali
 int64_t sized_evaluate(double *w, double *x, int64_t *k) { return any_evaluate(w, x, k, NW, NX, NK); }
 int64_t sized_step(double t, double h, double *w, double *x, int64_t *k) { return any_step(t, h, w, x, k, NW, NX, NK); }
 
+#include "fma.h"
+
 /* There are no threads: the kernel does all parts of its work itself. */
 int thread_create(int64_t *thread, const void *attributes, void *(*work)(void *), void *share) { return 1; }
 int thread_join(int64_t thread, void **returned) { return 0; }

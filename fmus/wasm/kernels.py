@@ -1,15 +1,15 @@
 """Kernels as object code for WebAssembly, in a process of its own.
 
-``python -m rockshed.fmus.wasm.kernels < order.json`` writes ``VARIANT.o`` into the working
-directory for those of :data:`VARIANTS` that are asked for, and prints the problems as a JSON list
-of texts. The code that numba makes is the one of native FMUs; vectors are cut to what WebAssembly
-has, and fused multiply-adds become what :mod:`.fused` writes.
+``python -m rockshed.fmus.wasm.kernels < order.json`` writes ``VARIANT.o``, or assembly,
+``VARIANT.s``, into the working directory for those of :data:`VARIANTS` that are asked for, and
+prints the problems as a JSON list of texts. The code that numba makes is the one of native FMUs;
+vectors are cut to what WebAssembly has, and fused multiply-adds become what :mod:`.fused` writes.
 """
 
 import json
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -32,16 +32,27 @@ from ..native.kernels import (
     signatures,
 )
 from ..native.subset import symbol_problems
-from .fused import define_fused, define_relaxed
+from .fused import RELAXED, define_fused, define_relaxed, define_sum
 from .places import kept_places
 
 _TRIPLE = "wasm32-unknown-unknown"
 _FUSED = re.compile(r"@llvm\.fma\.v(\d+)f64\(")
 _FUSED_DECLARED = re.compile(r"^declare .*@llvm\.fma\.v\d+f64\(.*$", re.MULTILINE)
+_UNIT = r"-?(?:0\.0+|1\.0+)e\+00"
+_SUM = re.compile(
+    r"@llvm\.fma\.v(\d+)f64\((<\d+ x double> [^,]+, <\d+ x double> "
+    rf"(?:<(?:double {_UNIT}(?:, )?)+>|splat \(double {_UNIT}\)),)"
+)
+"""A multiply-add one of whose factors is 1, -1 or 0 in each lane: its product is exact."""
 _THREADS = re.compile(r"@pthread_(create|join)\b")
 """Renamed, as a library that has them for WebAssembly declares them otherwise."""
-_EXACT = "fma"
-"""Function of three numbers that the linker takes from its own library."""
+_RELAXED_CALL = re.compile(rf"\bcall\t{RELAXED}\b")
+_RELAXED_CODE = "f64x2.relaxed_madd"
+_RELAXED_KIND = re.compile(rf"^\t\.functype\t{RELAXED} .*\n", re.MULTILINE)
+"""Declaration of the function that is called nowhere in the end."""
+_EXACT = "exact_fma"
+"""Function of three numbers in ``fma.h``."""
+_SINGLE = re.compile(r"@llvm\.fma\.f64\b")
 
 
 @dataclass(frozen=True)
@@ -66,7 +77,7 @@ class Variant:
 VARIANTS: Mapping[str, Variant] = {
     "plain": Variant("", 1, define_fused),
     "simd": Variant("+simd128", 2, define_fused),
-    "relaxed": Variant("+simd128,+relaxed-simd", 2, define_relaxed),
+    "relaxed": Variant("+simd128", 2, define_relaxed),
 }
 """plain: WebAssembly of 2019. simd: vectors of two numbers. relaxed: besides, a multiply-add that
 rounds once on some processors and twice on others; a host may use it only after it has looked."""
@@ -90,7 +101,7 @@ def main() -> None:
         llvm.initialize_all_asmprinters()
         code = kept_places(str(module))
         for name in order["variants"]:
-            Path(f"{name}.o").write_bytes(emitted(code, VARIANTS[name], order["tables"]))
+            write_code(code, name, order["tables"], Path())
     json.dump(problems, sys.stdout)
 
 
@@ -129,23 +140,21 @@ def _table_module(name: str, kernel: Any, columns: int, instance: Instance) -> A
     return whole
 
 
-def emitted(code: str, variant: Variant, tables: Mapping[str, Any]) -> bytes:
-    """Return the object code of a module.
+def write_code(code: str, name: str, tables: Iterable[str], folder: Path) -> None:
+    """Compile a module, and write its object code or, with relaxed vectors, assembly.
 
     Parameters
     ----------
     code : str
         The module as LLVM writes it, for pointers of any size.
-    variant : Variant
-        What the host can do.
-    tables : mapping
+    name : str
+        Key of :data:`VARIANTS`; the file is ``NAME.o`` or ``NAME.s``.
+    tables : iterable of str
         Names of the entries besides those of all components.
-
-    Returns
-    -------
-    bytes
-        An object file.
+    folder : Path
+        Where the file goes.
     """
+    variant = VARIANTS[name]
     machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(
         features=variant.features, opt=3, reloc="static", codemodel="default"
     )
@@ -157,27 +166,33 @@ def emitted(code: str, variant: Variant, tables: Mapping[str, Any]) -> bytes:
     options.loop_unrolling = False
     passes = llvm.create_pass_builder(machine, options)
     passes.getModulePassManager().run(module, passes)
-    result = machine.emit_object(module)
-    assert isinstance(result, bytes)
-    return result
+    if variant.define is define_relaxed:
+        text = _RELAXED_CALL.sub(_RELAXED_CODE, machine.emit_assembly(module))
+        (folder / f"{name}.s").write_text(_RELAXED_KIND.sub("", text))
+    else:
+        (folder / f"{name}.o").write_bytes(machine.emit_object(module))
 
 
 def _with_fused(code: str, variant: Variant) -> Any:
     """Return the module with functions of :mod:`.fused` and of the runtime in it."""
-    widths = sorted({int(width) for width in _FUSED.findall(code)})
+    own, sums = _SUM.subn(r"@sum_\1(\2", _FUSED_DECLARED.sub("", code))
+    widths = sorted({int(width) for width in _FUSED.findall(own)})
+    exact = sorted({int(width) for width in re.findall(r"@sum_(\d+)\(", own)}) if sums else []
+    own = _SINGLE.sub(f"@{_EXACT}", _FUSED.sub(r"@fused_\1(", own))
+    own = _THREADS.sub(r"@thread_\1", own)
     declared = [
-        f"declare {kind} @fused_{n}({kind}, {kind}, {kind})"
-        for n in widths
+        f"declare {kind} @{name}_{n}({kind}, {kind}, {kind})"
+        for name, all_of_them in (("fused", widths), ("sum", exact))
+        for n in all_of_them
         for kind in [f"<{n} x double>"]
     ]
-    own = _FUSED.sub(r"@fused_\1(", _FUSED_DECLARED.sub("", code))
-    own = _THREADS.sub(r"@thread_\1", own)
     module = llvm.parse_assembly("\n".join([own, *declared]))
-    if widths:
-        extra = ir.Module()
-        for width in widths:
-            variant.define(extra, f"fused_{width}", width, _EXACT, variant.together)
-        module.link_in(llvm.parse_assembly(str(extra)))
+    extra = ir.Module()
+    for width in widths:
+        variant.define(extra, f"fused_{width}", width, _EXACT, variant.together)
+    for width in exact:
+        define_sum(extra, f"sum_{width}", width)
+    module.link_in(llvm.parse_assembly(str(extra)))
     return module
 
 

@@ -34,12 +34,16 @@ VARIANTS = ("plain", "simd", "relaxed")
 """Keys of :data:`.kernels.VARIANTS`, from the host that can least to the one that can most."""
 _HERE = Path(__file__).parent
 _RUNTIME = _HERE / "runtime.c"
+FMA = _HERE / "fma.h"
+"""Multiply-add of three numbers in C."""
 _STACK = 1 << 16
 """Room (bytes) for what functions hold while they run."""
 _LINKER = "-Wl,--"
 """Beginning of an option that is meant for the linker."""
+_TARGET = "wasm32-freestanding"
+_ASSEMBLER = ("-target", _TARGET, "-mcpu=generic+simd128+relaxed_simd+bulk_memory")
 _OPTIONS = (
-    "-target", "wasm32-freestanding", "-O2", "-fno-math-errno", "-ffp-contract=off",
+    "-target", _TARGET, "-O2", "-fno-math-errno", "-ffp-contract=off",
     "-mbulk-memory", "-s", f"{_LINKER}no-entry", f"-Wl,-z,stack-size={_STACK}",
     f"{_LINKER}export=__heap_base",
 )  # fmt: skip
@@ -153,7 +157,7 @@ def _kept_files(
     folder = cache_directory()
     if folder is None:
         return {}
-    ours = (*_HERE.glob("*.py"), _RUNTIME, *NATIVE_KERNELS)
+    ours = (*_HERE.glob("*.py"), _RUNTIME, FMA, *NATIVE_KERNELS)
     made_from = component_sources(component) | {
         f"{path.parent.name}/{path.name}": path.read_bytes() for path in ours
     }
@@ -173,13 +177,20 @@ def refuse_without_linker() -> None:
 
 
 def linked(component: str, variant: str, exported: tuple[str, ...], work: Path) -> bytes:
-    """Return the module made of ``VARIANT.o`` in a folder."""
-    shutil.copy(_RUNTIME, work)
-    result = f"{variant}.wasm"
+    """Return the module made of ``VARIANT.o`` or ``VARIANT.s`` in a folder."""
+    for source in (_RUNTIME, FMA):
+        shutil.copy(source, work)
+    if (work / f"{variant}.s").is_file():
+        _zig(component, (*_ASSEMBLER, "-c", f"{variant}.s"), f"{variant}.o", work)
     shown = [f"{_LINKER}export={name}" for name in exported]
-    command = [sys.executable, "-m", "ziglang", "cc", *_OPTIONS, *shown]
+    options = (*_OPTIONS, *shown, _RUNTIME.name, f"{variant}.o")
+    return _zig(component, options, f"{variant}.wasm", work)
+
+
+def _zig(component: str, options: Sequence[str], result: str, work: Path) -> bytes:
+    """Return a file that zig makes in a folder."""
     done = subprocess.run(
-        [*command, "-o", result, _RUNTIME.name, f"{variant}.o"],
+        [sys.executable, "-m", "ziglang", "cc", *options, "-o", result],
         cwd=work,
         capture_output=True,
         text=True,

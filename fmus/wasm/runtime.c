@@ -1,5 +1,7 @@
 /* What kernels need from a C library, for a host that has none, and their entries with plain integers. */
 
+#include "fma.h"
+
 typedef long long Index;
 
 Index rockshed_initialise(double *, double *, Index *, Index, Index, Index);

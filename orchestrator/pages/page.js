@@ -228,7 +228,7 @@ class Computation {
 }
 
 const NAMES = {
-  plain: "without vectors",
+  plain: "without vectors, several times slower",
   simd: "with vectors of two numbers",
   relaxed: "with vectors of two numbers and a fused multiply-add",
 };

@@ -10,6 +10,8 @@ const withCode = (code) => new Uint8Array([...HEAD, code.length + 3, 1, code.len
 const VECTORS = withCode([...SPREAD, 253, 240, 1, 253, 242, 1, ...FIRST]);
 const RELAXED = withCode([...SPREAD, 253, 135, 2, ...FIRST]);
 
+const CODES = ["plain", "simd", "relaxed"]; // from the one that needs least
+
 // The relaxed multiply-add may be used only where it rounds once.
 const best = () => {
   if (!WebAssembly.validate(VECTORS)) return "plain";
@@ -28,7 +30,9 @@ const BATCH = 30; // ms of work between two messages
 let known = null;
 
 const prepare = async ({ plan, packed, wanted }) => {
-  const variant = wanted || best();
+  const able = CODES.slice(0, CODES.indexOf(best()) + 1);
+  const variant = wanted || able.at(-1);
+  if (!able.includes(variant)) throw new Error(`this browser has not what the code "${variant}" needs; it can take ${able.join(", ")}`);
   const modules = {};
   for (const kind of new Set(Object.values(plan.kinds)))
     modules[kind] = await WebAssembly.compile(await unpacked(packed[`${kind}-${variant}`]));

@@ -137,3 +137,27 @@ def test_a_browser_without_webassembly_is_told_so_in_words(file):
         wait_for(driver, "!document.getElementById('trouble').hidden")
         words = driver.execute_script("return document.getElementById('trouble').textContent")
     assert "WebAssembly" in words
+
+
+def test_a_browser_without_vectors_computes_the_same_bits_and_says_so(file, native):
+    flags = "--no-enable-sse4-1 --no-enable-ssse3 --no-enable-avx"
+    with chromium(f"js-flags={flags}") as driver:
+        driver.get(file.as_uri())
+        wait_for(driver, DONE)
+        assert peaks(driver)["transmitted"] == native
+        words = driver.execute_script("return document.getElementById('code').textContent")
+        assert "without vectors" in words
+        driver.get("about:blank")
+        driver.get(file.as_uri() + "#code=simd")
+        wait_for(driver, "!document.getElementById('trouble').hidden")
+        words = driver.execute_script("return document.getElementById('trouble').textContent")
+    assert "it can take plain" in words
+
+
+def test_code_that_there_is_not_is_refused_in_words(browser, file):
+    browser.get("about:blank")
+    browser.get(file.as_uri() + "#code=fast")
+    wait_for(browser, "!document.getElementById('trouble').hidden")
+    words = browser.execute_script("return document.getElementById('trouble').textContent")
+    assert 'the code "fast"' in words
+    assert "plain, simd" in words
