@@ -135,7 +135,8 @@ class FastSum:
 
     def doubt(self, a: WideNumber, b: WideNumber, c: WideNumber) -> ir.Value:
         """Return where it may be wrong, for factors ``a``, ``b`` and a summand ``c``."""
-        builder, zero = a.builder, a.filled(0.0)
+        builder = a.builder
+        zero = a.filled(0.0)
         whole = _whole(a.value.type.count)
         low = builder.and_(builder.bitcast(self.rest.value, whole), _all(whole, (1 << 32) - 1))
         is_inexact = self.lost.differs(self.rest - self.rest)  # or after an overflow
