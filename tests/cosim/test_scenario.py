@@ -275,6 +275,20 @@ def test_with_a_table_what_is_left_of_the_balance_is_the_error_of_the_internal_s
     assert left[0] < 1e-3 * work[-1]
 
 
+def test_with_every_master_a_table_and_a_condition_do_the_same():
+    """Nothing comes back from the rock, so no master has anything to repeat."""
+    table = {"time": [0.0, 0.05], "rock.force.x": [0.0, 80.0]}
+    turn = {"port": "rock.torque", "value": 4.0, "when": "rock.position.y < 0.995"}
+    found = [
+        rockshed.simulate(fall().with_options(master=master).scenario(table, values=[turn]))
+        for master in ("sequential", "jacobi", "implicit")
+    ]
+    assert found[0]["rock.velocity.x"][-1] == pytest.approx(0.98)
+    for run in found[1:]:
+        for name in ("rock.velocity.x", "rock.angular_velocity", "coupling.scenario.work"):
+            np.testing.assert_array_equal(run[name].values, found[0][name].values)
+
+
 class Bonded(Mock):
     """A mock that declares a power bond at its end, as our components do."""
 

@@ -36,7 +36,8 @@ class Course:
     Attributes
     ----------
     asks_always : bool
-        Whether conditions are looked at after each exchange, as the exchanges do not end for them.
+        Whether it looks after each exchange, as these neither end for conditions nor follow courses
+        by themselves.
     """
 
     asks_always = False
@@ -50,6 +51,7 @@ class Course:
         rows = {int(place): row for row, place in enumerate(buses.linear["place"])}
         self._places = {name: places[name] for name in self._scenario.inputs}
         self._rows = {name: rows[place] for name, place in self._places.items()}
+        self._span = (0, 0)
         self._shown = {end.name: place for place, end in enumerate(self._plan.outputs)}
 
     # ------------------------------------------------------------------ when
@@ -61,12 +63,16 @@ class Course:
         """
         buses = self._buses
         buses.conditions["waits"] = waits = buses.fired < 0
-        if self.asks_always and waits.any():
+        has_course = buses.course_rows.size > 0
+        if has_course:
+            self._compute_course(exchange)
+        if self.asks_always and (has_course or waits.any()):
+            self._follow(exchange)
             return exchange + 1
         later = [moment for moment in self._moments() if moment > exchange]
-        if buses.course_rows.size:
-            self._compute_course(exchange)
-            later.append(int(buses.course_span.sum()))
+        if has_course:
+            buses.course_span[:] = self._span
+            later.append(sum(self._span))
         return min(later, default=self._plan.timing.exchanges)
 
     def _moments(self) -> Iterator[int]:
@@ -76,8 +82,8 @@ class Course:
 
     def _compute_course(self, first: int) -> None:
         """Compute what inputs get at many exchanges from one on, if that has not been done."""
-        course, span = self._buses.course, self._buses.course_span
-        if span[0] <= first < span[0] + span[1]:
+        course = self._buses.course
+        if self._span[0] <= first < sum(self._span):
             return
         timing = self._plan.timing
         end = min(first + len(course), timing.exchanges)
@@ -95,7 +101,17 @@ class Course:
                 rows = course[begin - first : stop - first, columns[fault.end.name]]
                 rows[:, 0] = factor
                 rows[:, 1] = offset + fault.deviation * noises(fault, begin, stop - begin)
-        span[:] = first, end - first
+        self._span = (first, end - first)
+
+    def _follow(self, exchange: int) -> None:
+        """Change the inputs of the course for one exchange, in the place of the loop."""
+        if not self._buses.course_rows.size:
+            return
+        ways = self._buses.course[exchange - self._span[0]]
+        changed = ~np.isnan(ways[:, 0])
+        rows = self._buses.course_rows[changed]
+        self._buses.linear["factor"][rows] = ways[changed, 0]
+        self._buses.linear["offset"][rows] = ways[changed, 1]
 
     # ------------------------------------------------------------------ what
 
