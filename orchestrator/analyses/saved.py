@@ -34,7 +34,9 @@ def saved_result(folder: str | Path) -> Result | None:
         return None
     with undamaged(folder / RUN):
         content = json.loads((folder / RUN).read_text(encoding="utf-8"))
-        kind = content.get("kind")
+    if not isinstance(content, dict):
+        return None  # what it is no run for is told by whoever reads a run
+    kind = content.get("kind")
     if kind == "rockfall":
         from .rockfall.reading import read_campaign
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..processes import ended_in_words, with_parent
 from .server import OUTPUT, RESULT, TRAIL, WORK, ProbeJob
-from .verdicts import Seen, Verdict
+from .verdicts import LOADING, Seen, Verdict
 
 _SERVER = [sys.executable, "-P", "-m", "rockshed.checking.server"]
 _LONGEST_OUTPUT = 200
@@ -120,11 +120,10 @@ def _verdict(job: ProbeJob, ending: dict[str, Any]) -> Seen | None:
         what = f"the probe could not go on after {where}: {error}{said}"
         remedy = "correct what the FMU returned there; if it is right, this is a fault of the check"
         return Seen(Verdict.FAILED, what, remedy)
-    return Seen(
-        Verdict.CRASHED,
-        f"{ended_in_words(int(ending['code']))} in {where}{said}",
-        "let the call return an error instead of ending the process",
-    )
+    remedy = "let the call return an error instead of ending the process"
+    if where == LOADING:
+        remedy = "export it again, if the library is damaged; else correct what it does there"
+    return Seen(Verdict.CRASHED, f"{ended_in_words(int(ending['code']))} in {where}{said}", remedy)
 
 
 def _end_of(file: Path) -> str:

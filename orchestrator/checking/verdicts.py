@@ -10,6 +10,9 @@ from typing import Any
 from ..core.errors import counted
 from ..tables import Table
 
+LOADING = "the loading of the library"
+"""What a process was at when the code of an FMU comes into it."""
+
 
 class Verdict(StrEnum):
     """The outcome of a probe."""

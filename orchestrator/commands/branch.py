@@ -10,18 +10,17 @@ import typer
 from ..analyses.study.result import StudyResult
 from ..analyses.study.variants import branches
 from ..core.errors import InputRefused, Problem, RunFailed, all_causes
-from ..core.input_text import shown
 from ..core.supervisor import announce
-from ..input_files.csv_table import CsvRow, CsvTable, read_csv
 from ..runs.continuing import branch
 from ..runs.run import Run, read_run
 from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .options import Json, NoFigures, Quiet, Strict, Workers, simulated_time
-from .results_place import free_folder, look_at_folder, provenance_in
+from .results_place import free_place, look_at_folder, provenance_in
 from .run import show_run
 from .screen import Screen, opened
 from .streams import stdout_for_results
+from .variants import read_variants
 
 _Parent = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run with checkpoints.")]
 _At = Annotated[
@@ -77,7 +76,11 @@ def command(
     if variants is not None:
         alone = {"--at": at, "--set": set_, "--checkpoint-every": checkpoint_every}
         others = [name for name, value in alone.items() if value is not None]
-        looks = (partial(read_run, run), partial(_table, variants), look_at_folder(output_dir))
+        looks = (
+            partial(read_run, run),
+            partial(read_variants, variants),
+            look_at_folder(output_dir),
+        )
         with opened(quiet, as_json) as screen, all_causes(*looks):
             show(screen, _many(run, variants, others, output_dir, workers, not no_figures, screen))
         return
@@ -108,59 +111,34 @@ def _many(
     if others:
         what = "is for a single variant, and --variants has many, from the start"
         raise InputRefused([Problem(name, what, "leave one of them out") for name in others])
-    listed = _table(file)
+    variants = read_variants(file)
     parent = read_run(folder)
-    name = f"{parent.folder.resolve().name}-variants"
-    place = output_dir or free_folder(name, {"never": "the same"}, provenance_in, screen)
+    place, said = _place(f"{parent.folder.resolve().name}-variants", output_dir)
     with (
         kept_if_ended(screen, place),
         options_named(("workers", "folder", "variants")),
+        variants.placed(),
         stages(screen) as progress,
     ):
-        return branches(
+        found = branches(
             parent,
-            listed,
+            variants.values,
             workers=workers,
             folder=place,
             pictures=pictures,
             progress=progress,
             note=screen.note,
         )
+    if said:
+        screen.warn(said)
+    return found
 
 
-def _table(file: Path) -> list[dict[str, Any]]:
-    """Read variants: a mapping for each line of a table after the first.
-
-    Raises
-    ------
-    InputRefused
-        With every line that has more or fewer fields than there are names.
-    """
-    table = read_csv(file)
-    names = [field.text for field in table.rows[0].fields] if table.rows else []
-    problems = [
-        Problem(table.place(row), f"has {len(row.fields)} fields instead of {len(names)}")
-        for row in table.rows[1:]
-        if len(row.fields) != len(names)
-    ]
-    problems += [
-        Problem(f"{file}, line {table.rows[0].line}", f"has {shown(name)} twice", "keep one")
-        for name in sorted({name for name in names if names.count(name) > 1})
-    ]
-    if len(table.rows) < 2:
-        problems.append(Problem(str(file), "has no variant", "write a line for each"))
-    if problems:
-        raise InputRefused(problems)
-    return [dict(zip(names, _texts(table, row), strict=True)) for row in table.rows[1:]]
-
-
-def _texts(table: CsvTable, row: CsvRow) -> list[str]:
-    """Return the texts of a line; numbers with a decimal comma have a point."""
-    numbers = [table.number(field) if "," in field.text else None for field in row.fields]
-    return [
-        field.text if number is None else str(number)
-        for field, number in zip(row.fields, numbers, strict=True)
-    ]
+def _place(name: str, output_dir: Path | None) -> tuple[Path, str]:
+    """Return the folder of the results, and what is to be said when something is in it."""
+    return (
+        (output_dir, "") if output_dir else free_place(name, {"never": "the same"}, provenance_in)
+    )
 
 
 def _branched(
@@ -175,16 +153,18 @@ def _branched(
     if problems:
         raise InputRefused(problems)
     parent = read_run(folder)
-    place = output_dir or free_folder(_name(parent), {"never": "the same"}, provenance_in, screen)
+    place, said = _place(_name(parent), output_dir)
     with stdout_for_results(), screen.progress("preparing") as progress:
         try:
             with options_named(("at", "checkpoint_every")):
-                return branch(
+                done = branch(
                     parent, values, folder=place, progress=progress, note=screen.note, **asked
                 )
         except RunFailed as failure:
-            done: Run = failure.run
-            return done
+            done = failure.run
+    if said:
+        screen.warn(said)
+    return done
 
 
 def _name(parent: Run) -> str:

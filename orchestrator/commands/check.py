@@ -7,10 +7,11 @@ import typer
 
 from ..checking.check import TIME_LIMIT, check_fmu
 from ..checking.junit import junit
-from ..core.errors import refusing_unwritable
+from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
+from ..core.fmu.fmu_slave import FmuFile
 from ..files import write_file
 from .analysis import options_named
-from .options import Json, Quiet
+from .options import Json, Quiet, simulated_time
 from .screen import CHECK_FAILED, opened
 
 _Fmu = Annotated[
@@ -27,14 +28,15 @@ _Probes = Annotated[
 ]
 _StepSize = Annotated[
     float | None,
-    typer.Option(help="Communication step (s); by default that of the FMU's description."),
+    simulated_time("Communication step; by default that of the FMU's description."),
 ]
-_TimeLimit = Annotated[
-    float, typer.Option(help="Time (s) after which a process of a probe is ended.")
-]
+_TimeLimit = Annotated[float, simulated_time("Time after which a process of a probe is ended.")]
 _JUnit = Annotated[
     Path | None, typer.Option("--junit", metavar="FILE", help="Write the result as JUnit XML too.")
 ]
+
+_HEAD = 1000
+"""Bytes within which JUnit XML is known by its element."""
 
 
 def command(
@@ -52,6 +54,9 @@ def command(
     timed out.
     """
     with opened(quiet, as_json) as screen:
+        if junit_file is not None:
+            with all_causes(FmuFile(fmu).model_description):
+                _refuse_misplaced(junit_file)
         arguments = ("probes", "step_size", "time_limit")
         with options_named(arguments), screen.counting("probes") as counted:
             result = check_fmu(
@@ -71,3 +76,22 @@ def command(
             screen.say(result.summary)
         if not result.ok:
             raise typer.Exit(CHECK_FAILED)
+
+
+def _refuse_misplaced(file: Path) -> None:
+    """Refuse a place for JUnit XML that is none, before minutes have gone into the check.
+
+    Raises
+    ------
+    InputRefused
+        There is no such folder, or something else than JUnit XML stands there.
+    """
+    if not file.parent.is_dir():
+        raise InputRefused([Problem(str(file.parent), "is no folder", "make it, or name another")])
+    if not file.exists():
+        return
+    with refusing_unwritable(file, "name another file"):
+        begin = file.read_bytes()[:_HEAD]
+    if b"<testsuite" not in begin:
+        what = "is there, is no JUnit XML, and would be overwritten"
+        raise InputRefused([Problem(str(file), what, "rename it or name another file")])

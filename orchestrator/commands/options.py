@@ -68,8 +68,10 @@ Workers = Annotated[
 ]
 
 
-def _duration(text: str) -> float:
-    """Read a simulated time (s), ``2ms``, ``2e-3`` or ``1/60``."""
+def _duration(text: str | float) -> float:
+    """Read a time (s), ``2ms``, ``2e-3`` or ``1/60``; the default of an option is a number."""
+    if isinstance(text, float):
+        return text
     try:
         return seconds_in(text) if "/" in text else in_si(text, "s")
     except ValueError as error:

@@ -140,12 +140,36 @@ def free_folder(name: str, origin: Origin, read: Callable[[Path], Any], screen: 
     Path
         ``results/NAME``, or ``results/NAME-2``, ...
     """
+    folder, said = free_place(name, origin, read)
+    if said:
+        screen.warn(said)
+    return folder
+
+
+def free_place(name: str, origin: Origin, read: Callable[[Path], Any]) -> tuple[Path, str]:
+    """Return the folder of :func:`free_folder`, and what is to be said of it once it is used.
+
+    Parameters
+    ----------
+    name : str
+        Of the folder.
+    origin : Origin
+        What is going to be computed.
+    read : callable
+        Returns the origin of the results in a folder.
+
+    Returns
+    -------
+    folder : Path
+        ``results/NAME``, or ``results/NAME-2``, ...
+    said : str
+        Why it is not that of the name; empty where it is.
+    """
     first = RESULTS / name
     places = (first if number == 1 else RESULTS / f"{name}-{number}" for number in count(1))
     folder = next(place for place in places if not _is_of_another(place, origin, read))
-    if folder != first:
-        screen.warn(f"{first} holds other results, which stay; these go into {folder}")
-    return folder
+    told = f"{first} holds other results, which stay; these go into {folder}"
+    return folder, "" if folder == first else told
 
 
 def name_fault(name: str) -> str:

@@ -10,7 +10,6 @@ import typer
 from ..core.ending import true_cause
 from ..core.errors import Problem, RunFailed, all_causes, counted
 from ..core.supervisor import announce
-from ..core.system.clock import seconds_in
 from ..metrics.width_band import width_band_table
 from ..runs.building import is_cold
 from ..runs.chosen import has_slope, is_project_file
@@ -39,7 +38,7 @@ from .screen import CHECK_FAILED, COLD_START, INTERRUPTED, RUN_FAILED, Screen, o
 from .streams import stdout_for_results, tell_leftovers
 
 _OF_CASES = ("values", "sizes", "coupling", "model", "load_cell", "runtime", "in_process")
-_SIZES = {"discs": "sand discs", "elements": "beam elements"}
+_SIZES = {"discs": "sand disc", "elements": "beam element"}
 """Sizes that tell how long a run takes, in words."""
 OPTIONS = (
     *_OF_CASES,
@@ -62,24 +61,15 @@ OPTIONS = (
 _Folder = Annotated[Path | None, typer.Option(help="Folder of the results; default results/CASE.")]
 
 
-def _time(text: str) -> float:
-    """Read a time (s), ``1e-5`` or ``1/60``."""
-    try:
-        return seconds_in(text)
-    except ValueError as error:
-        raise typer.BadParameter(str(error)) from None
-
-
-def _seconds(help_: str) -> Any:
-    return typer.Option(metavar="SECONDS", parser=_time, help=help_)
-
-
-_StopTime = Annotated[float | None, _seconds("End of the run.")]
+_StopTime = Annotated[float | None, simulated_time("End of the run.")]
 _ExchangeStep = Annotated[
-    float | None, _seconds("Time between two exchanges; like all times, 1e-5 or a fraction, 1/60.")
+    float | None,
+    simulated_time("Time between two exchanges; like all times 1e-5, 10us or a fraction, 1/60."),
 ]
-_OutputInterval = Annotated[float | None, _seconds("Time between two rows.")]
-_StateInterval = Annotated[float | None, _seconds("Time between two recorded states of the sand.")]
+_OutputInterval = Annotated[float | None, simulated_time("Time between two rows.")]
+_StateInterval = Annotated[
+    float | None, simulated_time("Time between two recorded states of the sand.")
+]
 _Master = Annotated[
     str | None,
     typer.Option(
@@ -122,7 +112,7 @@ _Isolate = Annotated[
     ),
 ]
 _TimeLimit = Annotated[
-    float | None, _seconds("Longest time of one call of an isolated FMU; default 600.")
+    float | None, simulated_time("Longest time of one call of an isolated FMU; default 600.")
 ]
 _AllowUnstable = Annotated[
     bool, typer.Option("--allow-unstable", help="Run with steps above the stable ones.")
@@ -283,7 +273,7 @@ def _size_in_words(system: System) -> str:
     of_components = system.job.facts.get("sizes", {})
     sizes = {size: number for told in of_components.values() for size, number in told.items()}
     spec = system.spec
-    words = [f"{sizes[size]:,} {word}" for size, word in _SIZES.items() if size in sizes]
+    words = [counted(sizes[size], word) for size, word in _SIZES.items() if size in sizes]
     exchanges = round(spec.stop_time / spec.exchange_step)
     until = f"{exchanges:,} exchanges until {1e3 * spec.stop_time:g} ms"
     return f"size: {', '.join([*words, until])}" if words else ""
@@ -361,7 +351,7 @@ def _show_results(done: Run, pictures: list[Path], screen: Screen) -> None:
         for table in (done.formulas(), width_band_table(done)):
             if len(table):
                 screen.show(table, "")
-    drawn = f", {len(pictures)} pictures in {pictures[0].parent}" if pictures else ""
+    drawn = f", {counted(len(pictures), 'picture')} in {pictures[0].parent}" if pictures else ""
     screen.say(f"results in {done.folder}{drawn}")
     if done.status != "complete" and stopped_at(done.folder) is not None:
         screen.say(f"`rockshed resume {quote(str(done.folder))}` goes on from its last checkpoints")

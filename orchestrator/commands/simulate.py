@@ -16,7 +16,7 @@ from ..runs.simulation import simulate
 from ..runs.system import System
 from .analysis import options_named
 from .assignments import values_of
-from .options import Json, NoFigures, Quiet, Strict
+from .options import Json, NoFigures, Quiet, Strict, simulated_time
 from .results_place import look_at_folder, results_folder
 from .run import show_run
 from .screen import Screen, opened
@@ -44,20 +44,18 @@ _Input = Annotated[
         help="Inputs over time: the column time (s), then one for each input, in its unit.",
     ),
 ]
-_StartTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="Begin of the run.")]
+_StartTime = Annotated[float | None, simulated_time("Begin of the run.")]
 _StopTime = Annotated[
     float | None,
-    typer.Option(
-        metavar="SECONDS", help="End of the run; default is that of the FMU, or of the inputs."
-    ),
+    simulated_time("End of the run; default is that of the FMU, or of the inputs."),
 ]
 _StepSize = Annotated[
     float | None,
-    typer.Option(metavar="SECONDS", help="Communication step; default is what the FMU proposes."),
+    simulated_time("Communication step; default is what the FMU proposes."),
 ]
 _Interval = Annotated[
     float | None,
-    typer.Option(metavar="SECONDS", help="Time between two rows of the results; default the step."),
+    simulated_time("Time between two rows of the results; default the step."),
 ]
 _StartValues = Annotated[
     list[str] | None,

@@ -19,7 +19,7 @@ from ..runs.request import Request
 from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, certificates_of
-from .options import Assignments, Json, NoFigures, Quiet, Target, Workers
+from .options import Assignments, Json, NoFigures, Quiet, Target, Workers, simulated_time
 from .results_place import free_folder, look_at_place
 from .screen import Screen, opened
 from .vary import varied_of
@@ -67,7 +67,7 @@ _Percentiles = Annotated[
     str | None,
     typer.Option(metavar="50,95", help="Percentiles that are told; default: all that are borne."),
 ]
-_StopTime = Annotated[float | None, typer.Option(metavar="SECONDS", help="End of every run.")]
+_StopTime = Annotated[float | None, simulated_time("End of every run.")]
 _Folder = Annotated[
     Path | None, typer.Option(help="Folder of the results; default results/NAME-study.")
 ]

@@ -140,8 +140,8 @@ def _run_of(provenance: Mapping[str, Any]) -> object:
 def _newest(place: Path, named: Path) -> dict[str, Any]:
     """Return what describes the newest run of a folder."""
     known = [read_data(path / RUN) for path in _folders(place)]
-    if not known:
-        read_run(named)  # says why there is none
+    if not any(known):
+        read_run(named)  # says why there is none, or what is damaged
         raise InputRefused([Problem(str(named), "is no folder of a run", "give one")])
     return max(known, key=lambda provenance: str(provenance.get("started", "")))
 

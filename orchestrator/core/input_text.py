@@ -20,6 +20,11 @@ _UNQUOTED = re.compile(
     r"(?P<key>\s*[\w.\"-]+\s*)=\s*(?P<number>[+-]?\d[\d.,]*)(?P<unit>\s*[^\W\d][\w/^*.²³⁴]*|\s*°)?\s*(?:#.*)?$"
 )
 """A line with a bare value that TOML cannot read: ``mass = 1,8 t``."""
+_TWICE = ("Cannot overwrite a value", "Cannot declare", "Duplicate inline table key")
+"""Begins of what tomllib says of a key or table that is there already."""
+_QUOTED_KEY = re.compile(r"inline table key '(.+)'")
+_KEY = re.compile(r"\s*(\[.*\]|[^=\[]*[^=\[\s])\s*(?:=|#|$)")
+"""The name of a table or a key, where its line is known."""
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -115,12 +120,17 @@ def _remedy_of_line(text: str, error: str) -> str:
     """Return what to do about a line that is no TOML: a value with a unit needs quotes."""
     at = _AT_LINE.search(error)
     lines = text.splitlines()
+    if error.startswith(_TWICE):
+        name = _QUOTED_KEY.search(error) or _KEY.match(lines[int(at[1]) - 1 if at else -1])
+        return f"{name[1] if name else 'a key'} stands twice: keep one of them"
     line = lines[int(at[1]) - 1] if at and int(at[1]) <= len(lines) else ""
     found = _UNQUOTED.match(line)
     if found is None:
         return "correct the file"
     number, unit = found["number"].replace(",", "."), (found["unit"] or "").strip()
     key = found["key"].strip()
+    if not unit and "," not in found["number"]:
+        return "correct the file"
     if not unit:
         return f"a number has a decimal point and no comma: {key} = {number}"
     return f'a value with a unit stands in quotes, with a decimal point: {key} = "{number} {unit}"'

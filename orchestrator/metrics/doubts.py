@@ -246,6 +246,11 @@ def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
                 "it has not what faults of the scenario make, and what that imposes elsewhere than "
                 "on power ports; see whether it closes without them"
             )
+        elif (at := (run.provenance.get("branch") or {}).get("at")) is not None:
+            remedy = (
+                f"it has not the work of what was set at {at / ms:.4g} ms; see whether it closes "
+                "in the run that this is a variant of"
+            )
         missing = f"{100.0 * share:+.3g} % of the {whole}"
         yield f"the balance of energy does not close: {missing}; {remedy}"
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockshed.components.common.units import SCREEN_UNITS
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, counted
 from ..core.input_text import shown
 from ..core.results.series import Series
 from ..input_files.csv_table import CsvTable, read_csv
@@ -216,7 +216,7 @@ def _numbers(table: CsvTable, columns: int) -> Samples:
     rows = []
     for row in table.rows[1:]:
         if len(row.fields) != columns:
-            fault = f"has {len(row.fields)} fields instead of {columns}"
+            fault = f"has {counted(len(row.fields), 'field')} instead of {columns}"
             problems.append(Problem(table.place(row), fault, "separate them as in the first line"))
             continue
         values = [table.number(field) for field in row.fields]
@@ -226,7 +226,9 @@ def _numbers(table: CsvTable, columns: int) -> Samples:
                 problems.append(Problem(table.place(row, number), fault, "write a number"))
         rows.append([value or 0.0 for value in values])
     if not problems and len(rows) < 3:
-        problems.append(Problem(str(table.path), f"has {len(rows)} points", "give at least three"))
+        problems.append(
+            Problem(str(table.path), f"has {counted(len(rows), 'point')}", "give at least three")
+        )
     if problems:
         raise InputRefused(first(problems))
     return np.array(rows)

@@ -16,7 +16,7 @@ from ..core.system.system import SystemSpec
 from ..runs.system import System
 
 SAND, ROCK, BEAM = "SandCushion", "FallingRock", "RBSMBeam"
-_REMEDY = "take a case such as lab-impact, or the project of a rock shed"
+REMEDY = "take a case such as lab-impact, or the project of a rock shed"
 _READ = {
     "transmitted": (SAND, Role.TRANSMITTED),
     "on_rock": (SAND, Role.ON_BODY),
@@ -49,7 +49,7 @@ def refuse_unfit(system: System) -> None:
     """
     kinds = kinds_of(system)
     problems = [
-        Problem(name, f"{kind} is a component that a page does not compute", _REMEDY)
+        Problem(name, f"{kind} is a component that a page does not compute", REMEDY)
         for name, kind in kinds.items()
         if kind not in (SAND, ROCK, BEAM)
     ]
@@ -57,9 +57,9 @@ def refuse_unfit(system: System) -> None:
         number = list(kinds.values()).count(kind)
         if number > 1 or (number == 0 and kind != BEAM):
             text = f"has {number or 'no'} {kind}, and a page shows one"
-            problems.append(Problem(system.name, text, _REMEDY))
+            problems.append(Problem(system.name, text, REMEDY))
     driven = [name for name, kind in kinds.items() if kind == ROCK and _is_driven(system, name)]
-    problems += [Problem(name, "is driven and does not fall", _REMEDY) for name in driven]
+    problems += [Problem(name, "is driven and does not fall", REMEDY) for name in driven]
     if system.spec.scenario:
         problems.append(Problem("scenario", "has no place in a page", "leave it out"))
     problems += [

@@ -21,10 +21,12 @@ from ..pictures.style import FAINT, GREY, INK
 from ..pictures.style import ROCK as ORANGE
 from ..pictures.style import TRANSMITTED as BLUE
 from ..runs.building import Note, silent
+from ..runs.chosen import choose
+from ..runs.job import look_at_target
 from ..runs.request import Request
 from ..runs.system import System
 from ..versions import version_of
-from .impact import SAND, computed, kinds_of, refuse_unfit, start_of
+from .impact import REMEDY, SAND, computed, kinds_of, refuse_unfit, start_of
 from .offers import Offer, offers_of
 
 _HERE = Path(__file__).parent
@@ -102,6 +104,10 @@ def _offers(system: str | Path | System | Request) -> list[Offer]:
             return [Offer("", 0.0, system)]
         system = system.request
     request = system if isinstance(system, Request) else Request(str(system))
+    if choose(request, []).case is None:
+        look_at_target(request.target)
+        what = "is a system of FMU files, which a page does not have inside"
+        raise InputRefused([Problem(request.target, what, REMEDY)])
     found = offers_of(replace(request, in_process=True))
     refuse_unfit(found[0].system)
     return found

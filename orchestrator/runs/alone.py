@@ -18,6 +18,7 @@ from ..core.system.signals import Signals, signals_of
 from .job import Job
 from .signals import SignalSource, read_signals
 from .system import System
+from .values_in_si import value_of_port
 
 INPUT = "input"
 """Component whose outputs are the columns of the table."""
@@ -86,7 +87,8 @@ def alone(
     output_interval : float, optional
         Time between two rows of the results (s), by default the step.
     start_values : mapping of str to Value, optional
-        Parameters and inputs by name that differ from their start values.
+        Parameters and inputs by name that differ from their start values: numbers in the unit of
+        the variable, or texts with a unit of their own.
     output_variables : sequence of str
         Variables that are recorded, by default all outputs; ``*`` stands for any text.
     tolerance : float, optional
@@ -118,6 +120,7 @@ def alone(
         table = None if inputs is None else _signals(inputs)
     problems = [*_column_problems(of_fmu, table, inputs)]
     problems += _name_problems(of_fmu, start_values or {}, output_variables)
+    values = _in_si(of_fmu, start_values or {}, problems)
     times = {"start_time": start_time, "stop_time": stop_time}
     steps = {"exchange_step": step_size, "output_interval": output_interval}
     chosen = _times(of_fmu, table, times, steps)
@@ -133,7 +136,7 @@ def alone(
         **chosen,
         **({} if tolerance is None else {"tolerance": tolerance}),
     }
-    return _system(of_fmu, table, data, start_values or {}, output_variables)
+    return _system(of_fmu, table, data, values, output_variables)
 
 
 def _system(
@@ -222,6 +225,19 @@ def _name_problems(
         if not select(name, list(ports)):
             what = "is no variable of the FMU"
             yield Problem(f"output_variables {name}", what, nearest(name, ports))
+
+
+def _in_si(of_fmu: _Fmu, values: Mapping[str, Value], problems: list[Problem]) -> dict[str, Value]:
+    """Return start values in the units of their variables; one of another kind is a problem."""
+    kept: dict[str, Value] = {}
+    for name, value in values.items():
+        found = select(name, list(of_fmu.description.ports))
+        port = of_fmu.description.ports[found[0]] if found else None
+        try:
+            kept[name] = value_of_port(port, value)
+        except ValueError as error:
+            problems.append(Problem(f"start_values {name}", str(error)))
+    return kept
 
 
 def _times(

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockshed.components.catalogue import component
-from rockshed.components.common.ports import Kind, Variable
 from rockshed.components.common.units import ms
 
 from ..cases.registry import (
@@ -25,19 +24,18 @@ from ..cases.registry import (
 from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
-from ..core.system.fields import ONE_VALUE, Value
 from ..core.system.other_values import aliases, with_values
 from ..core.system.reading import load_system, system_from
 from ..core.system.renaming import with_present_names
 from ..core.system.system import SystemSpec
 from ..input_files.form import read_toml
-from ..input_files.quantities import doubt, in_si
 from ..metrics.filtering import LOAD_CELL_ROWS
 from ..ssp.package import is_ssp
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .chosen import choose
 from .request import AUTO, Request, with_keys
 from .scenario import placed, refuse_misfit, told, with_inputs_read, without_file
+from .values_in_si import case_in_si, file_in_si, shared_in_si
 
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
@@ -118,11 +116,16 @@ def prepare(
     if chosen.case is None:
         asked = request
         job = _from_file(request, known)
+        request = file_in_si(request, job.system, known)
+        job = replace(
+            job, facts={**job.facts, "differences": {**request.values, **request.options}}
+        )
     else:
         asked, warnings = _with_present_names(request, chosen.case)
         known += _follower_problems(asked, chosen.case)
-        request = _in_si(asked, chosen.case, known, warnings)
+        request = case_in_si(asked, chosen.case, known, warnings)
         job = _from_case(chosen.case, request, known, note, fmus_of)
+        request = shared_in_si(request, chosen.case, job.system, known)
     system = _changed(job.system, request, known)
     known += _load_cell_problems(request, system)
     if known:
@@ -180,30 +183,6 @@ def _with_present_names(request: Request, chosen: Case) -> tuple[Request, list[s
     return replace(request, values=values), warnings
 
 
-def _in_si(request: Request, chosen: Case, problems: list[Problem], warnings: list[str]) -> Request:
-    """Return the request for a case with numbers in SI where numbers are meant.
-
-    A case computes with its values before its FMUs are asked. Values beyond what is usual are
-    warned of.
-    """
-    kept = {}
-    for name, value in request.values.items():
-        owner, _, key = name.partition(".")
-        variable = _declared(chosen, owner, key)
-        if owner in chosen.models and key in component(chosen.models[owner]).sizes:
-            problems.append(_a_size(name, value))
-        elif variable is not None and variable.kind is not Kind.REAL:
-            kept[name] = value
-        elif reason := _why_no_number(value, variable):
-            what = f" ({variable.description})" if variable else ""
-            remedy = f"set {name}{what} to another value"
-            problems.append(Problem(name, f"{value!r}: {reason}", remedy))
-        else:
-            kept[name] = _number(value, variable)
-            warnings += _implausible(name, kept[name], variable)
-    return replace(request, values=kept)
-
-
 def _follower_problems(request: Request, chosen: Case) -> list[Problem]:
     """Refuse values that cannot be set apart from what they follow from."""
     return [
@@ -211,50 +190,6 @@ def _follower_problems(request: Request, chosen: Case) -> list[Problem]:
         for name in request.values
         if name in chosen.follows
     ]
-
-
-def _declared(chosen: Case, owner: str, key: str) -> Variable | None:
-    """Return the variable of a component of a case; None if there is none of this name."""
-    if owner not in chosen.models:
-        return None
-    variables = component(chosen.models[owner]).layout.variables
-    return {v.name: v for v in variables}.get(key.partition("[")[0])
-
-
-def _number(value: Value, variable: Variable | None) -> Value:
-    if isinstance(value, str) and variable is not None:
-        return in_si(value, variable.unit)
-    return value
-
-
-def _implausible(name: str, value: Value, variable: Variable | None) -> list[str]:
-    """Return the warning of a value beyond what is usual, if it is."""
-    if variable is None or variable.plausible is None:
-        return []
-    reason = doubt(float(value), variable.unit, variable.plausible)
-    return [f"{name} {reason}"] if reason else []
-
-
-def _a_size(name: str, value: object) -> Problem:
-    what = "is a size, which an FMU is built with, and no parameter"
-    return Problem(name, what, f"give {name} = {value} with sizes=...")
-
-
-def _why_no_number(value: object, variable: Variable | None) -> str:
-    if isinstance(value, list | tuple | dict):
-        return ONE_VALUE
-    try:
-        if isinstance(value, str) and variable is not None:
-            in_si(value, variable.unit)
-        else:
-            float(value)  # type: ignore[arg-type]
-    except ValueError as error:
-        return "must be a number" if variable is None else str(error)
-    except OverflowError:  # an integer of hundreds of digits
-        return "must be a finite number"
-    except TypeError:
-        return ONE_VALUE
-    return ""
 
 
 def _from_file(request: Request, problems: list[Problem]) -> Job:
@@ -276,9 +211,7 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     ):
         if asked:
             problems.append(Problem(argument, "is for cases only", remedy))
-    facts: dict[str, Any] = {
-        "differences": {**request.values, **request.options},
-    }
+    facts: dict[str, Any] = {}
     try:
         if is_ssp(request.target):
             return _from_ssp(request, facts)
@@ -349,6 +282,7 @@ def _from_case(
         facts |= {"runtime": fmus.runtime, "runtime_reason": fmus.reason}
         files = dict(fmus.files)
     base = chosen.make(files, sizes, coupling)
+    request = shared_in_si(request, chosen, base, [])  # its problems are told by the caller
     given = {**request.values, **request.options}
     differing = differences(chosen, base, given, sizes, own_sizes(chosen, model.sizes))
     differing = told_once(chosen, base, differing, [*request.values, *request.sizes])

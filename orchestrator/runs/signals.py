@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, counted
 from ..core.fmu.description import Port, UnitDefinition
 from ..core.fmu.slave import OK, REAL, Addresses, ValueReferences, Values
 from ..core.input_text import shown
@@ -14,7 +14,10 @@ from ..core.system.signals import TIME, Signals
 from ..input_files.csv_table import CsvRow, CsvTable, read_csv
 
 _TRUTH = {"true": 1.0, "false": 0.0}
-_FORM = "write `time` and names of inputs in the first line, and a number for each below"
+_FORM = (
+    "write `time` and names of inputs in the first line, without units, and below a number for "
+    "each: s, and the unit of the input"
+)
 
 
 # ---------------------------------------------------------------- the file
@@ -67,7 +70,7 @@ def _title_problems(table: CsvTable, titles: Sequence[str]) -> list[Problem]:
 def _row(table: CsvTable, row: CsvRow, width: int, problems: list[Problem]) -> list[float]:
     """Return the numbers of a line; what is none becomes a problem."""
     if len(row.fields) != width:
-        what = f"has {len(row.fields)} fields, and the first line {width}"
+        what = f"has {counted(len(row.fields), 'field')}, and the first line {width}"
         problems.append(Problem(table.place(row), what, _FORM))
         return [0.0] * width
     values = []

@@ -794,6 +794,29 @@ def test_plot_draws_what_a_damaged_file_leaves(rockshed, finished, tmp_path, nam
     assert {Path(line).name for line in result.stdout.splitlines()} == left
 
 
+@pytest.mark.parametrize("command", ["plot", "report", "verify", "resume"])
+@pytest.mark.parametrize("name", ["timeseries.parquet", "summary.json", "columns.csv"])
+def test_a_file_that_a_complete_run_lacks_is_named(rockshed, finished, tmp_path, command, name):
+    shutil.copytree(finished[0], tmp_path / "run", ignore=shutil.ignore_patterns("figures"))
+    (tmp_path / "run" / name).unlink()
+    result = rockshed(command, tmp_path / "run")
+    assert result.exit_code == 2
+    told = f"{tmp_path / 'run' / name}: is missing, and the run is complete"
+    assert told in in_one_line(result.stderr)
+
+
+@pytest.mark.parametrize("command", ["report", "verify", "resume"])
+@pytest.mark.parametrize("content", ["{", "[]", "{}", ""])
+def test_every_command_names_a_damaged_run(rockshed, finished, tmp_path, command, content):
+    shutil.copytree(finished[0], tmp_path / "run", ignore=shutil.ignore_patterns("figures"))
+    (tmp_path / "run/run.json").write_text(content)
+    result = rockshed(command, tmp_path / "run")
+    assert result.exit_code == 2
+    said = in_one_line(result.stderr)
+    assert f"{tmp_path / 'run/run.json'}: cannot be read" in said
+    assert "attribute" not in said
+
+
 def test_a_place_where_nothing_can_be_made_is_not_called_busy(rockshed):
     result = rockshed("run", "lab-impact", "--output-dir", "/proc/x", *SHORT)
     assert result.exit_code == 2

@@ -193,6 +193,20 @@ def test_exit_code_and_junit_tell_the_verdicts(tmp_path):
     assert suite.find("testcase[@name='layout']/failure").get("message")
 
 
+@pytest.mark.parametrize("place", ["nowhere/check.xml", "mine.txt"])
+def test_a_place_for_junit_is_refused_before_the_check(tmp_path, monkeypatch, place):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.txt").write_text("mine")
+    file = tmp_path / "x.fmu"
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("modelDescription.xml", XML)
+    done = CliRunner().invoke(app, ["check", str(file), "--junit", place])
+    assert done.exit_code == 2
+    assert "probes" not in done.output
+    assert ("is no folder" in done.output) == (place != "mine.txt")
+    assert (tmp_path / "mine.txt").read_text() == "mine"
+
+
 def test_junit_holds_whatever_an_fmu_says(tmp_path):
     odd = Finding("state", "rollback", Verdict.CRASHED, "says \x00 <b> ä \ud800", "")
     ElementTree.fromstring(junit(Check(tmp_path / "x.fmu", "", "2.0", "", (odd,))).encode())

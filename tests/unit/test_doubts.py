@@ -103,3 +103,13 @@ def test_a_settled_force_above_the_peak_is_explained():
     said = [text for text in comparison.notes(stepped, {}) if "above the peak" in text]
     assert said[-1].startswith("settled maximum of the force on the rock: is above the peak")
     assert "faster than 212 Hz, overshoots" in said[-1]
+
+
+def test_a_balance_that_values_set_on_the_way_have_opened_is_not_blamed_on_the_steps():
+    run = boxed(**{"rock.energy.residual": 100.0 * WAY})
+    (blamed,) = [text for text in warnings(run) if "does not close" in text]
+    assert "reduce the steps" in blamed
+    run.provenance["branch"] = {"of": "parent", "at": 0.005, "values": {"beam.load": 1.0}}
+    (told,) = [text for text in warnings(run) if "does not close" in text]
+    assert "it has not the work of what was set at 5 ms" in told
+    assert "reduce" not in told

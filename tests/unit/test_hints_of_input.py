@@ -29,3 +29,18 @@ def test_of_many_names_the_nearest_are_offered_where_none_is_near():
     names = [f"beam.moment[{i}]" for i in range(100)] + ["sand.transmitted_force"]
     said = nearest("transmission", names)
     assert said.startswith("the nearest of 101 are sand.transmitted_force")
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("step = 1.0\nstep = 2.0", "step stands twice: keep one of them"),
+        ("[a]\nx = 1\n[a]\ny = 2\n", "[a] stands twice: keep one of them"),
+        ("a = {x = 1, x = 2}", "x stands twice: keep one of them"),
+        ("mass = 1.2.3", "correct the file"),
+    ],
+)
+def test_a_key_that_stands_twice_is_no_number_with_a_comma(text, remedy):
+    with pytest.raises(InputRefused) as refused:
+        toml_content(Path("shed.toml"), text)
+    assert refused.value.problems[0].remedy == remedy

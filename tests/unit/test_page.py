@@ -98,3 +98,13 @@ def test_without_the_linker_a_page_is_refused_with_the_package_to_install(tmp_pa
     monkeypatch.setattr(module, "_kept_files", lambda *_: {})
     assert "pip install rockshed[page]" in refusal("lab-impact", tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_system_file_is_refused_as_what_it_is(tmp_path):
+    file = tmp_path / "system.toml"
+    file.write_text(
+        'name = "s"\nexchange_step = 1e-3\nstop_time = 0.1\ncomponents.a.fmu = "a.fmu"\n'
+    )
+    said = refusal(file, tmp_path / "page.html")
+    assert "is a system of FMU files" in said
+    assert "in_process" not in said

@@ -10,7 +10,7 @@ import numpy as np
 
 from rockshed.components.common.units import cm
 
-from ...core.errors import InputRefused, Problem
+from ...core.errors import InputRefused, Problem, counted
 from ...core.input_text import shown
 from ...input_files.csv_table import CsvRow, CsvTable, read_csv
 from ...input_files.form import LARGEST, first
@@ -108,7 +108,7 @@ def _row(
 ) -> _Row | None:
     where = table.place(line)
     if len(line.fields) != len(columns):
-        fault = f"has {len(line.fields)} fields instead of {len(columns)}"
+        fault = f"has {counted(len(line.fields), 'field')} instead of {len(columns)}"
         remedy = "separate penetration and load as in the first line"
         problems.append(Problem(where, fault, remedy))
         return None
@@ -129,7 +129,7 @@ def _curve_problems(file: Path, rows: Sequence[_Row]) -> Iterator[Problem]:
     """Yield what is wrong with a curve as a whole."""
     if len(rows) < 3:
         remedy = "give at least three; for a single one give its spring constant"
-        yield Problem(str(file), f"has {len(rows)} points", remedy)
+        yield Problem(str(file), f"has {counted(len(rows), 'point')}", remedy)
     for before, row in pairwise(rows):
         if row.depth <= before.depth:
             fault = (

@@ -64,7 +64,8 @@ def overview(result: "ExchangeStepsResult") -> Picture:
             axes.set_yscale("log")
             axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100.0 * share:g} %"))
             _slopes(axes, steps, max(drawn_values))
-            axes.axhline(result.accuracy, color=GREY, linewidth=0.7)
+            wanted = f"accuracy {100.0 * result.accuracy:g} %"
+            axes.axhline(result.accuracy, color=GREY, linewidth=0.7, label=wanted)
             handles, labels = axes.get_legend_handles_labels()
             picture.legend(handles, labels, loc="outside upper center", ncols=2)
     return picture
@@ -83,7 +84,7 @@ def _curve(axes: Axes, steps: list[float], figure: Figure, number: int) -> list[
     axes.plot(
         *zip(*points),
         color=_COLOURS[number % len(_COLOURS)],
-        marker=_MARKERS[number % len(_MARKERS)],
+        marker=_MARKERS[(number + number // len(_COLOURS)) % len(_MARKERS)],
         markersize=4.0,
         linewidth=1.0,
         linestyle="-" if figure.found.order is not None else ":",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.errors import InputRefused, Problem
+from ...core.errors import InputRefused, Problem, counted
 from ...core.input_text import shown
 from ...input_files.csv_table import CsvTable, read_csv
 from ...input_files.form import LARGEST, first
@@ -131,7 +131,7 @@ def _numbers(
     """Return the values of a row in SI; 0 where one is refused."""
     line = table.rows[row]
     if len(line.fields) != len(columns):
-        text = f"has {len(line.fields)} fields instead of {len(columns)}"
+        text = f"has {counted(len(line.fields), 'field')} instead of {len(columns)}"
         problems.append(Problem(table.place(line), text, "separate them as in the first line"))
         return [0.0] * len(columns)
     values = []

@@ -9,6 +9,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.model_description import read_model_description
 
 from ...platforms import LONGEST_HEAD, NoBinaryError, binary, this_machine
+from ..verdicts import LOADING
 from .calls import Called, CannotLoad, NoInstance, Trail
 from .fmi2 import Called2
 from .fmi3 import Called3
@@ -150,7 +151,7 @@ class Subject:
             With the reason of the system.
         """
         kind = FMU3Slave if self.version == 3 else FMU2Slave
-        self.trail.mark("the loading of the library")
+        self.trail.mark(LOADING)
         try:
             made = kind(
                 guid=self.model.guid,

@@ -222,11 +222,23 @@ def read_run(folder: Path) -> StoredRun:
         )
     with undamaged(place / RUN):
         check(provenance)
+    if provenance["status"] == "complete":
+        _refuse_missing(place)
     with undamaged(place / COLUMNS):
         columns = read_columns(place / COLUMNS)
     with undamaged(place / SUMMARY):
         metrics = _read_metrics(place / SUMMARY)
     return StoredRun(place, provenance, metrics, columns, _read_series(place, columns))
+
+
+def _refuse_missing(place: Path) -> None:
+    """Refuse a complete run without one of its files; a run that was ended may have fewer."""
+    rows = ROWS_STREAM if (place / ROWS_STREAM).is_file() else PARQUET
+    missing = [name for name in (COLUMNS, SUMMARY, rows) if not (place / name).is_file()]
+    if missing:
+        what = "is missing, and the run is complete"
+        remedy = "the results are damaged; run it again"
+        raise InputRefused([Problem(str(place / name), what, remedy) for name in missing])
 
 
 def _place_of(folder: Path) -> Path:

@@ -91,6 +91,11 @@ class Describer:
             if not hasattr(self.sources[name], "path"):
                 what = "is no FMU file, and only those run in processes of their own"
                 self.finder.refuse(f"{name}: isolate", what, "leave it out, or take an FMU")
+        if not isolated and self.finder.system.limits_calls:
+            self.finder.warnings.append(
+                "time_limit is for the calls of isolated FMUs, and none is isolated: it limits "
+                "nothing; isolate some, or leave it out"
+            )
         if isolated and sys.platform == "win32":
             what = "is for Linux and macOS: Windows has no such pipes"
             self.finder.refuse("isolate", what, "leave it out")

@@ -18,6 +18,9 @@ from .scenario import Scenario
 ALL = "all"
 """Stands for all components."""
 
+TIME_LIMIT = 600.0
+"""Longest time (s) of one call of an isolated FMU, where nothing else is said."""
+
 
 class SystemSpec(SystemData):
     """A co-simulation: what takes part, how it is connected and how it is run.
@@ -90,7 +93,7 @@ class SystemSpec(SystemData):
     extrapolation: Extrapolation = 0
     adaptive: Adaptive | None = None
     isolate: list[str] = []
-    time_limit: Seconds = 600.0
+    time_limit: Seconds = TIME_LIMIT
     scenario: Scenario = Scenario()
 
     def step(self, component: str) -> float:
@@ -110,3 +113,9 @@ class SystemSpec(SystemData):
             for name, spec in self.components.items()
             if spec.isolate or name in self.isolate or ALL in self.isolate
         }
+
+    @property
+    def limits_calls(self) -> bool:
+        """Whether anything limits the time of a call otherwise than by default."""
+        own = any(spec.time_limit for spec in self.components.values())
+        return own or self.time_limit != TIME_LIMIT

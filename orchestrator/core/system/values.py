@@ -89,7 +89,8 @@ def _number(port: Port, value: Value) -> float:
     try:
         number = float(value)
     except ValueError:
-        raise ValueError("must be a number") from None
+        unit = "" if port.unit is None else f" in {port.unit_name}"
+        raise ValueError(f"must be a number{unit}") from None
     except OverflowError:  # an integer of hundreds of digits
         number = math.inf
     if port.kind == INTEGER and math.isfinite(number) and number != math.floor(number):

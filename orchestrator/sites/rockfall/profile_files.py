@@ -6,7 +6,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import InputRefused, Problem
+from ...core.errors import InputRefused, Problem, counted
 from ...core.input_text import shown
 from ...input_files.csv_table import CsvRow, CsvTable, read_csv
 from ...input_files.form import LARGEST
@@ -93,7 +93,7 @@ def _csv_node(
 ) -> Iterator[Node]:
     place = table.place(row, 0)
     if not 2 <= len(row.fields) <= columns:
-        text = f"has {len(row.fields)} fields"
+        text = f"has {counted(len(row.fields), 'field')}"
         remedy = f"give {columns}, separated as in the first line"
         problems.append(Problem(place, text, remedy))
         return
