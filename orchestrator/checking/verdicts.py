@@ -11,7 +11,7 @@ from ..core.errors import counted
 from ..tables import Table
 
 LOADING = "the loading of the library"
-"""What a process was at when the code of an FMU comes into it."""
+"""The call in which the code of an FMU comes into a process."""
 
 
 class Verdict(StrEnum):

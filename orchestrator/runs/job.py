@@ -115,11 +115,7 @@ def prepare(
     warnings: list[str] = []
     if chosen.case is None:
         asked = request
-        job = _from_file(request, known)
-        request = file_in_si(request, job.system, known)
-        job = replace(
-            job, facts={**job.facts, "differences": {**request.values, **request.options}}
-        )
+        job, request = _of_file(request, known)
     else:
         asked, warnings = _with_present_names(request, chosen.case)
         known += _follower_problems(asked, chosen.case)
@@ -190,6 +186,14 @@ def _follower_problems(request: Request, chosen: Case) -> list[Problem]:
         for name in request.values
         if name in chosen.follows
     ]
+
+
+def _of_file(request: Request, problems: list[Problem]) -> tuple[Job, Request]:
+    """Return the system of a file, and the request with its values in SI."""
+    job = _from_file(request, problems)
+    request = file_in_si(request, job.system, problems)
+    differing = {**request.values, **request.options}
+    return replace(job, facts={**job.facts, "differences": differing}), request
 
 
 def _from_file(request: Request, problems: list[Problem]) -> Job:

@@ -59,7 +59,7 @@ def test_variants_of_a_run_in_its_process_are_refused(tmp_path):
     ("text", "words", "told"),
     [
         ("a\n1\n", ("--at", "5ms"), "--at: is for a single variant"),
-        ("a,b\n1\n", (), "line 2: has 1 fields instead of 2"),
+        ("a,b\n1\n", (), "line 2: has 1 field, and the first line 2"),
         ("a,a\n1,2\n", (), "has 'a' twice"),
         ("a\n", (), "has no variant"),
     ],

@@ -40,7 +40,7 @@ def test_columns_are_read_in_the_unit_of_what_they_stand_beside(tmp_path):
         ("time (ms),force (kN)\n0,1\n1,x\n2,3\n", "line 3, column 3: 'x' is no finite number"),
         ("time (ms),force (kN)\n0,1\n1,2,3\n2,3\n", "has 3 fields instead of 2"),
         ("time (ms),force (kN)\n0,1\n2,2\n1,3\n", "line 4: the time 1 is not after 2"),
-        ("time (ms),force (kN)\n0,1\n", "has 1 points"),
+        ("time (ms),force (kN)\n0,1\n", "has 1 point"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_told_with_its_place(tmp_path, text, told):

@@ -81,10 +81,10 @@ HEAD = "penetration (cm),load (kgf)"
         (("penetration,load (kgf)",), "line 1, column 1: 'penetration' has no known unit"),
         (("penetration (inch),load (kgf)",), "column 1: 'penetration .inch.' has no known unit"),
         (("penetration (cm),penetration (mm)",), "each once"),
-        ((HEAD, "1,10"), "has 1 points"),
+        ((HEAD, "1,10"), "has 1 point"),
         ((HEAD, "1,10", "2,x", "3,30"), r"line 3, column 2 .load.: 'x' is no finite number"),
         ((HEAD, "1,10", "nan,20", "3,30"), r"line 3, column 1 .penetration.: 'nan'"),
-        ((HEAD, "1,10", "2;20", "3,30"), "line 3: has 1 fields instead of 2"),
+        ((HEAD, "1,10", "2;20", "3,30"), "line 3: has 1 field instead of 2"),
         (
             (HEAD, "1,10", "3,30", "2,20"),
             "line 4, column penetration: 2 cm does not lie below the 3 cm of line 3",

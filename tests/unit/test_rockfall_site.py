@@ -131,7 +131,7 @@ def test_faults_of_a_csv_file_have_line_and_column(refused, tmp_path):
     assert refused('[profile]\nfile = "p.csv"\n[[ground]]\nmaterial = "soil"\n') == [
         ("p.csv, line 3, column 5", "'ninety' is no finite number"),
         ("p.csv, line 4, column 4", "'nan' is no finite number"),
-        ("p.csv, line 5, column 1", "has 1 fields"),
+        ("p.csv, line 5, column 1", "has 1 field"),
     ]
 
 
