@@ -72,6 +72,8 @@ def _duration(text: str | float) -> float:
     """Read a time (s), ``2ms``, ``2e-3`` or ``1/60``; the default of an option is a number."""
     if isinstance(text, float):
         return text
+    if text.strip().lstrip("+-").lower() in ("nan", "inf", "infinity"):
+        raise typer.BadParameter(f"must be a finite number (given: {text})")
     try:
         return seconds_in(text) if "/" in text else in_si(text, "s")
     except ValueError as error:
