@@ -185,7 +185,7 @@ def opened(quiet: bool = False, as_json: bool = False) -> "Iterator[Screen]":
         screen.refuse(refusal.problems)
         raise typer.Exit(REFUSED) from None
     except KeyboardInterrupt:
-        screen.fail("interrupted")
+        screen.warn("interrupted")
         raise typer.Exit(INTERRUPTED) from None
     except OSError as error:
         screen.fail(str(error))

@@ -31,8 +31,8 @@ def exchange_step(run: StoredRun, file: Path) -> None:
         axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         axes.minorticks_off()
         axes.set_ylim(0.8 * ticks[0], 1.25 * max(ticks[-1], steps.max()))
-        axes.set_xlabel("time, ms")
-        axes.set_ylabel("exchange step, ms")
+        axes.set_xlabel("time (ms)")
+        axes.set_ylabel("exchange step (ms)")
         over_time(axes, time)
 
 

@@ -109,7 +109,7 @@ def _over_time(axes: Axes, run: StoredRun) -> None:
     axes.stairs(counts, time, color=INK, baseline=None)
     axes.set_ylim(0.0, 1.1 * max(1.0, counts.max()))
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set_xlabel("time, ms")
+    axes.set_xlabel("time (ms)")
     axes.set_ylabel("iterations")
     over_time(axes, time)
 
