@@ -11,6 +11,7 @@ from rockshed.core.continuing import find_stopped
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.core.loop.changes import ValueChange, plan_change
 from rockshed.core.run import simulate, starting_problems
+from rockshed.core.system.iteration import Iteration
 from rockshed.core.system.planning import make_plan
 from rockshed.ssp.documents import as_bytes
 from rockshed.ssp.package import MAIN, Package
@@ -400,3 +401,11 @@ def test_an_ssp_keeps_the_choice_of_the_master(tmp_path):
     again = read_structure(Package(tmp_path, tmp_path), {}, describe).system
     assert again.master == "implicit"
     assert again.iteration == system.iteration
+
+
+@pytest.mark.parametrize("master", ["sequential", "jacobi"])
+def test_a_table_that_another_master_does_not_read_is_told(master):
+    (told,) = make_plan(*pair(master=master)).warnings
+    assert told.startswith(f"[iteration] does nothing with the {master} master")
+    spec, sources = pair(master=master)
+    assert make_plan(spec.model_copy(update={"iteration": Iteration()}), sources).warnings == ()

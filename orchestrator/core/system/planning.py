@@ -20,6 +20,7 @@ from .extrapolation import Extrapolating, extrapolation_problems
 from .finding import Finder
 from .imposing import Imposed, imposed_ends, imposed_places
 from .iterated import iteration_problems, plan_iteration, window_problems
+from .iteration import Iteration
 from .limits import amount_problems, internal_step_problems
 from .linking import Linker, Links
 from .loops import algebraic_loops, told
@@ -233,6 +234,11 @@ class _Planner:
         """Refuse what the implicit master cannot do, or what only it would understand."""
         self.finder.problems += iteration_problems(self.system.iteration, parts.links)
         if self.system.master != "implicit":
+            if self.system.iteration != Iteration():
+                self.finder.warnings.append(
+                    f"[iteration] does nothing with the {self.system.master} master; "
+                    'it is for master = "implicit"'
+                )
             return
         self.finder.problems += rollback_problems(self.finder.descriptions, "the implicit master")
         if parts.texts or parts.recorded_texts:
