@@ -114,7 +114,7 @@ def test_help_tells_every_option_and_flags_take_no_value(rockshed):
     text = in_one_line(rockshed("run", "--help").stdout)
     assert "--json Print" in text
     assert "--no-figures Draw" in text
-    assert "--coupling paper|impulse|jacobi Scheme" in text
+    assert "--coupling paper|impulse|jacobi|implicit Scheme" in text
 
 
 def test_list_names_every_case_and_component(rockshed):
