@@ -11,7 +11,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from ..core.errors import InputRefused, Problem, refusing_unwritable
+from ..core.errors import InputRefused, Problem, RunFailed, refusing_unwritable
 from ..core.results.own_files import read_data
 from ..files import write_file
 from ..runs.kept import ASKED, FINISHED
@@ -103,7 +103,7 @@ def _digest(file: Path) -> str | None:
 def remembering(
     place: Path | None, kind: str, arguments: Mapping[str, Any], files: Sequence[Path] = ()
 ) -> Iterator[None]:
-    """Keep what an analysis was asked until it has ended or is refused.
+    """Keep what an analysis was asked until it has ended, is refused or its first run has failed.
 
     Whatever else ends the block, a kill for instance, it can go on from there.
 
@@ -137,9 +137,18 @@ def remembering(
             except InputRefused:
                 _put_back(place, before)
                 raise
+            except RunFailed:
+                if not _has_more(place):
+                    _put_back(place, None)
+                raise
             _put_back(place, None)
     finally:
         _remove_empty(missing)
+
+
+def _has_more(place: Path) -> bool:
+    """Tell whether a folder has anything else than what was asked."""
+    return any(file.name not in (ASKED, _LOCK) for file in place.iterdir())
 
 
 def _earlier(place: Path) -> bytes | None:

@@ -4,7 +4,7 @@ import pytest
 
 from rockshed.cases.spt import hammer_connections, toe_connections
 from rockshed.core.run import simulate
-from rockshed.core.system.system import load_system
+from rockshed.core.system.reading import load_system
 
 FMUS = {"hammer": "Hammer", "ground": "ImpulsiveGround", "rod": "PileRod"}
 BY_TERMINALS = ("hammer.head <-> rod.head", "rod.toe <-> ground.toe")

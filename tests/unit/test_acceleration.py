@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
+from threadpoolctl import threadpool_limits
 
 from rockshed.core.masters.acceleration import acceleration_of
 
@@ -98,3 +99,21 @@ def test_what_is_remembered_makes_the_same_guesses(name):
         method.begin()
         guesses.append(method.next(np.zeros(2), np.array([1.0, 2.0]), np.ones(2)))
     assert np.array_equal(*guesses)
+
+
+@pytest.mark.parametrize("name", ["anderson", "quasi_newton"])
+def test_guesses_do_not_hang_on_the_threads_of_linear_algebra(name):
+    """On one core the libraries have one thread, and this shows nothing."""
+    random = np.random.default_rng(5)
+    size = 100_000
+    factors, start, constant = random.uniform(-1.2, 1.2, size), np.zeros(size), np.ones(size)
+
+    def guesses(threads):
+        method, guess = acceleration_of(name, size), start
+        method.begin()
+        with threadpool_limits(threads, user_api="blas"):
+            for _ in range(16):
+                guess = method.next(guess, factors * guess + constant, np.ones(size))
+        return guess
+
+    assert guesses(1).tobytes() == guesses(2).tobytes()

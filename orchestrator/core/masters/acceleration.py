@@ -6,10 +6,12 @@ residuals r = G(z) - z.
 """
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
 
 from ..loop.tables import FloatTable
 
@@ -146,11 +148,12 @@ class LeastSquares(Accelerator):
             self._learn(residual - self._before[0], result - self._before[1])
         self._before = residual, result
         known = int(np.count_nonzero(self._ages >= 0))
-        weights, places = _combination(self._residuals[:known] / scale, residual / scale)
-        left = (residual - weights @ self._residuals[places]) / scale
-        stands = self._left is not None and _is_same(left, self._left, residual / scale)
-        self._left = left
-        return result if stands else result - weights @ self._results[places]
+        with _libraries().limit(limits=1, user_api="blas"):
+            weights, places = _combination(self._residuals[:known] / scale, residual / scale)
+            left = (residual - weights @ self._residuals[places]) / scale
+            stands = self._left is not None and _is_same(left, self._left, residual / scale)
+            self._left = left
+            return result if stands else result - weights @ self._results[places]
 
     def _learn(self, residual: FloatTable, result: FloatTable) -> None:
         """Put a pair of differences in front of the others."""
@@ -171,6 +174,16 @@ class LeastSquares(Accelerator):
         self._residuals = memory["residuals"].copy()
         self._results = memory["results"].copy()
         self._ages = memory["ages"].copy()
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Return the libraries of linear algebra of this process.
+
+    They get one thread: sums of several threads are rounded otherwise with each number of
+    threads, and threads that wait for tables as small as these take more time than the sums.
+    """
+    return ThreadpoolController()
 
 
 def _is_same(left: FloatTable, before: FloatTable, residual: FloatTable) -> bool:
