@@ -103,5 +103,7 @@ def shape_factor(time: Samples, force: Samples) -> float | None:
     if touching.size < 2:
         return None
     within = slice(int(touching[0]), int(touching[-1]) + 1)
-    impulse = float(np.trapezoid(force[within], time[within]))
-    return impulse / (peak * float(time[within][-1] - time[within][0]))
+    duration = float(time[within][-1] - time[within][0])
+    if peak * duration == 0.0:  # too small for a number, in rows that are damaged
+        return None
+    return float(np.trapezoid(force[within], time[within])) / (peak * duration)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import subprocess
 import sys
 
@@ -274,6 +275,18 @@ def test_a_stream_that_was_cut_off_is_read_up_to_the_cut(tmp_path):
     assert kept.series["x"].tolist() == list(range(1000))
     assert {column.name: column.unit for column in kept.columns} == {"time": "s", "x": "m"}
     first.__exit__(None, None, None)
+
+
+@pytest.mark.parametrize("value", [0.25, math.nan, math.inf])
+def test_rows_whose_time_goes_back_or_is_none_are_refused(result, value):
+    file = result.folder / "timeseries.parquet"
+    table = pyarrow.parquet.read_table(file)
+    time = table["time"].to_pylist()
+    time[5] = value
+    changed = table.set_column(0, table.schema.field("time"), pyarrow.array(time))
+    pyarrow.parquet.write_table(changed, file)
+    with pytest.raises(InputRefused, match=r"time goes from .* in row [56]"):
+        read_run(result.folder)
 
 
 def test_no_run_at_all(tmp_path):

@@ -27,6 +27,7 @@ TRIANGLE = 1.0 - np.abs(TIME / 0.005 - 1.0)
 def test_the_shape_factor_tells_a_half_sine_from_a_triangle(force, share):
     assert shape_factor(TIME, force) == pytest.approx(share, rel=0.015)  # cut off at 1 %
     assert shape_factor(TIME, np.ones_like(TIME)) == pytest.approx(1.0)
+    assert shape_factor(np.zeros_like(TIME), force) is None
     assert shape_factor(TIME, 0.0 * TIME) is None
 
 

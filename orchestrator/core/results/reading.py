@@ -307,7 +307,17 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
         with undamaged(path):
             table = pa.Table.from_batches(batches(path), schema(columns))
     with undamaged(path):
-        return {column.name: _numbers(table[column.name]) for column in columns}
+        series = {column.name: _numbers(table[column.name]) for column in columns}
+        _refuse_broken_time(series.get("time", np.empty(0)))
+        return series
+
+
+def _refuse_broken_time(time: NDArray[np.float64]) -> None:
+    """Raise a ValueError where time goes back or is none: nothing after it would mean anything."""
+    goes_on = np.diff(time) >= 0.0
+    if not goes_on.all():
+        row = int(np.argmin(goes_on)) + 1
+        raise ValueError(f"time goes from {time[row - 1]:.9g} to {time[row]:.9g} s in row {row}")
 
 
 def _numbers(column: Any) -> NDArray[np.float64]:
