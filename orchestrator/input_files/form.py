@@ -5,16 +5,17 @@ left out, and a check that asks for one of them ends there.
 """
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_origin
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..core.errors import Problem
 from ..core.form_faults import UNKNOWN_KEY, sentences
+from ..core.form_keys import known_keys, models_in
 from ..core.input_text import read_text, toml_content
 from ..core.system.names import nearest
 from .places import Key, Places, places
@@ -206,7 +207,7 @@ def _formed_value(entry: FieldInfo, value: Any, refused: Collection[Key], key: K
     """
     if not any(other[: len(key)] == key for other in refused):
         return _validated(entry, value)
-    inner = next((part for part in _models(entry.annotation) if issubclass(part, Data)), None)
+    inner = next((part for part in models_in(entry.annotation) if issubclass(part, Data)), None)
     if inner is None or key in refused or not isinstance(value, dict | list):
         raise UnformedError(key)
     if isinstance(value, list):
@@ -282,37 +283,3 @@ def _remedy(model: type[BaseModel], key: Key, texts: list[str]) -> str:
     if UNKNOWN_KEY not in texts:
         return ""
     return nearest(str(key[-1]), known_keys(model, key[:-1]))
-
-
-def known_keys(model: type[BaseModel], section: Key = ()) -> list[str]:
-    """Return the keys that a section of a file may have.
-
-    Parameters
-    ----------
-    model : type of Data
-        Form of the file.
-    section : Key
-        Of the section; the whole file by default.
-
-    Returns
-    -------
-    list of str
-        As they are written in the file.
-    """
-    owner = model
-    for part in section:
-        fields = {entry.alias or name: entry for name, entry in owner.model_fields.items()}
-        if part in fields:
-            owner = next(_models(fields[str(part)].annotation), owner)
-    return [entry.alias or name for name, entry in owner.model_fields.items()]
-
-
-def _models(annotation: Any) -> Iterator[type[BaseModel]]:
-    """Yield the models in an annotation.
-
-    Of ``list[Line]``, ``dict[str, Material]``, ``LimitSpeed | None``.
-    """
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _models(part)

@@ -374,3 +374,16 @@ def test_an_fmu_for_another_machine(tmp_path, foreign):
     text = file_problems(path)
     assert "has no binary for this machine" in text
     assert "it has amiga" in text
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "hint"),
+    [("adaptive", "toll", "control"), ("iteration", "toleranc", "tolerance"), ("", "toll", "")],
+)
+def test_an_unknown_key_is_compared_with_those_of_its_own_table(table, key, hint):
+    """``to`` is a key of a connection's faults, and of no other table."""
+    data = {"name": "x", "components": {}, **({table: {key: 1}} if table else {key: 1})}
+    with pytest.raises(InputRefused) as refused:
+        system_from(data)
+    (said,) = [str(p) for p in refused.value.problems if key in str(p)]
+    assert (f"did you mean {hint}" in said) if hint else ("did you mean to" not in said)

@@ -31,10 +31,7 @@ def tables_of(facts: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
     key : str
         Its name.
     """
-    found = facts.get(key)
-    if not isinstance(found, Sequence) or isinstance(found, str):
-        return []
-    return [dict(entry) for entry in found if isinstance(entry, Mapping)]
+    return [dict(entry) for entry in _list_of(facts, key) if isinstance(entry, Mapping)]
 
 
 def texts_of(facts: Mapping[str, Any], key: str) -> list[str]:
@@ -47,10 +44,13 @@ def texts_of(facts: Mapping[str, Any], key: str) -> list[str]:
     key : str
         Its name.
     """
+    return [entry for entry in _list_of(facts, key) if isinstance(entry, str)]
+
+
+def _list_of(facts: Mapping[str, Any], key: str) -> Sequence[Any]:
+    """Return a list, empty where there is none."""
     found = facts.get(key)
-    if not isinstance(found, Sequence) or isinstance(found, str):
-        return []
-    return [entry for entry in found if isinstance(entry, str)]
+    return found if isinstance(found, Sequence) and not isinstance(found, str) else []
 
 
 def number_of(facts: Mapping[str, Any], key: str) -> float | None:

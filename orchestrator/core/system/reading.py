@@ -8,19 +8,10 @@ from pydantic import ValidationError
 
 from ..errors import InputRefused, Problem
 from ..form_faults import UNKNOWN_KEY, sentences
+from ..form_keys import known_keys
 from ..input_text import read_text, toml_content
-from .adaptivity import Adaptive
-from .iteration import IteratedConnection, Iteration
 from .names import nearest
-from .parts import ComponentSpec, Connection, EnergyAlarm, PowerBond, SharedValue
-from .scenario import ConnectionFault, Scenario, ValueSet
 from .system import SystemSpec
-
-_MODELS = (
-    *(ComponentSpec, Connection, SharedValue, PowerBond, EnergyAlarm, SystemSpec),
-    *(Scenario, ValueSet, ConnectionFault, Adaptive, Iteration, IteratedConnection),
-)
-_KEYS = sorted({field.alias or key for m in _MODELS for key, field in m.model_fields.items()})
 
 
 def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
@@ -75,7 +66,9 @@ def _sound(key: str, value: Any, faulty: Collection[tuple[Any, ...]]) -> Any:
 
 
 def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem:
-    hints = [nearest(str(key[-1]), _KEYS)] if UNKNOWN_KEY in texts else []
+    hints = (
+        [nearest(str(key[-1]), known_keys(SystemSpec, key[:-1]))] if UNKNOWN_KEY in texts else []
+    )
     return Problem(f"{where}: {'.'.join(map(str, key))}", "; ".join([" or ".join(texts), *hints]))
 
 
