@@ -32,7 +32,7 @@ from rockshed.runs.kept import KeptRuns
 if __name__ == "__main__":
     tasks = [
         Task(Request("lab-impact", {"sand.seed": n}, options={"stop_time": t}))
-        for n, t in ((1, 0.001), (2, 0.9), (3, 0.9), (4, 0.9))
+        for n, t in ((1, 0.001), (2, 30.0), (3, 30.0), (4, 30.0))
     ]
     run_all(tasks, 2, print, lambda n, all: print("ended", n, flush=True), KeptRuns(Path(sys.argv[1])))
 """

@@ -13,8 +13,8 @@ pytestmark = pytest.mark.slow
 SLOPE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 STUDY = "study lab-impact --vary rock.velocity0.y=-4,-6,-8 --vary sand.modulus=2e6,4e6"
 COMMANDS = {
-    "study": (f"{STUDY} --stop-time 0.003", "runs.csv", "runs: "),
-    "rockfall": (f"rockfall {SLOPE} --trials 40000", "envelopes.csv", "trials: "),
+    "study": (f"{STUDY} --stop-time 0.1", "runs.csv", "runs: "),
+    "rockfall": (f"rockfall {SLOPE} --trials 400000", "envelopes.csv", "trials: "),
 }
 """Command, a file of its results, and the beginning of the lines that tell how far it is."""
 

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 from rockshed.analyses.pile.pictures import bearing
 from rockshed.commands.app import app
 from rockshed.commands.results_place import results_folder
+from rockshed.core.results.reading import read_run
 from rockshed.core.results.run_folder import RunFolder, running_folder
 from rockshed.files import naming
 from rockshed.runs.projects import TEMPLATES
@@ -64,7 +65,9 @@ def test_ctrl_c_right_after_the_start_ends_in_words(tmp_path, after):
     begun = "rockshed" in told and "Python runtime state" not in told
     assert not (begun and "Traceback" in told), told
     assert process.returncode in (1, 130, -signal.SIGINT)
-    assert list(tmp_path.iterdir()) == []
+    # a fast machine has begun to compute by then
+    left = list(tmp_path.glob("results/*"))
+    assert [read_run(path).status for path in left] in ([], ["interrupted"])
 
 
 def test_a_run_that_was_killed_before_its_first_row_is_called_that(tmp_path, monkeypatch):

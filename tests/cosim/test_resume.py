@@ -373,7 +373,7 @@ from tests.cosim import test_resume
 
 one, sources = test_resume.system()
 step = sources["b"].step
-sources["b"].step = lambda v, t, h: (time.sleep(0.02), step(v, t, h))[1]
+sources["b"].step = lambda v, t, h: (time.sleep(0.05), step(v, t, h))[1]
 test_resume.simulate(one, test_resume.Path(sys.argv[1]), sources=sources, checkpoint_every=0.1)
 """
 

@@ -82,11 +82,11 @@ def test_a_run_of_a_study_has_the_numbers_of_a_run_by_itself(alone):
 
 @pytest.mark.slow
 def test_a_study_whose_worker_is_killed_loses_nothing(tmp_path):
-    process = started(tmp_path, 0.008)
+    process = started(tmp_path, 0.1)
     assert after_a_run(process)
     os.kill(workers_of(process)[0].pid, signal.SIGKILL)
     assert process.wait(timeout=300) == 0
-    rockshed.study("lab-impact", VARY, options={"stop_time": 0.008}, folder=tmp_path / "whole")
+    rockshed.study("lab-impact", VARY, options={"stop_time": 0.1}, folder=tmp_path / "whole")
     assert table(tmp_path / "study") == table(tmp_path / "whole")
 
 
