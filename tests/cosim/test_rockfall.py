@@ -236,8 +236,7 @@ def test_ctrl_c_leaves_trials_to_go_on_from_and_nothing_else(tmp_path):
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )  # tests in the background ignore it
+    )
     assert run.stderr is not None
     assert any("trials: " in line for line in run.stderr)
     run.send_signal(signal.SIGINT)

@@ -406,7 +406,6 @@ def test_ctrl_c_in_a_terminal_ends_all_processes_and_leaves_what_has_ended(tmp_p
         stdout=subprocess.DEVNULL,
         text=True,
         start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     assert run.stderr is not None
     assert any("trials: " in line for line in run.stderr)

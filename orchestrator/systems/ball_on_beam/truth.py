@@ -1,7 +1,7 @@
 """A mass with a contact spring on a simply supported beam, by the modes of both together."""
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg.lapack import dgejsv
 
 from rockshed.components.common.units import cm2, cm4, kgf
 
@@ -34,12 +34,24 @@ def _motion(times: NumberArray) -> tuple[NumberArray, NumberArray]:
     number = np.arange(1, 2 * MODES, 2)
     line_mass = DENSITY * AREA
     masses = np.append(np.full(MODES, 0.5 * line_mass * SPAN), MASS)
-    own = (number * np.pi / SPAN) ** 4 * MODULUS * SECOND_MOMENT / line_mass * masses[:-1]
+    alone = (number * np.pi / SPAN) ** 2 * np.sqrt(MODULUS * SECOND_MOMENT / line_mass)
     press = np.append(np.where(number % 4 == 1, 1.0, -1.0), -1.0)
-    squared, shapes = eigh(
-        np.diag(np.append(own, 0.0)) + STIFFNESS * np.outer(press, press), np.diag(masses)
-    )
-    rate = np.sqrt(squared)
+    rate, shapes = _modes(np.append(alone, 0.0), np.sqrt(STIFFNESS / masses) * press)
+    shapes /= np.sqrt(masses)[:, None]
     start = np.append(np.zeros(MODES), SPEED)
     swing = shapes @ ((shapes.T @ (masses * start) / rate)[:, None] * np.sin(rate[:, None] * times))
     return press[:-1] @ swing[:-1], -STIFFNESS * (press @ swing)
+
+
+def _modes(rates: NumberArray, press: NumberArray) -> tuple[NumberArray, NumberArray]:
+    """Return rates and shapes of diag(rates^2) + press press', to all digits of the slow ones too.
+
+    They are singular values and vectors of the root of this matrix, by Jacobi's method (LAPACK's
+    dgejsv). The eigenvalues of the matrix itself span eight powers of ten, and the slow modes
+    lost as many digits: other ones on each processor.
+    """
+    root = np.vstack([np.diag(rates), press])
+    values, _, shapes, scale, _, info = dgejsv(root, joba=0, jobu=3, jobv=0)
+    if info != 0:
+        raise ArithmeticError(f"LAPACK's dgejsv found no modes of ball and beam (info = {info})")
+    return values * scale[0] / scale[1], shapes
