@@ -89,18 +89,23 @@ def budget(rows: Iterable[MasterRun], system: str) -> float | None:
 def error_at(rows: Sequence[MasterRun], cost: float | None) -> float | None:
     """Return the error at a processor time (s), on lines between the logarithms of the runs.
 
-    Where all runs cost less, that of the most expensive one, which more time would make smaller;
-    None where all cost more.
+    A run that costs less than one with a longer step counts as that one: such short times are noise.
+    Where all runs cost less, the error of the one with the shortest step, which more time would make
+    smaller; None where all cost more.
     """
-    points = sorted(
+    points = [
         (math.log(row.cost), math.log(row.error))
-        for row in rows
+        for row in sorted(rows, key=lambda row: -row.step)
         if row.cost and row.error and row.error < 1.0
-    )
-    if cost is None or len(points) < 2 or math.log(cost) < points[0][0]:
+    ]
+    if cost is None or len(points) < 2:
         return None
-    costs, errors = zip(*points, strict=True)
-    return math.exp(float(np.interp(math.log(cost), costs, errors)))
+    costs, errors = (np.array(each) for each in zip(*points, strict=True))
+    costs = np.maximum.accumulate(costs)
+    if math.log(cost) < costs[0]:
+        return None
+    last = np.append(costs[1:] > costs[:-1], True)  # of runs that count as equally expensive
+    return math.exp(float(np.interp(math.log(cost), costs[last], errors[last])))
 
 
 def overview(measured: SuiteRuns) -> Table:

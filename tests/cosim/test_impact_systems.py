@@ -175,6 +175,9 @@ def test_errors_at_equal_cost_lie_between_runs_and_beyond_them_where_that_is_on_
     assert error_at(rows, 8.0) == pytest.approx(0.01)  # more time would make it smaller
     assert error_at(rows, 0.5) is None
     assert error_at(rows, None) is None
+    noisy = measurements((0.16, 0.04, 0.01), (4.2, 2.0, 4.0))
+    assert error_at(noisy, 8.0) == pytest.approx(0.01)  # of the shortest step, not the dearest run
+    assert error_at(measurements((0.16, 0.04, 0.01), (3.0, 2.0, 6.0)), 3.0) == pytest.approx(0.04)
     assert budget(rows, "terminals") is None  # none of these steps is the stated one
 
 
