@@ -55,8 +55,8 @@ def command(
     """Measure speed and price of the coupling.
 
     Everything measured is a ratio within interleaved rounds. Takes some minutes. `systems` runs
-    the impact systems in every master that is installed, and takes about eight minutes on two cores;
-    ended before, the same command goes on where it was.
+    the impact systems in every master that is installed, and takes about eight minutes on two
+    cores; ended before, the same command goes on where it was.
     """
     with opened(quiet, as_json) as screen:
         wanted = part or list(PARTS)

@@ -89,9 +89,9 @@ def budget(rows: Iterable[MasterRun], system: str) -> float | None:
 def error_at(rows: Sequence[MasterRun], cost: float | None) -> float | None:
     """Return the error at a processor time (s), on lines between the logarithms of the runs.
 
-    A run that costs less than one with a longer step counts as that one: such short times are noise.
-    Where all runs cost less, the error of the one with the shortest step, which more time would make
-    smaller; None where all cost more.
+    A run that costs less than one with a longer step counts as that one: short times are noisy.
+    Where all runs cost less, the error of the one with the shortest step, which more time would
+    make smaller; None where all cost more.
     """
     points = [
         (math.log(row.cost), math.log(row.error))
