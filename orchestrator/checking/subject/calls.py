@@ -4,6 +4,7 @@ A process that ends inside a call leaves the name of the function behind.
 """
 
 import ctypes
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -261,6 +262,46 @@ class Called:
 
     def set_raw(self, kind: str, references: Sequence[int], values: Sequence[Any]) -> None:
         """Set values by their references."""
+        raise NotImplementedError
+
+    # ------------------------------------------------------------------ derivatives
+
+    def derivatives(
+        self,
+        unknowns: Sequence[Declared],
+        knowns: Sequence[Declared],
+        seed: Sequence[float],
+        adjoint: bool = False,
+    ) -> list[float]:
+        """Return partial derivatives times a seed.
+
+        Parameters
+        ----------
+        unknowns, knowns : sequence of Declared
+            Variables that are derived, and by which.
+        seed : sequence of float
+            Weight of each element of the knowns; of an adjoint, of the unknowns.
+        adjoint : bool
+            Whether the derivatives of the weighted unknowns are asked for.
+
+        Returns
+        -------
+        list of float
+            One for each element of the unknowns; of an adjoint, of the knowns. An element that the
+            FMU leaves as it is, is NaN.
+        """
+        total = sum(variable.size for variable in (knowns if adjoint else unknowns))
+        found = as_ctypes(ctypes.c_double, [math.nan] * total)
+        arguments: list[Any] = []
+        for group in (unknowns, knowns):
+            which = as_ctypes(ctypes.c_uint, [variable.reference for variable in group])
+            arguments += (which, len(group))
+        arguments += self._seed_and_result(seed, found, total)
+        self.call(f"Get{'Adjoint' if adjoint else 'Directional'}Derivative", *arguments)
+        return list(found[:total])
+
+    def _seed_and_result(self, seed: Sequence[float], found: Any, total: int) -> tuple[Any, ...]:
+        """Return the last arguments of a call for derivatives."""
         raise NotImplementedError
 
     # ------------------------------------------------------------------ state

@@ -152,3 +152,6 @@ class Called2(Called):
         """Set values by their references."""
         held = as_ctypes(self.types[kind], values)
         self.call(f"Set{kind}", as_ctypes(ctypes.c_uint, references), len(references), held)
+
+    def _seed_and_result(self, seed: Sequence[float], found: Any, total: int) -> tuple[Any, ...]:
+        return as_ctypes(ctypes.c_double, seed), found

@@ -147,3 +147,6 @@ class Called3(Called):
         held = as_ctypes(self.types[kind], values)
         which = as_ctypes(ctypes.c_uint, references)
         self.call(f"Set{kind}", which, len(references), held, len(values))
+
+    def _seed_and_result(self, seed: Sequence[float], found: Any, total: int) -> tuple[Any, ...]:
+        return as_ctypes(ctypes.c_double, seed), len(seed), found, total

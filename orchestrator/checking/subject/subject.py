@@ -3,6 +3,7 @@
 from functools import cached_property
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
@@ -65,6 +66,15 @@ class Subject:
     def can(self) -> Any:
         """Capability flags of the co-simulation."""
         return self.model.coSimulation
+
+    @cached_property
+    def has_directional_derivatives(self) -> bool:
+        """Tell whether directional derivatives are provided; fmpy has no such flag of FMI 3.0."""
+        if self.version == 2:
+            return bool(self.can.providesDirectionalDerivative)
+        element = ElementTree.parse(self.folder / "modelDescription.xml").find("CoSimulation")
+        flag = "" if element is None else element.get("providesDirectionalDerivatives", "")
+        return flag in ("true", "1")
 
     @cached_property
     def variables(self) -> list[Declared]:

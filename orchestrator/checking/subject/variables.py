@@ -35,6 +35,8 @@ class Declared:
         Start values, one for each element.
     lowest, highest : float, optional
         Range.
+    nominal : float
+        Size of usual values; 1 where none is told.
     items : frozenset of int
         Values of an enumeration; empty for anything else.
     place : int
@@ -53,6 +55,7 @@ class Declared:
     start: Numbers | None
     lowest: float | None
     highest: float | None
+    nominal: float
     items: frozenset[int]
     place: int
     is_alias: bool = False
@@ -78,11 +81,12 @@ class Declared:
             return next((item for item in sorted(self.items) if item != value), value)
         by = max(abs(value), 1.0) / 64 if self.is_real else 1
         for tried in (value + by, value - by):
-            if self._allows(tried):
+            if self.allows(tried):
                 return tried
         return value
 
-    def _allows(self, value: float) -> bool:
+    def allows(self, value: float) -> bool:
+        """Tell whether a value lies in the range."""
         least = -math.inf if self.lowest is None else self.lowest
         most = math.inf if self.highest is None else self.highest
         return least <= value <= most
@@ -130,6 +134,7 @@ def _declared(variable: Any, kind: str, place: int, is_alias: bool) -> Declared:
         _start(variable.start, kind, size),
         _limit(variable.min, kin, "min"),
         _limit(variable.max, kin, "max"),
+        abs(_limit(variable.nominal, kin, "nominal") or 1.0),
         frozenset(int(item.value) for item in items),
         place,
         is_alias,
