@@ -2,7 +2,10 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
+from inspect import signature
 from pathlib import Path
+from typing import Any
 
 from ..core.results.reading import undamaged
 from ..runs import continuing
@@ -28,8 +31,8 @@ def resume(
     Its results are those of one that nothing has ended, to the bit. A run begins at the last
     checkpoint but one and has to come by the last one with the same values: an FMU whose
     serialized state does not hold everything is found out. A study goes on from the runs that have
-    ended, and so do a calibration of a sand and a convergence study of meshes; a campaign from the
-    trials. A convergence study of exchange steps begins again.
+    ended, and so do a calibration of a sand and a convergence study; a campaign from the trials,
+    and a calibration of a pile or of a slope from the values that it has computed.
 
     Parameters
     ----------
@@ -133,26 +136,53 @@ def _calibration(asked: Asked, pictures: bool | None) -> _Again:
     from .calibration.measurement import from_data
     from .calibration.run import calibrate
 
-    given = {**asked.arguments, "folder": asked.folder}
-    given["measurement"] = from_data(given["measurement"])
-    given |= {} if pictures is None else {"pictures": pictures}
-    return lambda progress, note: calibrate(**given, progress=progress, note=note)
+    measurement = from_data(asked.arguments["measurement"])
+    again = _with_arguments(calibrate, asked, pictures, measurement=measurement)
+    return lambda progress, note: again(progress=progress, note=note)
 
 
 def _meshes(asked: Asked, pictures: bool | None) -> _Again:
     from .convergence.run import converge
 
-    given = {**asked.arguments, "folder": asked.folder}
-    given |= {} if pictures is None else {"pictures": pictures}
-    return lambda progress, note: converge(**given, progress=progress, note=note)
+    again = _with_arguments(converge, asked, pictures)
+    return lambda progress, note: again(progress=progress, note=note)
 
 
 def _exchange_steps(asked: Asked, pictures: bool | None) -> _Again:
     from .exchange_steps.run import converge_exchange
 
-    given = {**asked.arguments, "folder": asked.folder}
+    again = _with_arguments(converge_exchange, asked, pictures)
+    return lambda progress, note: again(progress=progress, note=note)
+
+
+def _pile_matching(asked: Asked, pictures: bool | None) -> _Again:
+    from .pile_matching.run import match_pile
+
+    again = _with_arguments(match_pile, asked, pictures)
+    return lambda progress, note: again(progress=progress)
+
+
+def _back_analysis(asked: Asked, pictures: bool | None) -> _Again:
+    from .back_analysis.run import calibrate_rockfall
+
+    again = _with_arguments(calibrate_rockfall, asked, pictures)
+    return lambda progress, note: again(progress=progress)
+
+
+def _with_arguments(
+    function: Callable[..., Result], asked: Asked, pictures: bool | None, **replaced: Any
+) -> Callable[..., Result]:
+    """Return a function with the arguments that were asked.
+
+    Raises
+    ------
+    TypeError
+        It does not take them: they are damaged.
+    """
+    given = {**asked.arguments, **replaced, "folder": asked.folder}
     given |= {} if pictures is None else {"pictures": pictures}
-    return lambda progress, note: converge_exchange(**given, progress=progress, note=note)
+    signature(function).bind(**given)
+    return partial(function, **given)
 
 
 _KINDS: Mapping[str, Callable[[Asked, bool | None], _Again]] = {
@@ -161,5 +191,7 @@ _KINDS: Mapping[str, Callable[[Asked, bool | None], _Again]] = {
     "calibration": _calibration,
     "convergence": _meshes,
     "exchange-steps": _exchange_steps,
+    "pile matching": _pile_matching,
+    "rockfall-calibration": _back_analysis,
 }
 """Readers of the arguments of an analysis, by its kind."""

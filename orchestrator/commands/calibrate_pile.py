@@ -8,7 +8,7 @@ import typer
 from ..analyses.pile_matching.run import match_pile
 from ..core.errors import all_causes
 from ..runs.building import is_cold
-from .analysis import options_named, show, stages
+from .analysis import kept_if_ended, options_named, show, stages
 from .options import Json, NoFigures, Quiet
 from .results_place import look_at_folder, results_folder
 from .screen import COLD_START, opened
@@ -54,6 +54,7 @@ def command(
         if is_cold(["PileRod"]):
             screen.note(COLD_START)
         pictures = not no_figures
-        with options_named(("folder",)), stages(screen) as progress:
+        kept = kept_if_ended(screen, folder)
+        with kept, options_named(("folder",)), stages(screen) as progress:
             result = match_pile(measured, site, folder=folder, pictures=pictures, progress=progress)
         show(screen, result)

@@ -14,7 +14,7 @@ from ..core.system.values import finite_number
 from ..input_files.csv_table import read_csv
 from ..runs.building import is_cold
 from ..sites.source import site_source
-from .analysis import options_named, show, stages
+from .analysis import kept_if_ended, options_named, show, stages
 from .options import Json, NoFigures, Quiet
 from .results_place import folder_of_site, look_at_folder
 from .screen import COLD_START, opened
@@ -81,7 +81,8 @@ def command(
             folder = output_dir or folder_of_site(site, "rockfall-calibration", screen)
         if is_cold(["SlopeRockfall"]):
             screen.note(COLD_START)
-        with options_named(_OPTIONS), stages(screen) as progress:
+        kept = kept_if_ended(screen, folder)
+        with kept, options_named(_OPTIONS), stages(screen) as progress:
             result = calibrate_rockfall(
                 site,
                 endpoints,

@@ -358,12 +358,9 @@ def run_here(task: Task, note: Note = silent, kept: KeptRuns | None = None) -> O
 
 
 def _keep(kept: KeptRuns | None, order: _Order, outcome: Outcome, note: Note) -> None:
-    """Keep the outcome of a run that is complete; say so if that cannot be done."""
+    """Keep the outcome of a run that is complete."""
     if kept and outcome.status == COMPLETE:
-        try:
-            kept.keep(order.system, order.allow_unstable, outcome, order.about)
-        except OSError as error:
-            note(f"runs that have ended cannot be kept in {kept.folder}: {error.strerror}")
+        kept.keep_or_tell(order.system, order.allow_unstable, outcome, note, order.about)
 
 
 def _once(note: Note) -> Note:

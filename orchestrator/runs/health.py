@@ -186,7 +186,7 @@ def leftover_table(results: Path) -> Table:
     analyses = begun(results)
     if analyses:
         how = "`rockshed resume` goes on from it; or remove it"
-        table.add("studies and campaigns", str(len(analyses)), str(analyses[0]), how)
+        table.add("analyses that have not ended", str(len(analyses)), str(analyses[0]), how)
     folders = [folder for folder, _ in left_behind()]
     if folders:
         how = "with the next run, or a cleaning"

@@ -11,7 +11,7 @@ import math
 import re
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import lru_cache
@@ -103,6 +103,20 @@ class KeptRuns:
         if file is not None:
             self.folder.mkdir(parents=True, exist_ok=True)
             _write(file, outcome)
+
+    def keep_or_tell(
+        self,
+        system: SystemSpec,
+        allow_unstable: bool,
+        outcome: Outcome,
+        note: Callable[[str], None],
+        about: object = None,
+    ) -> None:
+        """Keep the outcome of a run of this system; say so if that cannot be done."""
+        try:
+            self.keep(system, allow_unstable, outcome, about)
+        except OSError as error:
+            note(f"runs that have ended cannot be kept in {self.folder}: {error.strerror}")
 
     def clear(self) -> None:
         """Remove all outcomes, and the folder if it holds nothing else."""

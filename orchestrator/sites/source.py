@@ -35,6 +35,10 @@ class SiteSource:
         """Folder from which the relative paths in the site count."""
         return self.file.parent if self.file else Path()
 
+    def plain(self) -> Any:
+        """Return the site as plain data that mean the same in any folder: its file, or content."""
+        return str(self.file.absolute()) if self.file else self.content
+
     @property
     def name(self) -> str:
         """Name of the site: its own, or that of its file."""

@@ -40,9 +40,9 @@ if __name__ == "__main__":
 _CAMPAIGN = """
 import sys
 import rockshed
-from rockshed.campaigns import kept
+from rockshed import kept_parts
 
-kept.INTERVAL = 0.01
+kept_parts.INTERVAL = 0.01
 if __name__ == "__main__":
     rockshed.rockfall("slope.toml", trials=60_000, workers=2, folder=sys.argv[1],
                       scheduler=sys.argv[2] if sys.argv[2:] else None,

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 import rockshed
 from rockshed.analyses.calibration.measurement import as_data, from_data, of_stiffness
 from rockshed.analyses.convergence import run as convergence
+from rockshed.analyses.exchange_steps import run as exchange_steps
 from rockshed.commands.app import app
 from rockshed.papers import reproduction
 from rockshed.runs.kept import FINISHED
@@ -142,6 +143,36 @@ def test_a_reproduction_that_was_ended_goes_on_from_what_it_was_asked(tmp_path, 
     whole = reproduction.reproduce(asked[0], tmp_path / "whole", *asked[2:])
     found = json.loads((tmp_path / "out" / "reproduction.json").read_text(encoding="utf-8"))
     assert of_result(found) == of_result(json.loads(json.dumps(whole.content)))
+    assert not (tmp_path / "out" / FINISHED).exists()
+
+
+def test_a_study_of_exchange_steps_that_was_ended_runs_only_the_steps_that_are_missing(
+    tmp_path, monkeypatch
+):
+    asked = {"levels": 4, "options": {"stop_time": 0.0005}, "watch": ["sand.rock.force.y"]}
+    whole = rockshed.converge_exchange("lab-impact", **asked, folder=tmp_path / "whole")
+    simulate, steps = exchange_steps.simulate, []
+
+    def until_the_third(system):
+        steps.append(system.spec.exchange_step)
+        return simulate(system) if len(steps) < 3 else interrupted()
+
+    with monkeypatch.context() as patched:
+        patched.setattr(exchange_steps, "simulate", until_the_third)
+        with pytest.raises(KeyboardInterrupt):
+            rockshed.converge_exchange("lab-impact", **asked, folder=tmp_path / "out")
+    again = []
+    monkeypatch.setattr(exchange_steps, "simulate", lambda s: again.append(s) or simulate(s))
+    found = rockshed.resume(tmp_path / "out")
+    assert [system.spec.exchange_step for system in again] == [
+        level.step for level in whole.levels[2:]
+    ]
+    assert result_in(tmp_path / "out", "exchange-steps") == result_in(
+        tmp_path / "whole", "exchange-steps"
+    )
+    assert [level.curves["sand.rock.force.y"].tolist() for level in found.levels] == [
+        level.curves["sand.rock.force.y"].tolist() for level in whole.levels
+    ]
     assert not (tmp_path / "out" / FINISHED).exists()
 
 

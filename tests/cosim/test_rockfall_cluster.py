@@ -212,7 +212,7 @@ def test_a_campaign_without_room_for_kept_trials_keeps_none_and_goes_on(
 
     savez = np.savez
     monkeypatch.setattr(np, "savez", full)
-    monkeypatch.setattr("rockshed.campaigns.kept.INTERVAL", 0.0)
+    monkeypatch.setattr("rockshed.kept_parts.INTERVAL", 0.0)
     with threads(2, kept) as executor:
         assert_same(executor.run(made, lambda count, total: None), records)
     assert len(written) == 2

@@ -11,6 +11,7 @@ from rockshed.components.slope_rockfall.records import OUTCOME, RESTED
 from ...campaigns.campaign import Campaign, compute
 from ...sites.rockfall.preparation import PreparedSlope
 from ..frame import FloatArray
+from ..kept_values import KeptValues
 from .inferred import Inferred
 from .parameters import GroundOfValues
 
@@ -65,7 +66,7 @@ class Forecast:
 
 
 def forecast_of(
-    slope: PreparedSlope, campaign: Campaign, inferred: Inferred, threads: int
+    slope: PreparedSlope, campaign: Campaign, inferred: Inferred, threads: int, kept: KeptValues
 ) -> Forecast:
     """Compute a slope with samples of the posterior.
 
@@ -79,6 +80,8 @@ def forecast_of(
         Samples of the parameters.
     threads : int
         On which samples are computed.
+    kept : KeptValues
+        End points that have been computed before, to which others are added.
 
     Returns
     -------
@@ -88,15 +91,16 @@ def forecast_of(
     count = len(inferred.values)
     numbers = np.unique(np.linspace(0, count - 1, DRAWS).astype(int))
 
-    def ends(number: int) -> FloatArray:
-        tried = ground.with_values(inferred.values[number])
+    def ends(values: FloatArray) -> FloatArray:
+        tried = ground.with_values(values)
         if tried is None:
             return np.full(inferred.trials, np.nan)
         outcomes = compute(tried, 0, inferred.trials).outcomes
         rested = outcomes[:, OUTCOME.end] == RESTED
         return np.where(rested, outcomes[:, OUTCOME.x], np.inf)
 
+    remembered = kept.of(ends, "ends", ground.about, inferred.trials)
     with ThreadPoolExecutor(threads) as pool:
-        rows = np.array(list(pool.map(ends, numbers)))
+        rows = np.array(list(pool.map(remembered, inferred.values[numbers])))
     good = ~np.isnan(rows).any(axis=1)
     return Forecast(slope.name, numbers[good], rows[good])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rockshed.components.catalogue import component
+from rockshed.components.common.cache import source_stamp
 from rockshed.components.common.component import OK, value_problems
 
 from ...campaigns.campaign import Campaign
@@ -176,6 +177,11 @@ class GroundOfValues:
         self.campaign = campaign
         self._component = slope.instance.component
         self._places = [self._place(slope, name) for name in names]
+
+    @property
+    def about(self) -> tuple[object, ...]:
+        """Everything that a campaign follows from besides the values."""
+        return source_stamp(self._component.folder), self.campaign, self._places
 
     def _place(self, slope: PreparedSlope, name: str) -> Any:
         """Return the places in the buffer of the component that a parameter sets."""

@@ -2,10 +2,11 @@
 
 import time
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,9 @@ from ...runs.executors import number_of_workers
 from ...runs.first_compilation import tell_first_compilation
 from ...sites.rockfall.preparation import PreparedSlope, prepare
 from ...sites.source import SiteLike
+from ..asked import finished_trials, remembering
 from ..frame import FloatArray, StageProgress, counter, no_progress
+from ..kept_values import KeptValues
 from .endpoints import Observed, read_endpoints
 from .forecast import forecast_of
 from .inferred import Inferred
@@ -79,7 +82,8 @@ def calibrate_rockfall(
     workers : int, optional
         Threads, by default one for each core. The result does not depend on it.
     folder : path, optional
-        Where the results are saved; it appears as a whole or not at all.
+        Where the results are saved; it appears as a whole or not at all. What has been computed is
+        kept beside it until all has: a calibration that was killed or interrupted goes on.
     pictures : bool
         Whether figures are drawn and saved too.
     progress : callable, optional
@@ -112,31 +116,80 @@ def calibrate_rockfall(
     >>> list(found.parameters)
     ['soil.roughness.mean']
     """
-    show = progress or no_progress
+    work = _checked(site, Path(endpoints), fit, forecast, scatter, (trials, steps, seed))
+    asked = {
+        "site": work.slope.source.plain(),
+        "endpoints": Path(endpoints).absolute(),
+        "fit": fit,
+        "forecast": work.other[0].source.plain() if work.other else None,
+        "scatter": scatter,
+        "trials": trials,
+        "steps": steps,
+        "seed": seed,
+        "workers": workers,
+        "pictures": pictures,
+    }
+    files = [*work.slope.files, *(work.other[0].files if work.other else []), asked["endpoints"]]
+    place = finished_trials(Path(folder)) if folder else None
+    with (
+        remembering(place, BackAnalysisResult.kind, asked, files),
+        KeptValues(place) as kept,
+        BackAnalysisResult.opened(folder) if folder else nullcontext() as inside,
+    ):
+        result = _carried_out(work, number_of_workers(workers), kept, progress or no_progress)
+        if inside is not None:
+            result.write(inside, pictures, progress or no_progress)
+    result.folder = Path(folder) if folder else None
+    return result
+
+
+class _BackAnalysis(NamedTuple):
+    """A back-analysis to be carried out.
+
+    ``effort`` has the trials of each evaluation, the steps of each walker and the sampler's seed;
+    ``other`` the slope of the forecast.
+    """
+
+    slope: PreparedSlope
+    campaign: Campaign
+    observed: list[Observed]
+    parameters: list[Parameter]
+    other: tuple[PreparedSlope, Campaign] | None
+    effort: tuple[int, int, int]
+
+
+def _checked(
+    site: SiteLike,
+    endpoints: Path,
+    fit: Mapping[str, tuple[float, float]] | None,
+    forecast: SiteLike | None,
+    scatter: float,
+    effort: tuple[int, int, int],
+) -> _BackAnalysis:
+    """Read sites and file; everything that is wrong with them or the numbers is refused at once."""
+    trials, steps, _ = effort
     other_look = None if forecast is None else partial(prepare, forecast, trials)
-    with all_causes(partial(prepare, site, trials), partial(read_csv, Path(endpoints)), other_look):
+    with all_causes(partial(prepare, site, trials), partial(read_csv, endpoints), other_look):
         _check_numbers({"trials": (trials, 50), "steps": (steps, FEWEST_STEPS)}, scatter)
         slope = prepare(site, trials)
         campaign = _bare(campaign_of(slope))
-        observed = read_endpoints(Path(endpoints), campaign, scatter)
+        observed = read_endpoints(endpoints, campaign, scatter)
         parameters = given_parameters(fit, slope) if fit else default_parameters(slope)
         other = _other(forecast, slope, trials)
-    with ExitStack() as opened:
-        place = opened.enter_context(BackAnalysisResult.opened(folder)) if folder else None
-        tell_first_compilation([component("SlopeRockfall")])
-        began = time.perf_counter()
-        threads = number_of_workers(workers)
-        inferred = _inferred(
-            slope, campaign, observed, parameters, (trials, steps, seed, threads), show
-        )
-        fitted = forecast_of(slope, campaign, inferred, threads)
-        foreseen = forecast_of(*other, inferred, threads) if other else None
-        wall_time = time.perf_counter() - began
-        result = BackAnalysisResult(slope, inferred, fitted, foreseen, wall_time)
-        if place is not None:
-            result.write(place, pictures, show)
-    result.folder = Path(folder) if folder else None
-    return result
+    return _BackAnalysis(slope, campaign, observed, parameters, other, effort)
+
+
+def _carried_out(
+    work: _BackAnalysis, threads: int, kept: KeptValues, show: StageProgress
+) -> BackAnalysisResult:
+    """Sample the posterior, and compute the slopes with it."""
+    tell_first_compilation([component("SlopeRockfall")])
+    began = time.perf_counter()
+    inferred = _inferred(work, threads, kept, show)
+    fitted = forecast_of(work.slope, work.campaign, inferred, threads, kept)
+    foreseen = forecast_of(*work.other, inferred, threads, kept) if work.other else None
+    wall_time = time.perf_counter() - began
+    return BackAnalysisResult(work.slope, inferred, fitted, foreseen, wall_time)
 
 
 def _check_numbers(least: Mapping[str, tuple[int, int]], scatter: float) -> None:
@@ -173,17 +226,12 @@ def _other(
     return other, _bare(campaign_of(other))
 
 
-def _inferred(
-    slope: PreparedSlope,
-    campaign: Campaign,
-    observed: list[Observed],
-    parameters: list[Parameter],
-    effort: tuple[int, int, int, int],
-    show: StageProgress,
-) -> Inferred:
+def _inferred(work: _BackAnalysis, threads: int, kept: KeptValues, show: StageProgress) -> Inferred:
     """Sample the posterior of the parameters."""
-    trials, steps, seed, threads = effort
-    ground = GroundOfValues(slope, campaign, [parameter.name for parameter in parameters])
+    trials, steps, seed = work.effort
+    parameters, observed = work.parameters, work.observed
+    names = [parameter.name for parameter in parameters]
+    ground = GroundOfValues(work.slope, work.campaign, names)
     likelihood = Likelihood(observed, trials)
     count = sum(len(entry.values) for entry in observed)
 
@@ -191,7 +239,8 @@ def _inferred(
         tried = ground.with_values(values_at(parameters, places))
         return np.full(count, _UNLIKELY) if tried is None else likelihood.pointwise(tried)
 
+    remembered = kept.of(pointwise, "likelihood", ground.about, likelihood, parameters)
     walkers = max(16, 4 * len(parameters))
     progress = counter(show, "steps of the sampler")
-    found = sample(pointwise, len(parameters), walkers, steps, seed, threads, progress)
+    found = sample(remembered, len(parameters), walkers, steps, seed, threads, progress)
     return Inferred(parameters, observed, found, seed, trials)

@@ -13,6 +13,7 @@ from ...core.results.metric import identifier
 from ...metrics import names
 from ...metrics.energy import largest
 from ...runs.batch import metrics_of
+from ...runs.outcome import Outcome
 from ...runs.run import Run
 from ..frame import FloatArray
 from ..study.headline import FIRST, MOST_OTHERS, UTILISATION, is_main
@@ -65,37 +66,62 @@ class Level:
     warnings: tuple[str, ...] = ()
 
 
-def level_of(run: Run, steps: Mapping[str, float], watch: Sequence[str], wall_time: float) -> Level:
+def outcome_of(run: Run, watch: Sequence[str], wall_time: float) -> Outcome:
     """Return what is kept of a run.
 
     Parameters
     ----------
     run : Run
         Complete.
-    steps : mapping of str to float
-        Its exchange step under ``""``, and the steps (s) of components that have their own.
     watch : sequence of str
         Recorded variables.
     wall_time : float
         Of the run (s).
     """
     numbers = metrics_of(run)
-    units = {metric.name: metric.unit for metric in run.metrics.values()}
-    values = {
-        identifier(name): (name, value, units.get(name, "1")) for name, value in numbers.items()
+    facts = {
+        "length": float(run.time[-1] - run.time[0]),
+        "residual": numbers.get(names.RESIDUAL),
+        "coupling": _made_by_couplings(run),
+        "curve_units": {name: run[name].unit for name in watch},
     }
-    length = run.time[-1] - run.time[0]
+    return Outcome(
+        "",  # one of its kind in its file
+        run.status,
+        metrics=numbers,
+        series={name: np.array(run.series[name], dtype=np.float64) for name in watch},
+        options=facts,
+        wall_time=wall_time,
+        units={metric.name: metric.unit for metric in run.metrics.values()},
+        warnings=tuple(run.warnings),
+    )
+
+
+def level_of(outcome: Outcome, steps: Mapping[str, float]) -> Level:
+    """Return the level of the ladder that a run is.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        From :func:`outcome_of`.
+    steps : mapping of str to float
+        Its exchange step under ``""``, and the steps (s) of components that have their own.
+    """
+    values = {
+        identifier(name): (name, value, outcome.units.get(name, "1"))
+        for name, value in outcome.metrics.items()
+    }
     return Level(
         steps[""],
         {name: step for name, step in steps.items() if name},
-        round(float(length) / steps[""]),
-        numbers.get(names.RESIDUAL),
-        _made_by_couplings(run),
+        round(outcome.options["length"] / steps[""]),
+        outcome.options["residual"],
+        outcome.options["coupling"],
         values,
-        {name: np.array(run.series[name], dtype=np.float64) for name in watch},
-        {name: run[name].unit for name in watch},
-        wall_time,
-        tuple(run.warnings),
+        outcome.series,
+        outcome.options["curve_units"],
+        outcome.wall_time,
+        outcome.warnings,
     )
 
 

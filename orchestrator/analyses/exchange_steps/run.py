@@ -10,21 +10,25 @@ from ...core.errors import InputRefused, Problem, RunFailed
 from ...core.run import starting_problems
 from ...core.system.fields import Value
 from ...core.system.names import nearest
+from ...runs.batch import COMPLETE
 from ...runs.building import Note, silent
 from ...runs.job import recorded_names
-from ...runs.kept import FINISHED
+from ...runs.kept import FINISHED, KeptRuns
+from ...runs.outcome import Outcome
 from ...runs.request import Request, plain
 from ...runs.simulation import simulate
 from ...runs.system import System
 from ..asked import remembering
 from ..frame import StageProgress, counter, no_progress
-from .figures import Level, figures, level_of, told_first
+from .figures import Level, figures, level_of, outcome_of, told_first
 from .ladder import ladder
 from .orders import FEWEST
 from .result import ExchangeStepsResult
 
 MOST_LEVELS = 12
 """Steps that are taken at most; the last one takes as many exchanges as all others together."""
+_KEPT = "exchange steps"
+"""Tells outcomes that are kept here from those of other analyses."""
 ExchangeTarget = str | Path | Mapping[str, Any] | System
 """A case, a project, system file or SSP, the content of a project, or a system."""
 
@@ -70,7 +74,9 @@ def converge_exchange(
     coupling : str, optional
         Scheme of exchange of a case, by default its first.
     folder : path, optional
-        Where the results are saved; other files stay there.
+        Where the results are saved; other files stay there. Runs that have ended are kept there
+        until all have, if their components are FMU files: a study that was killed or interrupted
+        goes on.
     pictures : bool
         Whether the figure is drawn and saved too.
     progress : callable, optional
@@ -117,9 +123,13 @@ def converge_exchange(
         problems = _problems(levels, accuracy)
         found = _system(target, values or {}, options or {}, coupling, problems, note)
         found[0].refuse_empty()
-        made = _carried_out(found, (levels, accuracy, watch, metrics), problems, progress)
+        kept = KeptRuns(place) if place else None
+        wanted = (levels, accuracy, watch, metrics)
+        made = _carried_out(found, wanted, problems, kept, progress or no_progress, note)
         if folder:
             made.save(folder, pictures=pictures, progress=progress or no_progress)
+        if kept is not None:
+            kept.clear()
         return made
 
 
@@ -134,16 +144,17 @@ def _carried_out(
     found: tuple[System, dict[str, Any]],
     wanted: tuple[int, float, Sequence[str], Sequence[str]],
     problems: list[Problem],
-    progress: StageProgress | None,
+    kept: KeptRuns | None,
+    progress: StageProgress,
+    note: Note,
 ) -> ExchangeStepsResult:
     """Run a system, of some origin, with all steps, and find the orders."""
-    show = progress or no_progress
     system, origin = found
     levels, accuracy, watch, metrics = wanted
     watched = tuple(dict.fromkeys(watch))
     steps = ladder(system, levels, watched) if levels >= FEWEST else [system]
     _refuse(steps, watched, problems)
-    runs = list(_levels(steps, watched, show))
+    runs = list(_levels(steps, watched, kept, progress, note))
     _refuse_unknown(metrics, runs)
     names = list(metrics) or ([] if watched else told_first(runs))
     followed = figures(runs, watched, names)
@@ -225,25 +236,38 @@ def _refuse(steps: Sequence[System], watch: Sequence[str], problems: list[Proble
 
 
 def _levels(
-    steps: Sequence[System], watch: Sequence[str], progress: StageProgress
+    steps: Sequence[System],
+    watch: Sequence[str],
+    kept: KeptRuns | None,
+    progress: StageProgress,
+    note: Note,
 ) -> Iterator[Level]:
-    """Carry out the runs, and yield what is kept of each."""
+    """Carry out the runs that are not kept, and yield the level of each."""
     count = counter(progress, "exchange steps")
     count(0, len(steps))
     for number, step in enumerate(steps, 1):
-        began = time.perf_counter()
-        try:
-            run = simulate(step)
-        except RunFailed as failure:
-            what = str(failure).partition(": ")[2]
-            text = f"{what} (with an exchange step of {step.spec.exchange_step:.6g} s)"
-            raise RunFailed(failure.component, failure.time, text) from None
-        if run.status != "complete":
-            raise KeyboardInterrupt
+        outcome = kept.find("", step.spec, False, _KEPT) if kept else None
+        if outcome is None:
+            outcome = _outcome(step, watch)
+            if kept:
+                kept.keep_or_tell(step.spec, False, outcome, note, _KEPT)
         own = {name: part.step for name, part in step.spec.components.items() if part.step}
-        lengths = {"": step.spec.exchange_step, **own}
-        yield level_of(run, lengths, watch, time.perf_counter() - began)
+        yield level_of(outcome, {"": step.spec.exchange_step, **own})
         count(number, len(steps))
+
+
+def _outcome(step: System, watch: Sequence[str]) -> Outcome:
+    """Carry out the run of one step."""
+    began = time.perf_counter()
+    try:
+        run = simulate(step)
+    except RunFailed as failure:
+        what = str(failure).partition(": ")[2]
+        text = f"{what} (with an exchange step of {step.spec.exchange_step:.6g} s)"
+        raise RunFailed(failure.component, failure.time, text) from None
+    if run.status != COMPLETE:
+        raise KeyboardInterrupt
+    return outcome_of(run, watch, time.perf_counter() - began)
 
 
 def _refuse_unknown(metrics: Sequence[str], found: Sequence[Level]) -> None:

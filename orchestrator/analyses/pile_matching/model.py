@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rockshed.components.catalogue import component
+from rockshed.components.common.cache import source_stamp
+
 from ...sites.pile.preparation import PreparedPile
 from ..frame import FloatArray
 from .measured import MeasuredBlow
@@ -62,6 +65,12 @@ class WaveModel:
         self.down = 0.5 * (force + self.impedance * velocity)
         self.up = 0.5 * (force - self.impedance * velocity)
         self.sought = list(_sought(self.pile))
+
+    @property
+    def about(self) -> tuple[object, ...]:
+        """Everything that a wave upwards follows from besides the soil's factors."""
+        stamp = source_stamp(component("PileRod").folder)
+        return stamp, self.pile.site.model_dump(mode="json"), self.step, self.down
 
     def wave(self, factors: Sequence[float] | FloatArray) -> FloatArray:
         """Return the force of the wave upwards (N) with the soil scaled.

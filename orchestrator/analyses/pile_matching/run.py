@@ -1,5 +1,6 @@
 """Carry out the matching of a measured blow."""
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,9 @@ import numpy as np
 from ...core.errors import InputRefused, Problem
 from ...sites.pile.preparation import PreparedPile, prepare
 from ...sites.source import SiteLike
-from ..frame import FloatArray, StageProgress, no_progress
+from ..asked import finished_trials, remembering
+from ..frame import FloatArray, StageProgress, counter, no_progress
+from ..kept_values import Function, KeptValues
 from .measured import MeasuredBlow, read_blow
 from .model import MOST_FACTOR, WaveModel
 from .result import PileMatch, SoilEstimate
@@ -38,7 +41,8 @@ def match_pile(
     site : path, mapping or PileSite
         The pile below the gauge, with layers ``shaft`` and ``toe``: where the search begins.
     folder : path, optional
-        Where the results are saved; it appears as a whole or not at all.
+        Where the results are saved; it appears as a whole or not at all. What has been computed is
+        kept beside it until all has: a matching that was killed or interrupted goes on.
     pictures : bool
         Whether figures are drawn and saved too.
     progress : callable, optional
@@ -79,16 +83,35 @@ def match_pile(
     """
     show = progress or no_progress
     blow, pile = _read(Path(measured), site)
-    model = WaveModel(pile, blow)
-    results = []
-    for number, start in enumerate(STARTS, 1):
-        results.append(_fit(model, start))
-        show("wave matching, starts", number, len(STARTS))
-    best = min(results, key=lambda fit: float(fit.cost))
-    match = PileMatch(model, blow, _estimates(model, best), model.wave(np.exp(best.x)))
-    if folder is not None:
-        match.save(folder, pictures=pictures, progress=progress)
+    file = Path(measured).absolute()
+    asked = {"measured": file, "site": pile.source.plain(), "pictures": pictures}
+    files = [file, *([pile.source.file.absolute()] if pile.source.file else [])]
+    place = finished_trials(Path(folder)) if folder else None
+    with (
+        remembering(place, PileMatch.kind, asked, files),
+        KeptValues(place) as kept,
+        PileMatch.opened(folder) if folder else nullcontext() as inside,
+    ):
+        match = _matched(WaveModel(pile, blow), blow, kept, show)
+        if inside is not None:
+            match.write(inside, pictures, show)
+    match.folder = Path(folder) if folder else None
     return match
+
+
+def _matched(
+    model: WaveModel, blow: MeasuredBlow, kept: KeptValues, show: StageProgress
+) -> PileMatch:
+    """Fit the soil from every start, and take the best fit."""
+    wave = kept.of(model.wave, "wave", model.about)
+    count = counter(show, "wave matching, starts")
+    results = []
+    count(0, len(STARTS))
+    for number, start in enumerate(STARTS, 1):
+        results.append(_fit(model, wave, start))
+        count(number, len(STARTS))
+    best = min(results, key=lambda fit: float(fit.cost))
+    return PileMatch(model, blow, _estimates(model, best), wave(np.exp(best.x)))
 
 
 def _read(measured: Path, site: SiteLike) -> tuple[MeasuredBlow, PreparedPile]:
@@ -120,14 +143,14 @@ def _read(measured: Path, site: SiteLike) -> tuple[MeasuredBlow, PreparedPile]:
     return blow, pile
 
 
-def _fit(model: WaveModel, start: float) -> Any:
+def _fit(model: WaveModel, wave: Function, start: float) -> Any:
     """Return the fit of least squares from a factor on the resistances on."""
     from scipy.optimize import least_squares
 
     scale = float(np.abs(model.down).max())
 
     def residuals(logarithms: FloatArray) -> FloatArray:
-        return (model.wave(np.exp(logarithms)) - model.up) / scale
+        return (wave(np.exp(logarithms)) - model.up) / scale
 
     begin = np.array([np.log(start) if "resistance" in one.name else 0.0 for one in model.sought])
     bound = np.log(MOST_FACTOR)

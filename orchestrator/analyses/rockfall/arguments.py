@@ -32,11 +32,10 @@ class CampaignArguments:
         slope : PreparedSlope
             Of the site.
         """
-        file = slope.source.file
         held = self.certificates
         return {
             **vars(self),
-            "site": str(file.absolute()) if file else slope.source.content,
+            "site": slope.source.plain(),
             "replay": list(self.replay),
             "certificates": held.as_data() if held else None,
         }

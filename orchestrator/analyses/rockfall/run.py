@@ -137,8 +137,7 @@ def carry_out_campaign(
     paths = _path_count(campaign, asked.trajectories)
     place = finished_trials(folder) if folder else None
     kept = KeptTrials(place) if place else None
-    files = [slope.source.file.absolute()] if slope.source.file else []
-    with remembering(place, RockfallResult.kind, asked.as_data(slope), files):
+    with remembering(place, RockfallResult.kind, asked.as_data(slope), slope.files):
         with RockfallResult.opened(folder) if folder else nullcontext() as inside:
             result = _result(asked, slope, campaign, kept, show)
             result.trajectories = paths

@@ -6,6 +6,7 @@ Everything that is wrong with a site is collected before it is refused.
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,14 @@ class PreparedSlope:
     def name(self) -> str:
         """Name of the site, or of its file."""
         return self.source.name
+
+    @property
+    def files(self) -> list[Path]:
+        """Files that it was read from, absolute: its own, and those of profile and boulders."""
+        rock = self.source.content["rock"]  # in the site, the boulders of its file are in its place
+        boulders = rock.get("file") if isinstance(rock, Mapping) else rock.file
+        named = [self.source.folder / name for name in (self.site.profile.file, boulders) if name]
+        return [file.absolute() for file in (self.source.file, *named) if file]
 
 
 def prepare(site: SiteLike, trials: int | None = None, seed: int | None = None) -> PreparedSlope:
