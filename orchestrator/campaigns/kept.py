@@ -103,7 +103,8 @@ def _fill(records: TrialRecords, first: int, parts: Arrays) -> int:
     """
     number = min(len(parts["outcomes"]), len(records.outcomes) - first)
     for name in _RECORDS:
-        values, target = parts[name], getattr(records, name)
+        values = parts[name]
+        target = getattr(records, name)
         is_alike = values.dtype == target.dtype and values.shape[1:] == target.shape[1:]
         if number < 0 or not is_alike or len(values) != len(parts["outcomes"]):
             raise ValueError("it has records of another kind")
