@@ -28,11 +28,11 @@ from .run_folder import (
     STATES_STREAM,
     SUMMARY,
     Column,
-    batches,
     read_columns,
     running_folder,
     schema,
     streamed_frames,
+    streamed_rows,
 )
 from .series import Series, SeriesTable
 from .shape import check
@@ -294,7 +294,6 @@ def undamaged(path: Path) -> Iterator[None]:
 
 
 def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[np.float64]]:
-    import pyarrow as pa
     import pyarrow.parquet
 
     if (folder / PARQUET).is_file() and not (folder / ROWS_STREAM).is_file():
@@ -302,14 +301,15 @@ def _read_series(folder: Path, columns: Sequence[Column]) -> dict[str, NDArray[n
         # read_table would import more
         with undamaged(path), pyarrow.parquet.ParquetFile(path) as file:
             table = file.read(columns=[column.name for column in columns])
+            series = {column.name: _numbers(table[column.name]) for column in columns}
     else:
         path = folder / ROWS_STREAM
         with undamaged(path):
-            table = pa.Table.from_batches(batches(path), schema(columns))
+            rows = streamed_rows(path, len(columns))
+            series = dict(zip([column.name for column in columns], rows.T.copy(), strict=True))
     with undamaged(path):
-        series = {column.name: _numbers(table[column.name]) for column in columns}
         _refuse_broken_time(series.get("time", np.empty(0)))
-        return series
+    return series
 
 
 def _refuse_broken_time(time: NDArray[np.float64]) -> None:

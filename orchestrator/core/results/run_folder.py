@@ -207,7 +207,9 @@ class RunFolder:
         write_file(self.running / RESERVE, os.urandom(_RESERVED))
         self.write_provenance({"status": "running", **provenance})
         self._write_columns()
-        self._rows = _Stream(self.running / ROWS_STREAM, schema(self.columns))
+        # a row is one value of the stream: hundreds of columns would take their time in each batch
+        row = pa.list_(pa.float64(), len(self.columns))
+        self._rows = _Stream(self.running / ROWS_STREAM, pa.schema([("row", row)]))
         self._states = _Stream(
             self.running / STATES_STREAM,
             pa.schema([("component", pa.string()), ("time", pa.float64()), ("state", pa.binary())]),
@@ -237,7 +239,7 @@ class RunFolder:
             Without the time.
         """
         if self._rows is not None:
-            self._rows.append([times, *np.ascontiguousarray(values.T)])
+            self._rows.append([np.column_stack([times, values])])
 
     def frame(self, component: str, at: float, state: bytes) -> None:
         """Append the serialized state of a component at a time (s)."""
@@ -483,8 +485,7 @@ class _Stream:
     schema : pyarrow.Schema
         Columns of a batch.
     compression : str or None
-        Codec. Rows have none: a batch of a few rows would get no smaller, and each of hundreds of
-        columns would take its time.
+        Codec. Rows have none: a batch of a few rows would get no smaller.
     """
 
     def __init__(self, path: Path, schema: Any, compression: str | None = None) -> None:
@@ -523,13 +524,16 @@ class _Stream:
             os.truncate(self._path, self._whole)
 
 
-def _arrow(values: Sequence[Any], kind: Any) -> Any:
-    """Return numbers, texts or bytes as an Arrow array.
+def _arrow(values: Any, kind: Any) -> Any:
+    """Return rows, numbers, texts or bytes as an Arrow array.
 
     It is made from buffers: ``pyarrow.array`` would import pandas wherever that is installed.
     """
     import pyarrow as pa
 
+    if pa.types.is_fixed_size_list(kind):
+        numbers = _arrow(np.ravel(values), kind.value_type)
+        return pa.FixedSizeListArray.from_arrays(numbers, kind.list_size)
     if pa.types.is_floating(kind):
         numbers = np.ascontiguousarray(values, np.float64)
         return pa.Array.from_buffers(kind, len(numbers), [None, pa.py_buffer(numbers)])
@@ -640,6 +644,41 @@ def batches(path: Path) -> Iterator[Any]:
             return
 
 
+def streamed_rows(path: Path, columns: int) -> NDArray[np.float64]:
+    """Read the rows in the stream of a run, up to where it was cut off.
+
+    Parameters
+    ----------
+    path : Path
+        The stream.
+    columns : int
+        Number of columns, with the time.
+
+    Returns
+    -------
+    array of float, shape (n, columns)
+
+    Raises
+    ------
+    ValueError
+        It holds rows of another length, or none.
+    """
+    import pyarrow as pa
+
+    kind = pa.list_(pa.float64(), columns)
+    parts = []
+    for batch in batches(path):
+        batch.validate(full=True)
+        if batch.schema.types != [kind]:
+            raise ValueError(f"holds {batch.schema.types[0]}, not rows of {columns} columns")
+        rows = batch.column(0)
+        if rows.null_count or rows.values.null_count:
+            raise ValueError("values are missing")
+        # its flatten() would import more
+        parts.append(np.from_dlpack(rows.values).reshape(len(rows), columns))
+    return np.concatenate([np.empty((0, columns)), *parts])
+
+
 def streamed_frames(folder: Path) -> Iterator[tuple[str, float, bytes]]:
     """Read component, time (s) and state of each frame in the stream of a run."""
     for batch in batches(folder / STATES_STREAM):
@@ -651,10 +690,12 @@ def _convert_rows(folder: Path, columns: Sequence[Column]) -> None:
     import pyarrow.csv
     import pyarrow.parquet
 
-    table = pa.Table.from_batches(batches(folder / ROWS_STREAM), schema(columns))
-    table = table.combine_chunks()  # the file does not tell when rows were passed on
+    rows = streamed_rows(folder / ROWS_STREAM, len(columns))
+    table = pa.Table.from_arrays([_arrow(c, pa.float64()) for c in rows.T], schema=schema(columns))
     with naming(folder / PARQUET):
-        pyarrow.parquet.write_table(table, folder / PARQUET, compression="zstd")
+        pyarrow.parquet.write_table(
+            table, folder / PARQUET, compression="zstd", use_dictionary=False
+        )
     with naming(folder / CSV):
         pyarrow.csv.write_csv(table, folder / CSV)
     (folder / ROWS_STREAM).unlink()
