@@ -277,6 +277,16 @@ def test_a_stream_that_was_cut_off_is_read_up_to_the_cut(tmp_path):
     first.__exit__(None, None, None)
 
 
+def test_a_stream_whose_rows_do_not_fit_the_columns_is_refused(tmp_path):
+    first = writing(tmp_path / "run")
+    first.rows(np.array([0.0]), np.array([[1.0]]))
+    with (running_folder(tmp_path / "run") / "columns.csv").open("a") as file:
+        file.write("y,m,of another run\n")
+    with pytest.raises(InputRefused, match="not rows of 3 columns"):
+        read_run(tmp_path / "run")
+    first.__exit__(None, None, None)
+
+
 @pytest.mark.parametrize("value", [0.25, math.nan, math.inf])
 def test_rows_whose_time_goes_back_or_is_none_are_refused(result, value):
     file = result.folder / "timeseries.parquet"
