@@ -44,6 +44,7 @@ CONTENTS = {
         "python",
         "command-line",
         "systems",
+        "system-files",
         "ssp",
         "fmi",
         "scenarios",

@@ -10,7 +10,7 @@ import typer
 from ..analyses.back_analysis.run import calibrate_rockfall
 from ..core.errors import InputRefused, Problem, all_causes
 from ..core.input_text import shown
-from ..core.system.values import finite_number
+from ..core.system.quantities import finite_number
 from ..input_files.csv_table import read_csv
 from ..runs.building import is_cold
 from ..sites.source import site_source

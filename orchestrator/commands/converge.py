@@ -16,7 +16,7 @@ from ..analyses.exchange_steps.run import converge_exchange
 from ..cases.registry import case, is_case
 from ..core.errors import InputRefused, Problem, RunFailed, all_causes
 from ..core.system.fields import Value
-from ..input_files.quantities import in_si
+from ..core.system.quantities import in_si
 from ..runs.chosen import is_project_file
 from ..runs.job import look_at_target
 from ..runs.request import Request

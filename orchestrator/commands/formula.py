@@ -9,9 +9,9 @@ import typer
 from rockshed.components.common.units import deg, kN
 
 from ..core.errors import InputRefused, Problem
+from ..core.system.quantities import in_si
 from ..formulas import RockImpact, estimates, table_of
 from ..formulas.rock_impact import FRICTION_ANGLE, LAME, MODULUS, ROCK_DENSITY, radius_of
-from ..input_files.quantities import in_si
 from .options import Json
 from .screen import opened
 

@@ -6,7 +6,6 @@ from typing import Annotated, Any
 import typer
 
 from ..core.system.clock import seconds_in
-from ..input_files.quantities import in_si
 
 RESULTS = Path("results")
 """Folder of the results that name no other."""
@@ -75,7 +74,7 @@ def _duration(text: str | float) -> float:
     if text.strip().lstrip("+-").lower() in ("nan", "inf", "infinity"):
         raise typer.BadParameter(f"must be a finite number (given: {text})")
     try:
-        return seconds_in(text) if "/" in text else in_si(text, "s")
+        return seconds_in(text)
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
 

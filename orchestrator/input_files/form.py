@@ -37,7 +37,7 @@ Positive = Annotated[
 ]
 NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST, allow_inf_nan=False, strict=True)]
 
-_PLACE = re.compile(r", line (\d+)(?:, column (\d+))?$")
+_PLACE = re.compile(r", line (\d+)(?:, column (\d+))?(?=:|$)")
 _MOST_SHOWN = 20
 """Problems that a person reads at once."""
 
@@ -253,11 +253,17 @@ def _problem(model: type[BaseModel], key: Key, texts: list[str], where: Places) 
     return Problem(place, prefix + " or ".join(texts), _remedy(model, key, texts))
 
 
-def first(problems: list[Problem]) -> list[Problem]:
-    """Return as many problems as a person reads, each once, in the order of each file."""
+def in_order(problems: Iterable[Problem]) -> list[Problem]:
+    """Return problems, each once, in the order of each file."""
     each = list(dict.fromkeys(problems))
     files = list(dict.fromkeys(_place(problem)[0] for problem in each))
     each.sort(key=lambda problem: (files.index(_place(problem)[0]), _place(problem)))
+    return each
+
+
+def first(problems: list[Problem]) -> list[Problem]:
+    """Return as many problems as a person reads, each once, in the order of each file."""
+    each = in_order(problems)
     more = len(each) - _MOST_SHOWN
     if more <= 0:
         return each

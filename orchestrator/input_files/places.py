@@ -1,7 +1,7 @@
 """Positions of the values in a TOML file, which the standard library does not tell."""
 
 import tomllib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import tree_sitter_toml
@@ -81,13 +81,19 @@ def places(source: str, text: str) -> Places:
     last: dict[Key, int] = {}  # number of the last element of each array of tables
     for node in parser.parse(content).root_node.named_children:
         if node.type == "pair":
-            offsets.update(_pair((), node))
+            _note(offsets, _pair((), node))
         elif node.type in ("table", "table_array_element"):
             header = _header(node, last)
             offsets.setdefault(header, node.start_byte)
             for entry in node.named_children[1:]:
-                offsets.update(_pair(header, entry))
+                _note(offsets, _pair(header, entry))
     return Places(source, content, offsets)
+
+
+def _note(offsets: dict[Key, int], found: Iterable[tuple[Key, int]]) -> None:
+    """Note the first place of each key."""
+    for key, offset in found:
+        offsets[key] = min(offset, offsets.get(key, offset))
 
 
 def _header(node: Node, last: dict[Key, int]) -> Key:
@@ -123,7 +129,8 @@ def _pair(table: Key, node: Node) -> Iterator[tuple[Key, int]]:
         name, value = _without_comments(node)
         key = (*table, *_names(name))
         yield from _value(key, value)
-        yield key, node.start_byte
+        for depth in range(len(table) + 1, len(key) + 1):  # a.b = 1 makes a table a
+            yield key[:depth], node.start_byte
 
 
 def _value(key: Key, node: Node) -> Iterator[tuple[Key, int]]:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ..core.errors import InputRefused, Problem
 from ..core.input_text import shown
+from ..core.system.quantities import in_si
 from .csv_table import CsvTable, read_csv
 from .form import LARGEST
-from .quantities import in_si
 
 _TITLE = re.compile(r"\s*(.+?)\s*[\[(_ ]\s*([A-Za-z0-9/]+)\s*[\])]?\s*")
 

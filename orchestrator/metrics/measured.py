@@ -14,9 +14,9 @@ from rockshed.components.common.units import SCREEN_UNITS
 from ..core.errors import InputRefused, Problem, counted
 from ..core.input_text import shown
 from ..core.results.series import Series
+from ..core.system.quantities import in_si
 from ..input_files.csv_table import CsvTable, read_csv
 from ..input_files.form import first
-from ..input_files.quantities import in_si
 from ..tables import Table, digits
 from .values import Samples
 

@@ -152,7 +152,8 @@ def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
     if job.system.scenario:
         remedy = "write a system file (a folder), or take the scenario out"
         raise InputRefused([Problem("scenario", "has no place in an SSP", remedy)])
-    plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
+    with job.refused_in_place():
+        plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
     if job.ssp is not None:
         rewrite_ssp(job.ssp, plan, _changes(job.ssp.system, plan), file, version)
         return file

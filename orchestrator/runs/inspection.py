@@ -248,7 +248,8 @@ def describe_system(job: Job) -> Overview:
         The system does not fit its FMUs.
     """
     system = job.system
-    plan = make_plan(system, {**sources_of(system), **job.sources})
+    with job.refused_in_place():
+        plan = make_plan(system, {**sources_of(system), **job.sources})
     parts: list[str | Table] = [
         f"{system.name}{': ' if system.description else ''}{system.description}\n"
         f"{system.master} master, order {', '.join(plan.order)}; exchange every "

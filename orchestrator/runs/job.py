@@ -4,9 +4,10 @@ Everything that is wrong with a request is collected before it is refused.
 """
 
 import os
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,17 +26,17 @@ from ..cases.sand_models import Changes
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
 from ..core.system.other_values import aliases, with_values
-from ..core.system.reading import load_system, system_from
+from ..core.system.reading import system_from
 from ..core.system.renaming import with_present_names
 from ..core.system.system import SystemSpec
-from ..input_files.form import read_toml
 from ..metrics.filtering import LOAD_CELL_ROWS
 from ..ssp.package import is_ssp
 from .building import FmusOf, Note, case_fmus, case_sizes, own_sizes, silent
 from .chosen import choose
 from .request import AUTO, Request, with_keys
-from .scenario import placed, refuse_misfit, told, with_inputs_read, without_file
-from .values_in_si import case_in_si, file_in_si, shared_in_si
+from .scenario import SCENARIO, told
+from .system_file import SystemFile
+from .values_in_si import case_in_si, file_in_si, shared_in_si, source_in
 
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
@@ -63,6 +64,8 @@ class Job:
         The SSP that the system comes from.
     files : callable or None
         Writes further files into the folder of a run.
+    file : SystemFile or None
+        The file that the system comes from.
     """
 
     name: str
@@ -72,6 +75,25 @@ class Job:
     models: Mapping[str, str] = field(default_factory=dict)
     ssp: "Imported | None" = None
     files: Callable[[Path], None] | None = None
+    file: SystemFile | None = None
+
+    def placed(self, problems: Sequence[Problem]) -> list[Problem]:
+        """Return problems with line and column of what they are about, where a file has it."""
+        return [*problems] if self.file is None else self.file.placed(problems)
+
+    @contextmanager
+    def refused_in_place(self) -> Iterator[None]:
+        """Tell what the block refuses with line and column, where a file has it.
+
+        Raises
+        ------
+        InputRefused
+            That of the block.
+        """
+        try:
+            yield
+        except InputRefused as refusal:
+            raise type(refusal)(self.placed(refusal.problems)) from None
 
     @property
     def components(self) -> frozenset[str]:
@@ -122,11 +144,11 @@ def prepare(
         request = case_in_si(asked, chosen.case, known, warnings)
         job = _from_case(chosen.case, request, known, note, fmus_of)
         request = shared_in_si(request, chosen.case, job.system, known)
-    system = _changed(job.system, request, known)
+    system = _changed(job.system, request, job.sources, known)
     known += _load_cell_problems(request, system)
     if known:
-        raise InputRefused(known + plan_problems(system, job.sources))
-    _refuse_misfit(chosen.case, system, request)
+        raise InputRefused(job.placed(known + plan_problems(system, job.sources)))
+    _refuse_misfit(job, system)
     if chosen.case is not None:
         system = _with_derived(job.system, system, request, chosen.case, job.facts["sizes"])
         warnings = [*chosen.case.warnings, *warnings]
@@ -163,10 +185,14 @@ def look_at_target(target: str) -> None:
         _from_file(plain, [])
 
 
-def _refuse_misfit(chosen: Case | None, system: SystemSpec, request: Request) -> None:
-    """Refuse a system file whose scenario does not fit its FMUs, by line and column."""
-    if chosen is None and system.scenario and not is_ssp(request.target):
-        refuse_misfit(plan_problems(system, {}), Path(request.target))
+def _refuse_misfit(job: Job, system: SystemSpec) -> None:
+    """Refuse a system file whose scenario does not fit its FMUs, with what else is wrong.
+
+    Other problems alone are told when it is run.
+    """
+    problems = plan_problems(system, {}) if job.file and system.scenario else []
+    if any(problem.where.startswith(f"{SCENARIO}.") for problem in problems):
+        raise InputRefused(job.placed(problems))
 
 
 def _with_present_names(request: Request, chosen: Case) -> tuple[Request, list[str]]:
@@ -204,8 +230,10 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     InputRefused
         The request asks for what only cases have, or the file is refused.
     """
+    file = None
     if not is_ssp(request.target) and os.path.isfile(request.target):
-        read_toml(Path(request.target))  # what it is for is not known of one that is no TOML
+        # what it is for is not known of one that is no TOML
+        file = SystemFile.read(Path(request.target))
     for argument, remedy, asked in (
         ("sizes", "build its FMUs in these sizes", request.sizes),
         ("model", "set the parameters of its sand", request.model),
@@ -219,10 +247,17 @@ def _from_file(request: Request, problems: list[Problem]) -> Job:
     try:
         if is_ssp(request.target):
             return _from_ssp(request, facts)
-        system = _loaded(Path(request.target))
+        file = file or SystemFile.read(Path(request.target))
+        file = replace(file, replaced={*request.values, *request.options})
+        system = file.system(partial(_asked_of, request, problems))
     except InputRefused as refusal:
         raise InputRefused([*problems, *refusal.problems]) from None
-    return Job(system.name, system, {}, facts)
+    return Job(system.name, system, {}, facts, file=file)
+
+
+def _asked_of(request: Request, problems: list[Problem], known: SystemSpec) -> SystemSpec:
+    """Return what is sound in a file with the values and keys of the request, if they fit."""
+    return _changed(known, file_in_si(request, known, problems), {}, problems)
 
 
 def _from_ssp(request: Request, facts: dict[str, Any]) -> Job:
@@ -233,24 +268,6 @@ def _from_ssp(request: Request, facts: dict[str, Any]) -> Job:
     if read.warnings:
         facts["warnings"] = list(read.warnings)
     return Job(read.system.name, read.system, {}, facts, ssp=read)
-
-
-def _loaded(file: Path) -> SystemSpec:
-    """Read a system file; what is wrong with its form is told with all the rest.
-
-    Raises
-    ------
-    InputRefused
-        The form is wrong; with what the FMUs have against the connections that are in order.
-    """
-    try:
-        return with_inputs_read(load_system(file), file.parent)
-    except InputRefused as refusal:
-        more: list[Problem] = []
-        with suppress(InputRefused):  # more than connections is wrong
-            known = load_system(file, leave_out_faulty=True)
-            more = plan_problems(without_file(known), {})
-        raise InputRefused(placed([*refusal.problems, *more], file)) from None
 
 
 def _from_case(
@@ -343,7 +360,9 @@ def _in_process(chosen: Case, sizes: ComponentSizes) -> dict[str, Source]:
     return {name: InProcess(component(model), sizes[name]) for name, model in chosen.models.items()}
 
 
-def _changed(system: SystemSpec, request: Request, problems: list[Problem]) -> SystemSpec:
+def _changed(
+    system: SystemSpec, request: Request, sources: Mapping[str, Source], problems: list[Problem]
+) -> SystemSpec:
     """Return the system with other values and keys, as far as they have the right form."""
     try:
         system = with_values(system, request.values)
@@ -353,7 +372,8 @@ def _changed(system: SystemSpec, request: Request, problems: list[Problem]) -> S
             with suppress(InputRefused):  # told already
                 system = with_values(system, {name: value})
     try:
-        return system_from(with_keys(system.model_dump(), request.options), request.target)
+        keys = with_keys(system.model_dump(), request.options)
+        return system_from(keys, request.target, source_in(sources))
     except InputRefused as refusal:
         problems += refusal.problems
         return system
@@ -397,13 +417,9 @@ def plan_problems(system: SystemSpec, sources: Mapping[str, Source]) -> list[Pro
         Empty if the system can be run.
     """
     from ..core.run import sources_of
-    from ..core.system.planning import make_plan
+    from ..core.system.planning import problems_with
 
-    try:
-        make_plan(system, {**sources_of(system), **sources})
-    except InputRefused as refusal:
-        return refusal.problems
-    return []
+    return problems_with(system, {**sources_of(system), **sources})
 
 
 def recorded_names(job: Job) -> list[str]:
@@ -422,5 +438,6 @@ def recorded_names(job: Job) -> list[str]:
     from ..core.run import sources_of
     from ..core.system.planning import make_plan
 
-    plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
+    with job.refused_in_place():
+        plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
     return [end.name for end in plan.recorded]

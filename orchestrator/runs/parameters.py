@@ -11,9 +11,8 @@ from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
 from ..core.system.fields import Value
 from ..core.system.names import split_name
-from ..core.system.values import finite_number
+from ..core.system.quantities import finite_number, in_si
 from ..input_files.fields import ANY, fields, unit_of
-from ..input_files.quantities import in_si
 from ..sites.shed.preparation import all_fields, is_field
 from ..sites.shed.site import ShedProject
 from .job import Job

@@ -1,13 +1,11 @@
 """Scenarios as people write them: tables of inputs read, problems told by line and column."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import InputRefused, Problem
 from ..core.system.signals import TIME
 from ..core.system.system import SystemSpec
-from ..input_files.form import read_toml
 from .signals import read_signals
 
 SCENARIO = "scenario"
@@ -71,48 +69,6 @@ def without_file(system: SystemSpec) -> SystemSpec:
         return system
     scenario = system.scenario.model_copy(update={"inputs": None})
     return system.model_copy(update={SCENARIO: scenario})
-
-
-def placed(problems: Sequence[Problem], file: Path) -> list[Problem]:
-    """Return problems; those of a scenario with line and column in their system file.
-
-    Parameters
-    ----------
-    problems : sequence of Problem
-        The place of one of the form begins with the name of the file.
-    file : Path
-        A system file.
-    """
-    content, places = read_toml(file)
-    found = []
-    for problem in problems:
-        key, _, rest = problem.where.removeprefix(f"{file}: ").partition(":")
-        if key.split(".")[0] == SCENARIO in content:
-            path = tuple(int(part) if part.isdigit() else part for part in key.split("."))
-            where = f"{places.of(path)}: {key}{':' if rest else ''}{rest}"
-            found.append(Problem(where, problem.what, problem.remedy))
-        else:
-            found.append(problem)
-    return found
-
-
-def refuse_misfit(problems: Sequence[Problem], file: Path) -> None:
-    """Refuse a system whose scenario does not fit it, by line and column.
-
-    Parameters
-    ----------
-    problems : sequence of Problem
-        Everything that is wrong with the system; other problems alone are told when it is run.
-    file : Path
-        Its file.
-
-    Raises
-    ------
-    InputRefused
-        With all of these problems.
-    """
-    if any(problem.where.startswith(f"{SCENARIO}.") for problem in problems):
-        raise InputRefused(placed(problems, file))
 
 
 def told(differing: Mapping[str, Any], system: SystemSpec) -> dict[str, Any]:

@@ -151,17 +151,18 @@ def _carry_out(
     sources = [getattr(source, "component", None) for source in job.sources.values()]
     here = [made for made in sources if isinstance(made, Component)]
     tell_first_compilation([*here, *map(component, sorted(job.components))])
-    simulate_spec(
-        job.system,
-        folder,
-        sources=job.sources,
-        allow_unstable=allow_unstable,
-        checkpoint_every=checkpoint_every,
-        progress=progress,
-        facts=lambda plan: {**job.facts, "warnings": warnings_of(job, plan)},
-        note=note,
-        files=job.files,
-    )
+    with job.refused_in_place():
+        simulate_spec(
+            job.system,
+            folder,
+            sources=job.sources,
+            allow_unstable=allow_unstable,
+            checkpoint_every=checkpoint_every,
+            progress=progress,
+            facts=lambda plan: {**job.facts, "warnings": warnings_of(job, plan)},
+            note=note,
+            files=job.files,
+        )
 
 
 def measured(folder: Path) -> Run:

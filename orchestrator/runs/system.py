@@ -31,6 +31,7 @@ from .request import Request, plain, with_keys
 from .scenario import read_inputs, told
 from .subsystem import Subsystem, component_of, whole_sizes
 from .target import SYSTEM
+from .values_in_si import source_in, values_in_si
 
 _OF_REQUEST = ("load_cell", "runtime", "in_process")
 """Options of a case that are no keys of its system."""
@@ -110,17 +111,19 @@ class System:
         return cls(prepare(request, note, problems), request)
 
     @classmethod
-    def new(cls, name: str, *, exchange_step: float, stop_time: float, **options: Any) -> "System":
+    def new(
+        cls, name: str, *, exchange_step: float | str, stop_time: float | str, **options: Any
+    ) -> "System":
         """Begin a system that has no component yet.
 
         Parameters
         ----------
         name : str
             Name of the system and of the folder of its results.
-        exchange_step : float
-            Time between two exchanges (s).
-        stop_time : float
-            End of the run (s).
+        exchange_step : float or str
+            Time between two exchanges: s, or with a unit, ``"10 us"``.
+        stop_time : float or str
+            End of the run, likewise.
         **options
             Other keys of a system file: ``description``, ``master``, ``output_interval``, ...
 
@@ -155,8 +158,9 @@ class System:
         Parameters
         ----------
         values : mapping of str to Value
-            By ``component.parameter`` or by the name of a shared value (SI units); items of an
-            enumeration by their words. ``component.parameter[*]`` sets a whole array.
+            By ``component.parameter`` or by the name of a shared value: numbers in the unit of the
+            variable, texts with a unit of their own, or items of an enumeration by their words.
+            ``component.parameter[*]`` sets a whole array.
 
         Returns
         -------
@@ -171,7 +175,11 @@ class System:
         if self.request is not None:
             merged = {**self.request.values, **plain(values)}
             return System.prepared(replace(self.request, values=merged))
-        return self._with(with_values(self.spec, values), plain(values))
+        problems: list[Problem] = []
+        numbers = values_in_si(plain(values), self.spec, self.job.sources, problems)
+        if problems:
+            raise InputRefused(problems)
+        return self._with(with_values(self.spec, numbers), numbers)
 
     def with_sizes(self, sizes: Mapping[str, int]) -> "System":
         """Return the case of this system, made again in other sizes.
@@ -230,7 +238,7 @@ class System:
         values: Mapping[str, Value] | None = None,
         *,
         sizes: Mapping[str, int] | None = None,
-        step: float | None = None,
+        step: float | str | None = None,
         extrapolation: int | None = None,
     ) -> "System":
         """Return the system with one more component.
@@ -244,11 +252,12 @@ class System:
             file (``.fmu``). Components run in this process, without an FMU. Of a subsystem its
             component is taken in its sizes, not its values and state.
         values : mapping of str to Value, optional
-            Parameters that differ from the component's start values (SI units).
+            Parameters that differ from the component's start values: numbers in the unit of the
+            variable, SI in ours, or texts with a unit.
         sizes : mapping of str to int, optional
             Sizes that differ from the component's defaults; not for FMU files.
-        step : float, optional
-            Communication step (s); by default the exchange step.
+        step : float or str, optional
+            Communication step: s, or with a unit; by default the exchange step.
         extrapolation : int, optional
             Order of the polynomials that its inputs follow between exchanges, 0 to 2; by default
             that of the system.
@@ -268,7 +277,7 @@ class System:
         if name in self.spec.components:
             remedy = "choose another name"
             raise InputRefused([Problem(name, "is there already", remedy)])
-        sources = dict(self.job.sources)
+        sources: dict[str, Source] = {}
         if isinstance(component, Subsystem):
             sizes = {**component.instance.sizes, **(sizes or {})}
             component = component.component
@@ -290,8 +299,7 @@ class System:
         entries: dict[str, Any] = {"components": {**self._data()["components"], name: spec}}
         if self.spec.order and name not in self.spec.order:  # it comes last
             entries["order"] = [*self.spec.order, name]
-        made_system = self._detached(entries)
-        return System(replace(made_system.job, sources=sources))
+        return self._detached(entries, sources)
 
     def connect(self, *connections: str) -> "System":
         """Return the system with further connections of outputs with inputs.
@@ -376,7 +384,7 @@ class System:
         name : str
             Name of the value, for :meth:`with_values`.
         value : bool, int, float or str
-            In SI units.
+            In the unit of the targets, or with one of its own.
         targets : str or sequence of str
             Parameters that take it, ``component.parameter``; they have no value of their own.
 
@@ -398,7 +406,7 @@ class System:
 
     def scenario(
         self,
-        inputs: str | Path | Mapping[str, Sequence[float]] | None = None,
+        inputs: str | Path | Mapping[str, Sequence[float | str]] | None = None,
         *,
         values: Sequence[Mapping[str, Any]] = (),
         faults: Sequence[Mapping[str, Any]] = (),
@@ -411,8 +419,8 @@ class System:
         ----------
         inputs : str, Path or mapping, optional
             A CSV file with the column ``time`` (s) and one for each input ``component.input`` that
-            nothing feeds, in its unit; or these columns. Continuous inputs are interpolated
-            linearly between two rows, others are held.
+            nothing feeds, in its unit; or these columns, whose values may have units. Continuous
+            inputs are interpolated linearly between two rows, others are held.
         values : sequence of mapping
             Values that change: ``port`` (such an input, or a tunable parameter), ``value``, and
             ``at`` (s, time of an exchange) or ``when`` (``"rock.position.y < 1.0"``, from the first
@@ -420,7 +428,7 @@ class System:
         faults : sequence of mapping
             What connections deliver: ``port`` (the input), ``kind`` (``frozen``, ``noise`` or
             ``cut``), ``from`` and ``to`` (s, times of exchanges), of noise ``deviation`` (in the
-            unit of the input) and ``seed``.
+            unit of the input) and ``seed``. All quantities may have units.
 
         Returns
         -------
@@ -446,16 +454,21 @@ class System:
         if isinstance(inputs, str | Path):
             table = read_inputs(Path(inputs))
         elif inputs is not None:
-            table = {name: [float(v) for v in column] for name, column in inputs.items()}
+            table = {name: [*map(_plain_number, column)] for name, column in inputs.items()}
         listed = {"set": [plain(entry) for entry in values], "fault": [plain(f) for f in faults]}
         return self.with_options(scenario={"inputs": table, **listed})
 
-    def _detached(self, entries: Mapping[str, Any]) -> "System":
+    def _detached(
+        self, entries: Mapping[str, Any], sources: Mapping[str, Source] | None = None
+    ) -> "System":
         """Return the system with other entries, no longer compared with what others found."""
+        sources = {**self.job.sources, **(sources or {})}
         facts = dict(self.job.facts)
         if "references" in facts:
             facts["references"] = {"remarks": ["not compared: the system was put together anew"]}
-        return System(replace(self.job, system=self._checked(entries), facts=facts, ssp=None))
+        made = self._checked(entries, sources)
+        job = replace(self.job, system=made, sources=sources, facts=facts, ssp=None, file=None)
+        return System(job)
 
     def _with(self, spec: SystemSpec, differing: Mapping[str, Any]) -> "System":
         """Return the system with this content; provenance names what differs."""
@@ -463,8 +476,11 @@ class System:
         facts = {**self.job.facts, "differences": {**known, **told(differing, spec)}}
         return System(replace(self.job, system=spec, facts=facts), self.request)
 
-    def _checked(self, entries: Mapping[str, Any]) -> SystemSpec:
-        return system_from(with_keys(self._data(), entries), self.name)
+    def _checked(
+        self, entries: Mapping[str, Any], sources: Mapping[str, Source] | None = None
+    ) -> SystemSpec:
+        makers = source_in(self.job.sources if sources is None else sources)
+        return system_from(with_keys(self._data(), entries), self.name, makers)
 
     def _data(self) -> dict[str, Any]:
         return self.spec.model_dump()
@@ -493,7 +509,7 @@ class System:
             self.refuse_empty()
         except InputRefused as refusal:
             return refusal.problems
-        return plan_problems(self.spec, self.job.sources)
+        return self.job.placed(plan_problems(self.spec, self.job.sources))
 
     def refuse_empty(self) -> None:
         """Refuse a system without components.
@@ -600,6 +616,11 @@ def _in_process(name: str, made: Component, sizes: Mapping[str, int] | None) -> 
     except ComponentError as error:
         problems = [Problem(f"{name}: sizes", text) for text in error.problems]
         raise InputRefused(problems) from error
+
+
+def _plain_number(value: Any) -> Any:
+    """Return a number of numpy, or a whole one, as a float; a text as it is."""
+    return value if isinstance(value, str) else float(value)
 
 
 def _with_model(request: Request) -> Request:

@@ -1,25 +1,24 @@
 """Values of a request as numbers in SI, wherever they may be given with a unit."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rockshed.components.catalogue import component
 from rockshed.components.common.ports import Kind, Variable
-from rockshed.components.common.units import UNITS
 
 from ..cases.registry import Case
-from ..core.errors import InputRefused, Problem
+from ..core.errors import Problem
 from ..core.fmu.description import Port
-from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
+from ..core.fmu.fmu_slave import FmuFile
+from ..core.fmu.slave import REAL, Source
 from ..core.system.fields import ONE_VALUE, Value
-from ..core.system.names import split_name
+from ..core.system.in_si import Descriptions, fmu_of
+from ..core.system.quantities import in_si, in_unit, is_quantity
 from ..core.system.system import SystemSpec
-from ..core.system.values import finite_number
-from ..input_files.quantities import doubt, in_si
+from ..input_files.quantities import doubt
 from .request import Request
-
-_WITHOUT = "1"
-"""Unit of a plain number."""
 
 
 def case_in_si(
@@ -84,9 +83,6 @@ def shared_in_si(
 def file_in_si(request: Request, system: SystemSpec, problems: list[Problem]) -> Request:
     """Return the request for a system file or SSP with its values in SI.
 
-    Texts that are neither numbers nor quantities stay, and are refused with the rest of the system
-    where no word is meant.
-
     Parameters
     ----------
     request : Request
@@ -96,15 +92,58 @@ def file_in_si(request: Request, system: SystemSpec, problems: list[Problem]) ->
     problems : list of Problem
         Takes those of quantities that do not fit.
     """
+    return replace(request, values=values_in_si(request.values, system, {}, problems))
+
+
+def values_in_si(
+    values: Mapping[str, Value],
+    system: SystemSpec,
+    sources: Mapping[str, Source],
+    problems: list[Problem],
+) -> dict[str, Value]:
+    """Return values for a system in the units of its variables.
+
+    Texts that are neither numbers nor quantities stay, and are refused with the rest of the system
+    where no word is meant.
+
+    Parameters
+    ----------
+    values : mapping of str to Value
+        By ``component.variable`` or by the name of a shared value: numbers, words, or texts with a
+        unit.
+    system : SystemSpec
+        With these components.
+    sources : mapping of str to Source
+        Components that are made without an FMU file.
+    problems : list of Problem
+        Takes those of quantities that do not fit.
+    """
+    known = Descriptions(system.components, source_in(sources))
     kept: dict[str, Value] = {}
-    for name, value in request.values.items():
+    for name, value in values.items():
         shared = system.shared.get(name)
-        port = _port(system, shared.targets[0] if shared else name)
+        target = shared.targets[0] if shared else name
+        port = known.port(target) if _is_quantity(value) else None
         try:
             kept[name] = value_of_port(port, value)
         except ValueError as error:
             problems.append(_no_number(name, value, str(error), port.description if port else ""))
-    return replace(request, values=kept)
+    return kept
+
+
+def source_in(sources: Mapping[str, Source]) -> Callable[[str, Any], Source]:
+    """Return the maker of the sources of a system: those that are given, else FMU files.
+
+    Parameters
+    ----------
+    sources : mapping of str to Source
+        Components that are made without an FMU file.
+    """
+
+    def source_of(component: str, entry: Any) -> Source:
+        return sources.get(component) or FmuFile(Path(fmu_of(entry)))
+
+    return source_of
 
 
 def value_of_port(port: Port | None, value: Value) -> Value:
@@ -122,23 +161,13 @@ def value_of_port(port: Port | None, value: Value) -> Value:
     ValueError
         The unit is of another kind, or does not exist.
     """
-    is_quantity = isinstance(value, str) and value.strip()[:1] in set("+-.0123456789")
-    if port is None or not is_quantity or finite_number(str(value)) is not None:
+    if port is None or port.kind != REAL or not _is_quantity(value):
         return value
-    unit = port.unit_name
-    return in_si(str(value), unit) if unit in UNITS and unit != _WITHOUT else value
+    return in_unit(str(value), port.unit)
 
 
-def _port(system: SystemSpec, name: str) -> Port | None:
-    """Return a variable of the FMU of a component; None where it cannot be read."""
-    owner, key = split_name(name, system.components)
-    if owner not in system.components:
-        return None
-    try:
-        xml = FmuFile(Path(system.components[owner].fmu)).model_description()
-        return read_description(xml).ports.get(key.replace("[*]", "[1]"))
-    except (InputRefused, UnusableError):  # told with the rest of the system
-        return None
+def _is_quantity(value: Value) -> bool:
+    return isinstance(value, str) and is_quantity(value)
 
 
 def _keep(

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from rockshed.components.common.plausible import Plausible
 from rockshed.components.common.units import UNITS, cm2, deg, kgf
-from rockshed.input_files.quantities import doubt, in_si
+from rockshed.core.system.quantities import in_si
+from rockshed.input_files.quantities import doubt
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from rockshed.components.common.units import cm, kgf, kN, mm, tf
 
 from ...cases.sonoda1993 import tests
 from ...core.errors import InputRefused, Problem
-from ...core.system.values import finite_number
+from ...core.system.quantities import finite_number
 from ...metrics.load_curve import DEPTH
 
 FORCES: Mapping[str, float] = {"N": 1.0, "kN": kN, "kgf": kgf, "tf": tf}

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...core.errors import InputRefused, Problem, counted
 from ...core.input_text import shown
+from ...core.system.quantities import in_si
 from ...input_files.csv_table import CsvTable, read_csv
 from ...input_files.form import LARGEST, first
-from ...input_files.quantities import in_si
 from ..frame import FloatArray
 
 FEWEST = 50

@@ -9,7 +9,7 @@ import numpy as np
 from ...core.errors import Problem
 from ...core.input_text import shown
 from ...core.system.fields import Value
-from ...core.system.values import finite_number
+from ...core.system.quantities import finite_number
 from ...input_files.form import LARGEST
 from ..frame import FloatArray
 

@@ -11,6 +11,8 @@ from fractions import Fraction
 from math import lcm, ulp
 from typing import Any
 
+from .quantities import in_si
+
 PICOSECONDS = 10**12
 """Ticks in a second where nothing else is needed: steps in use go down to 1e-7 s, and a step that
 follows from a wave speed needs a few digits more. In 64 bits, that reaches over 50 days."""
@@ -28,7 +30,7 @@ def seconds_in(text: str) -> float:
     Parameters
     ----------
     text : str
-        A number, or a fraction of two whole numbers: ``1/60``.
+        A number, with a unit or in s, or a fraction of two whole numbers: ``1/60``.
 
     Returns
     -------
@@ -38,20 +40,20 @@ def seconds_in(text: str) -> float:
     Raises
     ------
     ValueError
-        It is neither.
+        It is none of them.
     """
+    if text.strip() and "/" not in text:
+        return in_si(text, "s")
     try:
-        return float(Fraction(text)) if "/" in text else float(text)
+        return float(Fraction(text))
     except (ValueError, ZeroDivisionError, OverflowError):
         what = f"{text[:40]!r} is no time: write a number of seconds, or a fraction, 1/60"
         raise ValueError(what) from None
 
 
-def from_fraction(value: Any) -> Any:
-    """Return a fraction of a second, ``1/60``, as the nearest float; anything else as it is."""
-    if isinstance(value, Fraction) or (isinstance(value, str) and "/" in value):
-        return seconds_in(str(value))
-    return value
+def from_text(value: Any) -> Any:
+    """Return the time of a text or a fraction, ``20 ms``, ``1/60``, in s; all else as it is."""
+    return seconds_in(str(value)) if isinstance(value, Fraction | str) else value
 
 
 def exact(seconds: float) -> Fraction:

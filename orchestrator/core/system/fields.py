@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from .clock import from_fraction
+from .clock import from_text
 
 Value = bool | int | float | str
 """Value of a parameter or input; of an enumeration, the name or the number of an item."""
@@ -45,8 +45,8 @@ ONE_VALUE = (
 PlainValue = Annotated[Value, BeforeValidator(plain_value)]
 
 
-Time = Annotated[float, BeforeValidator(from_fraction), Field(allow_inf_nan=False)]
-Seconds = Annotated[float, BeforeValidator(from_fraction), Field(gt=0.0, allow_inf_nan=False)]
+Time = Annotated[float, BeforeValidator(from_text), Field(allow_inf_nan=False)]
+Seconds = Annotated[float, BeforeValidator(from_text), Field(gt=0.0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Tolerance = Annotated[float, Field(gt=0.0, lt=1.0, allow_inf_nan=False)]
 Extrapolation = Literal[0, 1, 2]

@@ -125,7 +125,7 @@ class Finder:
             elif (
                 not names
                 and not self.texts_selected([given])
-                and len(self.descriptions) == len(self.system.components)
+                and self._is_readable(pattern)
                 and pattern != "*"
             ):
                 self.refuse(key, f"{pattern!r} selects no output", nearest(pattern, outputs))
@@ -146,6 +146,11 @@ class Finder:
             names = [pattern] if pattern in texts else select(pattern, outputs)
             chosen |= {name: texts[name] for name in names}
         return list(chosen.values())
+
+    def _is_readable(self, pattern: str) -> bool:
+        """Tell whether all descriptions are known that a pattern may select from."""
+        is_whole = len(self.descriptions) == len(self.system.components)
+        return is_whole or self.split(pattern)[0] in self.descriptions
 
     def _elements(self, name: str) -> list[str]:
         """Return the names of the elements of an array; nothing if it is none."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockshed.components.common.roles import Role
 
-from ..errors import InputRefused
+from ..errors import InputRefused, Problem
 from ..fmu.slave import REAL, Source
 from .adaptive import adaptive_problems, make_schedules
 from .bonding import BondEnds, Bonder, bond_places
@@ -56,6 +56,32 @@ def make_plan(system: SystemSpec, sources: Mapping[str, Source]) -> Plan:
     return _Planner(system, sources, Finder(system)).plan()
 
 
+def problems_with(
+    system: SystemSpec, sources: Mapping[str, Source], timed: bool = True
+) -> list[Problem]:
+    """Return everything that is wrong with a system.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        Checked in its form already.
+    sources : mapping of str to Source
+        Give the model descriptions of the components.
+    timed : bool
+        Whether its times are looked at.
+
+    Returns
+    -------
+    list of Problem
+        Empty if it can be run.
+    """
+    try:
+        _Planner(system, sources, Finder(system), timed).plan()
+    except InputRefused as refusal:
+        return refusal.problems
+    return []
+
+
 class _Parts(NamedTuple):
     """The parts of a system by ports; texts apart from numbers."""
 
@@ -82,13 +108,14 @@ class _Planner:
     system: SystemSpec
     sources: Mapping[str, Source]
     finder: Finder
+    timed: bool = True
 
     def plan(self) -> Plan:
         """Go through the system part by part, then refuse it or return the plan."""
         describer = Describer(self.finder, self.sources)
         describer.describe()
         order = self._order()
-        timing = make_timing(self.system, self.finder.problems)
+        timing = make_timing(self.system, self.finder.problems) if self.timed else None
         parts = self._parts(timing)
         self._check_states()
         self._check_iteration(parts, timing)
@@ -96,11 +123,13 @@ class _Planner:
         if timing is not None and min(timing.output_every, timing.state_every) > 0:
             columns = 1 + len(parts.recorded) + 3 * len(parts.bonds)
             self.finder.problems += amount_problems(self.system, timing, columns)
-        self.finder.problems += internal_step_problems(self.system, parts.starts)
-        self.finder.problems += adaptive_problems(
-            self.system, self.finder.descriptions, parts.scenario
-        )
-        if self.finder.problems or timing is None:
+        if self.timed:
+            self.finder.problems += internal_step_problems(self.system, parts.starts)
+            self.finder.problems += adaptive_problems(
+                self.system, self.finder.descriptions, parts.scenario
+            )
+        is_whole = len(self.finder.descriptions) == len(self.system.components)
+        if self.finder.problems or timing is None or not is_whole:
             raise InputRefused(self.finder.problems)
         return self._with_loops(self._resolved(order, timing, parts), parts.links)
 

@@ -1,20 +1,25 @@
 """From plain data, or a TOML file, to a system of the right form."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from ..errors import InputRefused, Problem
+from ..fmu.fmu_slave import FmuFile
+from ..fmu.slave import Source
 from ..form_faults import UNKNOWN_KEY, sentences
 from ..form_keys import known_keys
 from ..input_text import read_text, toml_content
+from .in_si import KeyPath, SourceOf, fmu_of, numbers_in
 from .names import nearest
 from .system import SystemSpec
 
 
-def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
+def system_from(
+    data: Mapping[str, Any], where: str = "system", source_of: SourceOf | None = None
+) -> SystemSpec:
     """Make a system of plain data.
 
     Parameters
@@ -23,6 +28,9 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
         Keys and values as in a TOML file.
     where : str
         Stands before the key of a problem.
+    source_of : callable, optional
+        Makes the source of a component, in the units of whose variables quantities are taken,
+        ``20 mm``. Without it, only times and values of components may have units.
 
     Returns
     -------
@@ -31,38 +39,21 @@ def system_from(data: Mapping[str, Any], where: str = "system") -> SystemSpec:
     Raises
     ------
     InputRefused
-        Unknown or missing keys, values of the wrong type or out of range; each with the path of
-        its key.
+        Unknown or missing keys, values of the wrong type or out of range, and quantities of
+        another kind; each with the path of its key.
     """
+    wrong: dict[KeyPath, str] = {}
+    if source_of is not None:
+        data, wrong = numbers_in(data, source_of)
+    problems = [_form_problem(where, key, [text]) for key, text in wrong.items()]
     try:
-        return SystemSpec.model_validate(data)
+        system = SystemSpec.model_validate(data)
     except ValidationError as error:
         found = sentences(error.errors())
-        raise InputRefused(
-            [_form_problem(where, key, texts) for key, texts in found.items()]
-        ) from error
-
-
-_LEFT_OUT = ("connections", "bonds", "scenario")
-"""Keys of a system whose entries the others can do without."""
-
-
-def _without_faulty(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the data of a system without what is of a wrong form in these keys."""
-    try:
-        SystemSpec.model_validate(data)
-    except ValidationError as error:
-        faulty = {tuple(fault["loc"][:2]) for fault in error.errors()}
-        return {key: _sound(key, value, faulty) for key, value in data.items()}
-    return dict(data)
-
-
-def _sound(key: str, value: Any, faulty: Collection[tuple[Any, ...]]) -> Any:
-    if key not in _LEFT_OUT or not isinstance(value, list | dict):
-        return value
-    if isinstance(value, list):
-        return [entry for place, entry in enumerate(value) if (key, place) not in faulty]
-    return {name: entry for name, entry in value.items() if (key, name) not in faulty}
+        problems += [_form_problem(where, key, texts) for key, texts in found.items()]
+    if problems:
+        raise InputRefused(problems)
+    return system
 
 
 def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem:
@@ -72,31 +63,43 @@ def _form_problem(where: str, key: tuple[Any, ...], texts: list[str]) -> Problem
     return Problem(f"{where}: {'.'.join(map(str, key))}", "; ".join([" or ".join(texts), *hints]))
 
 
-def load_system(path: Path, leave_out_faulty: bool = False) -> SystemSpec:
+def load_system(path: Path) -> SystemSpec:
     """Read a system from a TOML file.
 
     Parameters
     ----------
     path : Path
         Relative paths of FMUs count from its folder.
-    leave_out_faulty : bool
-        Connections, bonds and parts of a scenario of a wrong form are passed over, to see what
-        else is wrong.
 
     Returns
     -------
     SystemSpec
+        Its quantities in the units of the FMUs' variables.
 
     Raises
     ------
     InputRefused
         No such file, not TOML, or :func:`system_from` refuses the content.
     """
-    data = toml_content(path, read_text(path))
-    if leave_out_faulty:
-        data = _without_faulty(data)
-    system = system_from(data, str(path))
+    return system_in(toml_content(path, read_text(path)), path)
+
+
+def system_in(content: Mapping[str, Any], path: Path) -> SystemSpec:
+    """Make the system of the content of a file, see :func:`load_system`.
+
+    Parameters
+    ----------
+    content : mapping
+        Of the file.
+    path : Path
+        Of the file.
+    """
     folder = path.resolve().parent
+
+    def source_of(component: str, entry: Any) -> Source:
+        return FmuFile(folder / fmu_of(entry))
+
+    system = system_from(content, str(path), source_of)
     components = {
         name: spec.model_copy(update={"fmu": str(folder / spec.fmu)})
         for name, spec in system.components.items()

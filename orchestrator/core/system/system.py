@@ -46,7 +46,7 @@ class SystemSpec(SystemData):
     order : list of str
         Every component once; without it, as they are listed.
     start_time, stop_time, exchange_step : float
-        Times (s). In a file, any time may be a fraction: ``"1/60"``.
+        Times (s). Any time may be a text: with a unit, ``"20 ms"``, or a fraction, ``"1/60"``.
     output_interval : float, optional
         Time between two rows of the results (s); without it, the exchange step.
     state_interval : float, optional

@@ -8,6 +8,7 @@ from ..fmu.description import Port
 from ..fmu.slave import BOOLEAN, INTEGER, REAL, STRING
 from ..fmu.types import TYPES
 from .fields import Value
+from .quantities import in_unit, is_quantity
 
 _TRUE = ("true", "1", "on", "yes")
 _FALSE = ("false", "0", "off", "no")
@@ -21,7 +22,8 @@ def value_for(port: Port, value: Value) -> float | str:
     port : Port
         Says kind, items and range.
     value : bool, int, float or str
-        Text is read as a number, a word or an item of an enumeration, whatever the port is.
+        Text is read as a number, a quantity with a unit, a word or an item of an enumeration,
+        whatever the port is.
 
     Returns
     -------
@@ -86,6 +88,8 @@ def _number(port: Port, value: Value) -> float:
         return _truth(value)
     if isinstance(value, bool):
         raise ValueError("must be a number, not true or false")
+    if port.kind == REAL and isinstance(value, str) and is_quantity(value):
+        return in_unit(value, port.unit)
     try:
         number = float(value)
     except ValueError:
@@ -125,12 +129,3 @@ def written(port: Port, number: float) -> Value:
     if port.kind == BOOLEAN:
         return bool(number)
     return number if port.kind == REAL else int(number)
-
-
-def finite_number(text: str) -> float | None:
-    """Read a finite number; return None if the text is none."""
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None

@@ -8,9 +8,9 @@ from rockshed.components.common.units import standard_gravity
 
 from ...core.errors import InputRefused, Problem
 from ...core.system.names import nearest
+from ...core.system.quantities import in_si
 from ...input_files.form import if_formed, read_toml
 from ...input_files.places import Key, Places
-from ...input_files.quantities import in_si
 from ..pile.design import PileDesign
 from ..pile.preparation import prepare as prepare_pile
 from .effective_width import ON_A_SLAB, ON_GIRDERS, RULES, Spread

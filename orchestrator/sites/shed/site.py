@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from ...core.input_text import shown
+from ...core.system.quantities import in_si
 from ...input_files.fields import (
     Angle,
     AngularVelocity,
@@ -30,7 +31,6 @@ from ...input_files.fields import (
     field,
 )
 from ...input_files.form import LARGEST, SMALLEST, Data
-from ...input_files.quantities import in_si
 
 MOST_SEED = 2**31 - 1
 """Largest number of a sample."""
