@@ -81,6 +81,27 @@ def put_off() -> Iterator[None]:
         signal.raise_signal(requests[0])
 
 
+@contextmanager
+def deaf_to_ctrl_c() -> Iterator[None]:
+    """Let threads and processes that begin meanwhile not hear Ctrl-C, unless they unblock it.
+
+    A terminal tells Ctrl-C to all processes. It is for this one, which ends the others; here it
+    waits for the end of the block.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    from multiprocessing import resource_tracker  # a run by itself needs none
+
+    # multiprocessing starts its tracker with its first process, and unblocks SIGINT then
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def interrupt(number: int, frame: FrameType | None) -> None:
     """Raise the exception of Ctrl-C, whatever the request was.
 

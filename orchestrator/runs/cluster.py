@@ -2,16 +2,14 @@
 
 import logging
 import os
-import signal
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
-from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.ending import put_off
+from ..core.ending import deaf_to_ctrl_c, put_off
 from ..core.errors import AnalysisFailed, InputRefused, Problem
 from ..temporary import TemporaryFolder
 from .executors import number_of_workers
@@ -155,7 +153,7 @@ def _local(workers: int | None) -> "Iterator[Client]":
     with ExitStack() as opened:
         folder = str(opened.enter_context(TemporaryFolder("rockshed-dask-")))
         opened.enter_context(dask.config.set({**_NO_PAGES, "temporary-directory": folder}))
-        with put_off(), _deaf_to_ctrl_c():
+        with put_off(), deaf_to_ctrl_c():
             cluster = opened.enter_context(_closing(_started(workers, folder, security)))
         yield opened.enter_context(Client(cluster, direct_to_workers=True, security=security))
 
@@ -200,24 +198,6 @@ def _closing(cluster: "LocalCluster") -> Iterator["LocalCluster"]:
     finally:
         with suppress(KeyError):
             cluster.close()
-
-
-@contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Let threads and processes that begin meanwhile not hear Ctrl-C.
-
-    A terminal tells Ctrl-C to all processes. It is for this one, which ends the others.
-    """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    # multiprocessing starts its tracker with its first process, and unblocks SIGINT then
-    resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

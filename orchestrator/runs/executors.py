@@ -16,6 +16,7 @@ from multiprocessing.process import BaseProcess
 from threading import Event, Thread
 from typing import Any, Protocol
 
+from ..core.ending import deaf_to_ctrl_c
 from ..core.errors import InputRefused, Problem
 from ..temporary import sweep
 
@@ -128,9 +129,10 @@ class Processes:
                         yield number, piece.result()
 
     def _submitted(self, lane: _Lane, work: Work, item: Any) -> "Future[Any]":
-        """Hand work to a lane; a process that has died since takes none."""
+        """Hand work to a lane; its process begins with the first, one that has died takes none."""
         try:
-            return lane.pool.submit(work, item)
+            with deaf_to_ctrl_c():
+                return lane.pool.submit(work, item)
         except BrokenProcessPool as error:
             broken: Future[Any] = Future()
             broken.set_exception(error)
@@ -218,9 +220,15 @@ def _begin_process() -> None:
     """Ignore Ctrl-C between two runs, and end when the parent does.
 
     Ctrl-C reaches every process: a run takes it for itself while it goes on, between runs the
-    parent. A parent that is killed tells nothing: its end is waited for.
+    parent. Before, while Python imports, it waits, see :func:`deaf_to_ctrl_c`: where it has come,
+    there is nothing to do any more. A parent that is killed tells nothing: its end is waited for.
     """
+    has_masks = hasattr(signal, "pthread_sigmask")  # not on Windows
+    if has_masks and signal.SIGINT in signal.sigpending():
+        os._exit(1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if has_masks:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     parent = parent_process()
     if parent is not None:
         Thread(target=_end_with, args=(parent,), daemon=True).start()
