@@ -142,14 +142,29 @@ def binary(identifier: str, fmi: int, names: Collection[str], head: Callable[[st
         if not made_for or here.in_fmi3 in made_for:
             return path
         remarks[folder] = f" (code for {', '.join(sorted(made_for))})"
-    parts = [name.split("/") for name in names if name.startswith("binaries/")]
-    found = sorted({part[1] for part in parts if len(part) > 2 and part[-1]})
-    listed = ", ".join(f"{name}{remarks.get(name, '')}" for name in found) or "none"
+    listed = ", ".join(f"{name}{remarks.get(name, '')}" for name in platforms_in(names)) or "none"
     wanted = here.folders(fmi)[0]
     raise NoBinaryError(
         f"has no binary for this machine ({wanted}); it has {listed}",
         f"export it for {wanted}, as {here.library(identifier, fmi)}",
     )
+
+
+def platforms_in(names: Collection[str]) -> list[str]:
+    """Return the names of the platforms for which an FMU has files.
+
+    Parameters
+    ----------
+    names : collection of str
+        All files in it.
+
+    Examples
+    --------
+    >>> platforms_in({"modelDescription.xml", "binaries/win64/Other.dll"})
+    ['win64']
+    """
+    parts = [name.split("/") for name in names if name.startswith("binaries/")]
+    return sorted({part[1] for part in parts if len(part) > 2 and part[-1]})
 
 
 # --- headers of libraries

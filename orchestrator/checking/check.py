@@ -178,12 +178,14 @@ class _Running:
         self._step = step
         self._limit = limit
         self._verdicts: dict[str, Verdict] = {}
+        self._causes: dict[str, str] = {}
         self._unpacked: str | None = None
         self._count = 0
 
     def finding(self, probe: Probe) -> Finding:
         """Run a probe, unless something that it needs has failed."""
-        seen, seconds = self._seen(probe)
+        obstacle = self._obstacle(probe)
+        seen, seconds = (not_applicable(obstacle), 0.0) if obstacle else self._staged(probe)
         self._verdicts[probe.name] = seen.verdict
         return Finding(
             probe.theme,
@@ -192,20 +194,21 @@ class _Running:
             " ".join(seen.what.split()),
             seen.remedy,
             seconds,
+            bool(obstacle),
         )
 
-    def _seen(self, probe: Probe) -> tuple[Seen, float]:
+    def _obstacle(self, probe: Probe) -> str:
+        """Return why a probe cannot run, by the probe that is the cause; empty where it can."""
         needed = self._verdicts.get(probe.needs)
         if needed in BAD or needed is Verdict.NOT_APPLICABLE:
-            return not_applicable(f"cannot be looked at: {probe.needs} has not passed"), 0.0
+            cause = self._causes.get(probe.needs, probe.needs)
+            self._causes[probe.name] = cause
+            return f"cannot be looked at: {cause} has not passed"
         if probe.needs and self._unpacked is None:
             self._unpacked = self._unpack()
         if probe.needs and self._unpacked:
-            return not_applicable(f"cannot be unpacked: {self._unpacked}"), 0.0
-        self._count += 1
-        shared = self._folder / f"{self._count:02d}"
-        shared.mkdir()
-        return self._staged(probe, shared)
+            return f"cannot be unpacked: {self._unpacked}"
+        return ""
 
     def _unpack(self) -> str:
         """Unpack the FMU; return why it cannot be, empty where it can."""
@@ -218,8 +221,11 @@ class _Running:
             return str(error)
         return ""
 
-    def _staged(self, probe: Probe, shared: Path) -> tuple[Seen, float]:
+    def _staged(self, probe: Probe) -> tuple[Seen, float]:
         """Run the processes of a probe until one has a verdict."""
+        self._count += 1
+        shared = self._folder / f"{self._count:02d}"
+        shared.mkdir()
         seconds = 0.0
         for stage in range(len(probe.stages)):
             place = shared / f"process {stage}"

@@ -76,6 +76,8 @@ class Finding:
         Something to do about it; empty where nothing is wrong.
     seconds : float
         Time that the probe took (s).
+    passed_over : bool
+        Whether it did not run, as something that it needs has not passed.
     """
 
     theme: str
@@ -84,6 +86,7 @@ class Finding:
     what: str
     remedy: str = ""
     seconds: float = 0.0
+    passed_over: bool = False
 
     @property
     def name(self) -> str:
@@ -153,12 +156,15 @@ class Check:
         return f"{counted(len(self.findings), 'probe')}: {told}"
 
     def table(self) -> Table:
-        """Return a row for each probe; what was seen stands with those that found something."""
+        """Return a row for each probe that ran, and one for those passed over for a cause."""
         about = ", ".join(filter(None, (self.model, f"FMI {self.version}", self.tool)))
         table = Table(("probe", "verdict", "seen"), title=f"{self.fmu.name}: {about}")
         for finding in self.findings:
             remedy = f" → {finding.remedy}" if finding.remedy else ""
-            table.add(finding.name, finding.verdict, finding.what + remedy)
+            if not finding.passed_over:
+                table.add(finding.name, finding.verdict, finding.what + remedy)
+        for what, number in Counter(f.what for f in self.findings if f.passed_over).items():
+            table.add(f"{number} more", Verdict.NOT_APPLICABLE, what)
         return table
 
     def as_data(self) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """Parts of the commands of all analyses: progress, names of options, display of a result."""
 
-import re
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import Any
@@ -11,8 +11,9 @@ import typer
 
 from ..analyses.frame import Result, StageProgress
 from ..core.ending import true_cause
-from ..core.errors import AnalysisFailed, InputRefused, Problem
+from ..core.errors import AnalysisFailed, InputRefused
 from .screen import INTERRUPTED, RUN_FAILED, Screen
+from .words import option
 
 
 @contextmanager
@@ -74,31 +75,18 @@ def stages(screen: Screen) -> Iterator[StageProgress]:
         yield progress
 
 
-_OPTIONS = {
-    "values": "--set",
-    "sizes": "--size",
-    "folder": "--output-dir",
-    "metrics": "--metric",
-    "probes": "--probe",
-    "platforms": "--platform",
-    "certificates": "--tls-ca, --tls-cert and --tls-key",
-}
-"""Options by the argument of the library, where the two have different names."""
-_ASSIGNED = re.compile(r"(?<![\w.'\"])(\w+)=(?:\"([^\"]*)\"|(True|\.\.\.)|([\d.]+(?:e[+-]?\d+)?))")
-"""An argument with its value, as the library writes them: ``runtime="native"``, ``folder=...``."""
-
-
 @contextmanager
 def options_named(
     arguments: Collection[str], target: str = "", given: Collection[str] | None = None
 ) -> Iterator[None]:
-    """Name the arguments of a function in its refusals as the options of a command.
+    """Name the arguments that a function refuses as the options of a command.
+
+    Arguments in the texts of a refusal are written as options wherever they are shown.
 
     Parameters
     ----------
     arguments : collection of str
-        Arguments that are options: ``scheduler x`` is shown as ``--scheduler x``, and
-        ``runtime="native"`` in a text as ``--runtime native``.
+        Arguments that are options: ``scheduler x`` is shown as ``--scheduler x``.
     target : str
         What they change: ``lab-impact: stop_time`` is shown as ``--stop-time``.
     given : collection of str, optional
@@ -115,11 +103,7 @@ def options_named(
     except InputRefused as refusal:
         places = arguments if given is None else given
         problems = [
-            Problem(
-                _place(problem.where, places, target),
-                in_options(problem.what, arguments),
-                in_options(problem.remedy, arguments),
-            )
+            replace(problem, where=_place(problem.where, places, target))
             for problem in refusal.problems
         ]
         raise type(refusal)(problems) from None
@@ -129,37 +113,8 @@ def _place(where: str, arguments: Collection[str], target: str) -> str:
     name, blank, rest = where.removeprefix(f"{target}: ").partition(" ")
     table, dot, entry = name.partition(".")
     if dot and table in arguments:
-        return f"{_option(table)} {entry}{blank}{rest}"
-    return f"{_option(name)}{blank}{rest}" if name in arguments else where
-
-
-def _option(argument: str) -> str:
-    return _OPTIONS.get(argument, f"--{argument.replace('_', '-')}")
-
-
-def in_options(text: str, arguments: Collection[str]) -> str:
-    """Write the arguments in a text of the library as the options of a command.
-
-    Parameters
-    ----------
-    text : str
-        With arguments as Python writes them: ``runtime="native"``, ``folder=...``.
-    arguments : collection of str
-        Those that are options.
-
-    Returns
-    -------
-    str
-        ``--runtime native``, ``--output-dir``.
-    """
-
-    def written(found: re.Match[str]) -> str:
-        argument, word, _, number = found.groups()
-        if argument not in arguments:
-            return found[0]
-        return " ".join(filter(None, (_option(argument), word or number)))
-
-    return _ASSIGNED.sub(written, text)
+        return f"{option(table)} {entry}{blank}{rest}"
+    return f"{option(name)}{blank}{rest}" if name in arguments else where
 
 
 def show(screen: Screen, result: Result) -> None:

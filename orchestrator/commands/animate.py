@@ -11,7 +11,7 @@ from ..animations.formats import animation_format
 from ..campaigns.replay import check
 from ..core.errors import InputRefused, Problem, all_causes, refusing_unwritable
 from ..runs.run import read_run
-from .analysis import in_options, options_named
+from .analysis import options_named
 from .drawing import refuse_foreign_file
 from .options import Json, Quiet
 from .screen import Screen, opened
@@ -61,7 +61,7 @@ def command(
             return
         found = read_run(run)
         if advice := is_coarse(found):
-            screen.note(in_options(advice, _OPTIONS))
+            screen.note(advice)
         with screen.counting("frames") as count:
             file = found.animate(output, progress=count)
         if as_json:

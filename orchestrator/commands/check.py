@@ -55,7 +55,7 @@ def command(
     """
     with opened(quiet, as_json) as screen:
         if junit_file is not None:
-            with all_causes(FmuFile(fmu).model_description):
+            with all_causes(FmuFile(fmu, to_run=False).model_description):
                 _refuse_misplaced(junit_file)
         arguments = ("probes", "step_size", "time_limit")
         with options_named(arguments), screen.counting("probes") as counted:

@@ -6,7 +6,6 @@ import typer
 
 from ..runs import health
 from ..temporary import sweep
-from .analysis import in_options
 from .options import RESULTS
 from .screen import opened
 
@@ -35,6 +34,6 @@ def command(clean: _Clean = False) -> None:
                 screen.show(table, "")
         reasons = health.slow_reasons()
         for reason in reasons:
-            screen.say(f"slow: {in_options(reason, ('runtime',))}")
+            screen.say(f"slow: {reason}")
         if not reasons:
             screen.say("nothing makes it slow")

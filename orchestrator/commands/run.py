@@ -18,7 +18,7 @@ from ..runs.request import AUTO, Request
 from ..runs.run import Run
 from ..runs.simulation import simulate, with_facts
 from ..runs.system import System
-from .analysis import in_options, options_named
+from .analysis import options_named
 from .assignments import sizes_of, values_of
 from .drawing import draw
 from .options import (
@@ -252,7 +252,7 @@ def _simulate(
             system = System.prepared(request, screen.note, problems)
         facts = system.job.facts
         if "runtime" in facts:
-            reason = in_options(facts["runtime_reason"], OPTIONS)
+            reason = facts["runtime_reason"]
             screen.note(f"{facts['runtime']} FMUs ({reason})")
         if size := _size_in_words(system):
             screen.note(size)

@@ -9,7 +9,7 @@ import unicodedata
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -25,6 +25,7 @@ from rockshed.components.common.cache import cache_problem
 from ..core.ending import asked_to_end, interrupt, lost_requests_repeated, true_cause
 from ..core.errors import ComponentLost, InputRefused, Problem
 from ..tables import Table
+from .words import in_options
 
 if TYPE_CHECKING:
     from ..runs.inspection import Overview
@@ -237,7 +238,7 @@ class Screen:
     def note(self, text: str) -> None:
         """Say what is being done, unless the command is quiet."""
         if not self.quiet:
-            self.err.print(escape(printable(text)), style="dim", soft_wrap=True)
+            self.err.print(escape(_worded(text)), style="dim", soft_wrap=True)
 
     def warn(self, text: str) -> None:
         """Say something that the user should know although it went on."""
@@ -255,10 +256,14 @@ class Screen:
         self._marked("bold red", "failed:", text)
 
     def _marked(self, style: str, word: str, text: str) -> None:
-        self.err.print(Text.assemble((word, style), " ", printable(text)), soft_wrap=True)
+        self.err.print(Text.assemble((word, style), " ", _worded(text)), soft_wrap=True)
 
     def refuse(self, problems: Sequence[Problem]) -> None:
         """Say what has to be changed before the command can be tried again."""
+        problems = [
+            replace(each, what=in_options(each.what), remedy=in_options(each.remedy))
+            for each in problems
+        ]
         if self.as_json:
             self.dump({"status": "refused", "problems": [asdict(problem) for problem in problems]})
         count = "" if len(problems) == 1 else f"{len(problems)} problems"
@@ -429,12 +434,17 @@ class Screen:
                     self.out.print(Text(f"  {words}"), soft_wrap=True)
 
     def say(self, text: str) -> None:
-        """Print a line as it stands, however long it is."""
-        self.out.print(Text(printable(text)), soft_wrap=True)
+        """Print a line, however long it is."""
+        self.out.print(Text(_worded(text)), soft_wrap=True)
 
     def dump(self, content: Any) -> None:
         """Print results for a program, in letters that every encoding has."""
         self.out.file.write(json.dumps(content, indent=2) + "\n")
+
+
+def _worded(text: str) -> str:
+    """Return a text of the library in the words of the command line, ready to be shown."""
+    return printable(in_options(text))
 
 
 def _reached(reached: float, stop: float) -> str:
@@ -487,8 +497,9 @@ def column_widths(table: Table, cells: Sequence[Sequence[str]], width: int) -> l
     Returns
     -------
     list of int or None
-        Columns of words are broken into lines between words where that is needed, but for the
-        first, which has the names; None if the table does not fit all the same.
+        Columns of words are broken into lines between words where that is needed, the first, which
+        has the names, only where that of all others is not enough; None if the table does not fit
+        all the same.
     """
     columns = [
         [printable(title, ends=""), *column]
@@ -496,12 +507,17 @@ def column_widths(table: Table, cells: Sequence[Sequence[str]], width: int) -> l
     ]
     widths = [max(map(cell_len, column)) for column in columns]
     least = [
-        wide if title in table.right or not number else max(map(_longest_word, column))
-        for number, (title, column, wide) in enumerate(
-            zip(table.columns, columns, widths, strict=True)
-        )
+        wide if title in table.right else max(map(_longest_word, column))
+        for title, column, wide in zip(table.columns, columns, widths, strict=True)
     ]
-    excess = sum(widths) + GAP * (len(widths) - 1) - width
+    room = width - GAP * (len(widths) - 1)
+    return _narrowed(widths, [widths[0], *least[1:]], room) or _narrowed(widths, least, room)
+
+
+def _narrowed(widths: Sequence[int], least: Sequence[int], room: int) -> list[int] | None:
+    """Return widths that fit into a line, the widest made narrower first; None where none do."""
+    widths = list(widths)
+    excess = sum(widths) - room
     while excess > 0:
         spare = [wide - few for wide, few in zip(widths, least, strict=True)]
         widest = spare.index(max(spare))

@@ -40,10 +40,18 @@ Facts = Mapping[str, Any]
 """Facts of a run by their key in its provenance."""
 
 
-def sources_of(system: SystemSpec) -> dict[str, Source]:
-    """Return the FMU files of a system by component, those to be isolated as such."""
+def sources_of(system: SystemSpec, to_run: bool = True) -> dict[str, Source]:
+    """Return the FMU files of a system by component, those to be isolated as such.
+
+    Parameters
+    ----------
+    system : SystemSpec
+        Components and their FMUs.
+    to_run : bool
+        Whether it is to run: then FMUs that this machine cannot run are refused.
+    """
     limits = system.isolated
-    files = {name: FmuFile(Path(spec.fmu)) for name, spec in system.components.items()}
+    files = {name: FmuFile(Path(spec.fmu), to_run) for name, spec in system.components.items()}
     return {
         name: IsolatedFmu(file, limits[name]) if name in limits else file
         for name, file in files.items()

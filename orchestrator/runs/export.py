@@ -153,7 +153,7 @@ def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
         remedy = "write a system file (a folder), or take the scenario out"
         raise InputRefused([Problem("scenario", "has no place in an SSP", remedy)])
     with job.refused_in_place():
-        plan = make_plan(job.system, {**sources_of(job.system), **job.sources})
+        plan = make_plan(job.system, {**sources_of(job.system, to_run=False), **job.sources})
     if job.ssp is not None:
         rewrite_ssp(job.ssp, plan, _changes(job.ssp.system, plan), file, version)
         return file
@@ -168,7 +168,7 @@ def export_ssp(job: Job, file: Path, version: str | None = None) -> Path:
 
 def _changes(before: SystemSpec, plan: Plan) -> list[tuple[str, Port, float | str]]:
     """Return the values of a plan that are other than those of a system."""
-    known = make_plan(before, sources_of(before)).starts
+    known = make_plan(before, sources_of(before, to_run=False)).starts
     told = {name: {port.name: value for port, value in known[name]} for name in known}
     return [
         (name, port, value)

@@ -1,6 +1,7 @@
 """The content of an FMU or of a system, as texts and tables."""
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -8,6 +9,14 @@ from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
 
+from ..checking.experiments.manifest import (
+    FOLDER,
+    MANIFEST,
+    Remarks,
+    Untrue,
+    read_manifest,
+    setups,
+)
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import (
@@ -17,7 +26,7 @@ from ..core.fmu.fmu_slave import (
     UnusableError,
     read_description,
 )
-from ..core.fmu.slave import REAL
+from ..core.fmu.slave import REAL, Source
 from ..core.fmu.terminals import terminals_of_bonds
 from ..core.run import sources_of
 from ..core.system.plan import Plan
@@ -25,6 +34,7 @@ from ..core.system.planning import make_plan
 from ..core.system.system import SystemSpec
 from ..core.system.values import written
 from ..tables import Table
+from ..temporary import TemporaryFolder
 from .job import Job
 from .subsystem import component_of
 from .undriven import undriven
@@ -74,18 +84,45 @@ def describe_fmu(path: Path) -> Overview:
     InputRefused
         There is no such file, or it is no FMU for co-simulation that can be read.
     """
-    file = FmuFile(path)
+    file = FmuFile(path, to_run=False)
     xml = file.model_description()
     try:
         description = read_description(xml)
     except UnusableError as error:
         raise InputRefused([Problem(str(path), str(error), error.remedy)]) from error
     root = ElementTree.fromstring(xml)
-    size = f"{path.stat().st_size / 1024:.0f} KiB"
-    facts = _facts(description, root, {"file": f"{path}  {size}"})
+    more = {
+        "file": f"{path}  {path.stat().st_size / 1024:.0f} KiB",
+        "platforms": ", ".join(file.platforms()) or "none",
+        "experiments": _experiments(file),
+    }
+    facts = _facts(description, root, more)
     terminals = _terminals(file.content(TERMINALS_FILE)) or _bonds(description)
-    remarks = [f"warning: {text}" for text in description.warnings]
+    remarks = [f"warning: {text}" for text in description.warnings] + _not_here(file)
     return Overview([facts, *_variables(description), *terminals, *remarks])
+
+
+def _experiments(file: FmuFile) -> str:
+    """Return how many experiments of each purpose an FMU carries."""
+    if file.content((FOLDER / MANIFEST).as_posix()) is None:
+        return "none"
+    with TemporaryFolder() as folder:
+        file.unpack(folder, FOLDER.as_posix())
+        said = Remarks()
+        try:
+            found = setups(folder, read_manifest(folder, said), said)
+        except Untrue as untrue:
+            return f"cannot be read: {untrue}"
+    counts = Counter(setup.purpose for setup in found)
+    return ", ".join(f"{number} {purpose}" for purpose, number in counts.items()) or "none"
+
+
+def _not_here(file: FmuFile) -> list[str]:
+    """Return that this machine cannot run an FMU, where that is so."""
+    problem = file.cannot_run
+    if problem is None:
+        return []
+    return [f"warning: cannot run here: it {problem.what}; to run it, {problem.remedy}"]
 
 
 def describe_component(name: str) -> Overview:
@@ -248,8 +285,9 @@ def describe_system(job: Job) -> Overview:
         The system does not fit its FMUs.
     """
     system = job.system
+    sources = {**sources_of(system, to_run=False), **job.sources}
     with job.refused_in_place():
-        plan = make_plan(system, {**sources_of(system), **job.sources})
+        plan = make_plan(system, sources)
     parts: list[str | Table] = [
         f"{system.name}{': ' if system.description else ''}{system.description}\n"
         f"{system.master} master, order {', '.join(plan.order)}; exchange every "
@@ -271,7 +309,19 @@ def describe_system(job: Job) -> Overview:
         parts.append(_scenario(plan))
     for when, loops in (("", plan.loops), (" at the start", plan.loops_at_start)):
         parts += [f"algebraic loop{when}: {loop}" for loop in loops]
-    return Overview([*parts, *(f"warning: {text}" for text in undriven(plan))])
+    parts += [f"warning: {text}" for text in undriven(plan)]
+    return Overview([*parts, *_that_cannot_run(sources)])
+
+
+def _that_cannot_run(sources: Mapping[str, Source]) -> list[str]:
+    """Return for each component whose FMU this machine cannot run, that it is so."""
+    problems = {name: getattr(source, "cannot_run", None) for name, source in sources.items()}
+    return [
+        f"warning: {name} cannot run here: {problem.where} {problem.what}; to run it, "
+        f"{problem.remedy}"
+        for name, problem in problems.items()
+        if problem is not None
+    ]
 
 
 def _scenario(plan: Plan) -> Table:

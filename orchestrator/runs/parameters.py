@@ -47,7 +47,9 @@ class SystemValues:
         found = {}
         for name, spec in self.job.system.components.items():
             try:
-                found[name] = read_description(FmuFile(Path(spec.fmu)).model_description())
+                found[name] = read_description(
+                    FmuFile(Path(spec.fmu), to_run=False).model_description()
+                )
             except (InputRefused, UnusableError):
                 continue
         return found

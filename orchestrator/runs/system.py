@@ -14,6 +14,7 @@ from ..cases.registry import case as case_of
 from ..cases.registry import is_case
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.slave import Source
+from ..core.run import sources_of
 from ..core.system.fields import Value
 from ..core.system.names import split_name
 from ..core.system.other_values import with_values
@@ -589,7 +590,8 @@ class System:
         self.refuse_empty()
         loops: tuple[str, ...] = ()
         with suppress(InputRefused):
-            loops = make_plan(self.spec, self.job.sources).loops
+            sources = {**sources_of(self.spec, to_run=False), **self.job.sources}
+            loops = make_plan(self.spec, sources).loops
         return system_diagram(self.spec, loops)
 
     def _repr_svg_(self) -> str | None:

@@ -90,7 +90,9 @@ class SystemFile:
         from ..core.system.planning import problems_with
 
         folder = self.path.resolve().parent
-        data, _ = numbers_in(self.content, lambda _, entry: FmuFile(folder / fmu_of(entry)))
+        data, _ = numbers_in(
+            self.content, lambda _, entry: FmuFile(folder / fmu_of(entry), to_run=False)
+        )
         known = Remaining(data)
         system = known.system()
         if system is None:

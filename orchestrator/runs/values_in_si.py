@@ -141,7 +141,7 @@ def source_in(sources: Mapping[str, Source]) -> Callable[[str, Any], Source]:
     """
 
     def source_of(component: str, entry: Any) -> Source:
-        return sources.get(component) or FmuFile(Path(fmu_of(entry)))
+        return sources.get(component) or FmuFile(Path(fmu_of(entry)), to_run=False)
 
     return source_of
 

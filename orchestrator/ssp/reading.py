@@ -71,7 +71,7 @@ class Imported:
 
 def model_description(file: Path) -> bytes:
     """Return the ``modelDescription.xml`` of an FMU file."""
-    return FmuFile(file).model_description()
+    return FmuFile(file, to_run=False).model_description()
 
 
 def read_ssp(path: Path, options: Mapping[str, Any] | None = None) -> Imported:

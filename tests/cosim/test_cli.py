@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from rockshed.commands.analysis import options_named
 from rockshed.commands.app import COMMANDS, app
-from rockshed.commands.screen import spoken
+from rockshed.commands.screen import Screen, spoken
 from rockshed.core.errors import InputRefused, Problem
 from rockshed.core.results.reading import read_run
 from rockshed.core.system.reading import load_system
@@ -521,7 +521,7 @@ def test_the_encoding_of_a_system_file(rockshed, tmp_path, encoding, said):
 
 
 def test_a_long_run_tells_how_long_it_will_take(capsys):
-    from rockshed.commands.screen import Estimate, Screen
+    from rockshed.commands.screen import Estimate
 
     now = [0.0]
     estimate = Estimate(lambda: now[0])
@@ -589,11 +589,15 @@ def test_a_command_names_its_options_where_the_library_names_arguments(
     assert said in in_one_line(result.stderr)
 
 
-def test_a_text_of_the_user_that_looks_like_an_argument_stays_as_it_is():
-    problem = Problem("folder", "'runtime=\"x\"' is no word, nor is sand.runtime=3", "runtime=true")
+def test_a_text_of_the_user_that_looks_like_an_argument_stays_as_it_is(capsys):
+    told = "'runtime=\"x\"' is no word, nor is sand.runtime=3 in a/runtime=3", "runtime=true"
+    problem = Problem("folder", *told)
     with pytest.raises(InputRefused) as refusal, options_named(("runtime", "folder"), given=()):
         raise InputRefused([problem])
     assert refusal.value.problems == [problem]
+    Screen().refuse([problem])
+    shown = in_one_line(capsys.readouterr().err)
+    assert all(text in shown for text in told)
 
 
 def test_a_refusal_as_json(rockshed):

@@ -344,6 +344,36 @@ def test_a_table_with_a_long_name_is_turned(capsys, monkeypatch):
     assert "value 1.25" in shown
 
 
+@pytest.mark.parametrize("columns", [60, 80])
+def test_names_are_broken_between_words_before_a_table_is_turned(capsys, monkeypatch, columns):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    name = "peak deflection at midspan of the girder (mm)"
+    table = Table(("figure", "step (s)", "value", "error"), right=("step (s)", "value", "error"))
+    table.add(name, "0.00001", "0.007853123", "-0.0067 %")
+    table.add("", "0.000005", "0.007853124", "+0.0067 %")
+    Screen().table(table)
+    shown = capsys.readouterr().out.splitlines()
+    assert max(map(len, shown)) <= columns
+    figures = " ".join(line.split("  ")[0] for line in shown[1:-1])
+    assert " ".join(figures.split()) == name
+    assert shown[1].split()[-4:] == ["0.00001", "0.007853123", "-0.0067", "%"]
+    assert shown[-1].split() == ["0.000005", "0.007853124", "+0.0067", "%"]
+
+
+def test_the_tables_of_a_study_of_exchange_steps_have_whole_names_on_80_columns(
+    rockshed, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", "80")
+    words = ("--levels", 3, "--stop-time", "0.5ms", "--no-figures", "-q", "--output-dir", "o")
+    done = rockshed("converge", "lab-impact", *words)
+    assert done.exit_code == 0, done.output
+    assert "…" not in done.stdout
+    shown = [line for line in done.stdout.splitlines() if ": " not in line]
+    figures = [line for line in shown if line.startswith("peak midspan")]
+    assert len(figures) == 2
+    assert max(map(len, figures)) <= 80
+
+
 def test_no_warning_of_a_library_is_on_the_screen(rockshed, site, tmp_path):
     """Neither for a level profile, nor for letters that the font of the pictures does not have."""
     file = site("平", profile="x,y\n0,0\n60,0\n")

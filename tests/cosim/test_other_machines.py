@@ -77,6 +77,44 @@ def test_the_command_says_it_too(on_arm, rock_fmu):
     assert "has no binary for this machine (aarch64-linux); it has linux64" in done.stderr
 
 
+def test_info_shows_an_fmu_that_cannot_run_here(on_arm, rock_fmu):
+    done = CliRunner().invoke(app, ["info", str(rock_fmu)], env={"COLUMNS": "300"})
+    assert done.exit_code == 0, done.output
+    shown = " ".join(done.stdout.split())
+    assert "platforms linux64, win64" in shown
+    assert "experiments 1 smoke-test, 2 validation" in shown
+    assert "mass kg" in shown
+    assert "warning: cannot run here: it has no binary for this machine (aarch64-linux)" in shown
+
+
+def test_systems_and_ssps_with_it_are_shown_and_exported_and_not_run(on_arm, rock_fmu, tmp_path):
+    def invoked(*words):
+        return CliRunner().invoke(app, [str(word) for word in words], env={"COLUMNS": "300"})
+
+    fall(rock_fmu).save(tmp_path / "system")
+    system, ssp = tmp_path / "system" / "system.toml", tmp_path / "fall.ssp"
+    drawn = tmp_path / "fall.svg"
+    assert invoked("export", system, ssp).exit_code == 0
+    assert invoked("export", ssp, tmp_path / "again.ssp").exit_code == 0
+    for target in (system, ssp):
+        done = invoked("info", target)
+        assert done.exit_code == 0, done.output
+        assert "warning: rock cannot run here" in done.stdout
+        done = invoked("run", target, "--output-dir", tmp_path / "results")
+        assert done.exit_code == 2
+        assert "has no binary for this machine (aarch64-linux)" in done.stderr
+    assert invoked("info", system, "--diagram", drawn).exit_code == 0
+    assert drawn.is_file()
+
+
+def test_isolated_ones_are_told_too(on_arm, rock_fmu, tmp_path):
+    fall(rock_fmu).save(tmp_path / "system")
+    system = tmp_path / "system" / "system.toml"
+    system.write_text('isolate = ["rock"]\n' + system.read_text())
+    done = CliRunner().invoke(app, ["info", str(system)], env={"COLUMNS": "300"})
+    assert "warning: rock cannot run here" in done.stdout, done.output
+
+
 def test_a_library_in_the_folder_of_older_tools_runs_with_the_same_bits(
     monkeypatch, rock, tmp_path
 ):

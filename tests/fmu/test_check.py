@@ -143,6 +143,27 @@ def test_an_fmu_without_a_library_for_this_machine_is_described_all_the_same(tmp
     assert check["conduct/step-first"].verdict is Verdict.NOT_APPLICABLE
 
 
+def test_probes_that_are_passed_over_take_one_line_and_are_all_in_json_and_junit(tmp_path):
+    check = rockshed.check_fmu(written(tmp_path / "x.fmu"))
+    passed_over = [f for f in check if f.verdict is Verdict.NOT_APPLICABLE and f.passed_over]
+    ran = [f.name for f in check if not f.passed_over]
+    assert len(passed_over) > 40
+    rows = list(check.table())
+    assert [row["probe"] for row in rows] == [*ran, f"{len(passed_over)} more"]
+    assert rows[-1]["seen"] == "cannot be looked at: library/loads has not passed"
+    assert len(check.as_data()["findings"]) == len(ran) + len(passed_over)
+    suite = ElementTree.fromstring(junit(check).encode())
+    assert len(suite.findall("testcase/skipped")) >= len(passed_over)
+    assert len(suite.findall("testcase")) == len(check.findings)
+
+
+def test_junit_of_an_fmu_without_a_library_for_this_machine_is_written(tmp_path):
+    words = ["check", str(written(tmp_path / "x.fmu")), "--probe", "archive"]
+    done = CliRunner().invoke(app, [*words, "--junit", str(tmp_path / "j.xml")])
+    assert done.exit_code == 3
+    assert (tmp_path / "j.xml").is_file()
+
+
 def test_a_description_that_contradicts_itself_is_a_finding(tmp_path):
     file = written(tmp_path / "x.fmu", XML.replace("index='1'", "index='7'"))
     check = rockshed.check_fmu(file, probes=["description", "library/loads"])

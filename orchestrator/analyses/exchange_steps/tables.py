@@ -10,9 +10,6 @@ from .figures import Figure, Level
 if TYPE_CHECKING:
     from .result import ExchangeStepsResult
 
-_LONGEST = 27
-"""Letters of a figure in a table of 80 columns."""
-
 
 def level_table(levels: Sequence[Level]) -> Table:
     """Return the runs: exchanges, and the energy that system and couplings have made.
@@ -90,12 +87,7 @@ def order_in_words(figure: Figure) -> str:
 
 
 def _titled(figure: Figure, unit: str) -> str:
-    told = f" ({unit})" if unit else ""
-    room = _LONGEST - len(told)
-    if len(figure.name) <= room:
-        return figure.name + told
-    half = room // 2
-    return f"{figure.name[: room - half - 1]}…{figure.name[-half:]}{told}"
+    return f"{figure.name} ({unit})" if unit else figure.name
 
 
 def _entry(values: Sequence[float], place: int, scale: float, number: int) -> str:

@@ -71,7 +71,7 @@ def design_problems(design: str, factors: Sequence[Factor], samples: int | None)
             problems.append(Problem("samples", text, f"give {_power_near(samples)}"))
     elif samples is not None:
         text = f"a design {design} has as many points as its levels make"
-        problems.append(Problem("samples", text, "leave it out, or choose design=lhs"))
+        problems.append(Problem("samples", text, 'leave it out, or choose design="lhs"'))
     problems += [_level_problem(design, f) for f in factors if _misfit(design, f)]
     if design == LISTED and len(lengths := {len(factor.levels()) for factor in factors}) > 1:
         told = " and ".join(map(str, sorted(lengths)))
@@ -93,12 +93,12 @@ def _level_problem(design: str, factor: Factor) -> Problem:
     where = f"vary {factor.name}"
     if design in SAMPLED:
         text = f"a design {design} draws from the range, and has no use for a number of levels"
-        return Problem(where, text, "leave the number of levels out, or choose design=grid")
+        return Problem(where, text, 'leave the number of levels out, or choose design="grid"')
     if factor.is_distribution:
         text = f"is a distribution, and a design {design} has levels only"
-        return Problem(where, text, "choose design=random, lhs or sobol, with samples=...")
+        return Problem(where, text, 'draw samples, with design="lhs" and samples=...')
     text = f"a design {design} needs the number of levels of a range"
-    return Problem(where, text, "give it, LOW..HIGH:4 for four, or choose design=lhs")
+    return Problem(where, text, 'give it, LOW..HIGH:4 for four, or choose design="lhs"')
 
 
 def _power_near(samples: int) -> str:

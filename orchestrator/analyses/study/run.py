@@ -420,7 +420,7 @@ def _shares(percentiles: Sequence[float] | None, plan: _Plan) -> list[float]:
             problems.append(Problem(where, "is given twice", "give it once"))
         elif plan.design not in SAMPLED:
             text = f"a design {plan.design} is no sample, and has no percentiles"
-            problems.append(Problem(where, text, "choose design=random, lhs or sobol"))
+            problems.append(Problem(where, text, 'draw samples, with design="lhs"'))
         elif needed(0.01 * percent) > _sample_size(plan):
             text = (
                 f"{_sample_size(plan)} samples do not bear it: its 95 % interval has two bounds "

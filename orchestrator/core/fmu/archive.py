@@ -172,13 +172,15 @@ class Archive:
         except _UNREADABLE as error:
             raise ArchiveError(f"cannot be unpacked: {name}: {error}") from error
 
-    def unpack(self, folder: Path) -> None:
+    def unpack(self, folder: Path, under: str = "") -> None:
         """Write all files into a folder.
 
         Parameters
         ----------
         folder : Path
             Exists.
+        under : str
+            Begin of the names of the files that are written; by default all are.
 
         Raises
         ------
@@ -186,7 +188,8 @@ class Archive:
             A member is damaged.
         """
         self.check_size()
-        for name, info in self._members.items():
+        chosen = {n: info for n, info in self._members.items() if n.startswith(under)}
+        for name, info in chosen.items():
             target = folder / name
             with _possible(name):
                 (target if _is_folder(info) else target.parent).mkdir(parents=True, exist_ok=True)

@@ -42,7 +42,7 @@ from fmpy.model_description import (
     read_model_description,
 )
 
-from ...platforms import NoBinaryError, binary
+from ...platforms import NoBinaryError, binary, platforms_in
 from ...temporary import TemporaryFolder
 from ..errors import InputRefused, Problem
 from .annotations import NOTHING, Annotation, read_annotations
@@ -100,6 +100,8 @@ class FmuFile:
     ----------
     path : Path
         Of the file.
+    to_run : bool
+        Whether it is to run on this machine: then one that cannot is refused.
 
     Attributes
     ----------
@@ -107,12 +109,16 @@ class FmuFile:
         Path, and hash of the content once it has been read.
     library : str
         Path of this machine's library inside it, once the description has been read.
+    cannot_run : Problem, optional
+        The reason why it cannot run on this machine, once the description has been read.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, to_run: bool = True) -> None:
         self.path = path
         self.origin = {"fmu": str(path)}
         self.library = ""
+        self.cannot_run: Problem | None = None
+        self._to_run = to_run
 
     def model_description(self) -> bytes:
         """Read the modelDescription.xml, and see whether this machine can run the FMU.
@@ -120,7 +126,7 @@ class FmuFile:
         Raises
         ------
         InputRefused
-            No such file, not an FMU, or no binary for this machine.
+            No such file, not an FMU, or no binary for this machine where it is to run.
         """
         if os.path.isdir(self.path):  # Path.is_dir raises where a name is too long
             raise self._refusal(
@@ -138,8 +144,21 @@ class FmuFile:
                     f"is not an FMU: there is no {_DESCRIPTION_FILE} in it", "export it again"
                 )
             with contextlib.suppress(UnusableError):  # then that is the reason
-                self.library = self._library(_checked_root(xml), archive)
+                self._find_library(_checked_root(xml), archive)
+        if self._to_run:
+            self.refuse_to_run()
         return xml
+
+    def refuse_to_run(self) -> None:
+        """Refuse an FMU that cannot run on this machine.
+
+        Raises
+        ------
+        InputRefused
+            It has no binary for it.
+        """
+        if self.cannot_run is not None:
+            raise InputRefused([self.cannot_run])
 
     @contextlib.contextmanager
     def _archive(self, content: bytes | None = None) -> Iterator[Archive]:
@@ -155,8 +174,13 @@ class FmuFile:
         with self._archive() as archive:
             return archive.read(name, MOST_DESCRIPTION)
 
-    def unpack(self, folder: Path) -> None:
-        """Unpack everything into a folder.
+    def platforms(self) -> list[str]:
+        """Return the folders of the FMU with libraries, by the names of their platforms."""
+        with self._archive() as archive:
+            return platforms_in(archive.names)
+
+    def unpack(self, folder: Path, under: str = "") -> None:
+        """Unpack everything into a folder, or what lies in one of its own folders.
 
         Raises
         ------
@@ -164,17 +188,17 @@ class FmuFile:
             The archive is damaged or too large.
         """
         with self._archive() as archive:
-            archive.unpack(folder)
+            archive.unpack(folder, under)
 
-    def _library(self, root: ElementTree.Element, archive: Archive) -> str:
-        """Return the path of this machine's library inside the FMU."""
+    def _find_library(self, root: ElementTree.Element, archive: Archive) -> None:
+        """Look for this machine's library inside the FMU."""
         kind = root.find("CoSimulation")
         identifier = "" if kind is None else kind.get("modelIdentifier", "")
         fmi = int(root.get("fmiVersion", "2")[0])
         try:
-            return binary(identifier, fmi, archive.names, archive.head)
+            self.library = binary(identifier, fmi, archive.names, archive.head)
         except NoBinaryError as error:
-            raise self._refusal(str(error), error.remedy) from error
+            self.cannot_run = Problem(str(self.path), str(error), error.remedy)
 
     def _refusal(self, what: str, remedy: str) -> InputRefused:
         return InputRefused([Problem(str(self.path), what, remedy)])
@@ -193,6 +217,7 @@ class FmuFile:
             The library cannot be loaded, or it makes no instance.
         """
         description = read_description(self.model_description())
+        self.refuse_to_run()
         if description.is_fmi_3:
             return Fmi3Slave(self, name, description)
         return FmuSlave(self, name, description)

@@ -61,6 +61,11 @@ class IsolatedFmu:
         self.origin.update(self._file.origin)
         return xml
 
+    @property
+    def cannot_run(self) -> Problem | None:
+        """The reason why it cannot run on this machine, once the description has been read."""
+        return self._file.cannot_run
+
     def content(self, name: str) -> bytes | None:
         """Read a file in the FMU; return None if it is not in it."""
         return self._file.content(name)

@@ -97,7 +97,7 @@ def system_in(content: Mapping[str, Any], path: Path) -> SystemSpec:
     folder = path.resolve().parent
 
     def source_of(component: str, entry: Any) -> Source:
-        return FmuFile(folder / fmu_of(entry))
+        return FmuFile(folder / fmu_of(entry), to_run=False)
 
     system = system_from(content, str(path), source_of)
     components = {
