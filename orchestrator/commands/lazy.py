@@ -7,6 +7,8 @@ from typing import Any, ClassVar
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from .words import options_here
+
 STYLE: dict[str, Any] = {
     "add_completion": False,
     "pretty_exceptions_show_locals": False,
@@ -29,6 +31,11 @@ class OnceEach(TyperCommand):
                 what = f"{option.opts[0]} is given {given.count(option)} times; keep one of them"
                 raise typer.BadParameter(what, ctx)
         return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Carry the command out; messages are in the words of its options."""
+        with options_here({option for each in self.params for option in each.opts}):
+            return super().invoke(ctx)
 
 
 class LazyCommands(TyperGroup):

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 from typer.main import get_command
+from typer.testing import CliRunner
 
 import rockshed
 from rockshed.commands.app import app
 from rockshed.commands.screen import Screen
-from rockshed.commands.words import OPTIONS, SAME, in_options, option
+from rockshed.commands.words import OF_RUN, OPTIONS, SAME, in_options, option, options_here
 from rockshed.core.errors import Problem
 
 LIBRARY = Path(rockshed.__file__).parent
@@ -77,6 +78,28 @@ def test_a_value_in_a_message_is_written_as_python_has_it():
 def test_every_option_that_takes_the_place_of_an_argument_is_one_of_a_command(argument):
     known = set(options(get_command(app)))
     assert set(re.findall(r"--[a-z-]+", option(argument))) <= known
+
+
+def test_an_option_that_the_command_does_not_have_is_named_with_the_one_that_has_it():
+    run = get_command(app).get_command(None, "run")
+    assert {opt for each in run.params for opt in each.opts} >= OF_RUN
+    build = "anew (`rockshed build`, sizes=...)"
+    with options_here({"--set"}):
+        assert in_options("give it with sizes=...") == "give it with `rockshed run --size`"
+        assert in_options(build) == "anew (`rockshed build`, --size)"
+        assert in_options("choose samples=4") == "choose --samples 4"
+    with options_here({"--size"}):
+        assert in_options("give it with sizes=...") == "give it with --size"
+        assert in_options(build) == "anew (`rockshed build`, --size)"
+
+
+@pytest.mark.parametrize(
+    ("command", "told"), [("converge", "with `rockshed run --size`"), ("run", "with --size")]
+)
+def test_a_size_among_the_values_is_refused_with_an_option_that_is_there(command, told):
+    done = CliRunner().invoke(app, [command, "lab-impact", "--set", "beam.elements=3"])
+    assert done.exit_code == 2
+    assert f"give beam.elements = 3 {told}" in " ".join(done.output.split())
 
 
 def test_all_that_a_screen_says_is_in_its_words(capsys):

@@ -19,7 +19,7 @@ from .variables import Declared, Numbers
 Matrix = NDArray[np.float64]
 """A row for each element of the unknowns, a column for each of the knowns."""
 
-_MOST_ELEMENTS = 200
+_MOST_ELEMENTS = 300
 """Elements of unknowns, and of knowns, that are looked at."""
 _CHANGES = {"Float32": 1e-2}
 _CHANGE = 1e-4
@@ -126,7 +126,8 @@ def after_a_step(subject: Subject) -> DerivativeState:
         instance.step(subject.step)
     listed = [*subject.model.outputs, *subject.model.derivatives]
     knowns = [v for v in subject.variables if _is_known_between_steps(subject, v)]
-    states = {u.variable.derivative.name for u in subject.model.derivatives}
+    derived = (unknown.variable.derivative for unknown in subject.model.derivatives)
+    states = {state.name for state in derived if state is not None}
     states -= {v.name for v in knowns}
     movable = frozenset(v.name for v in knowns)
     knowns += [v for v in subject.variables if v.name in states]
@@ -181,11 +182,11 @@ def _asked(
 def _first(variables: Sequence[Declared]) -> list[Declared]:
     """Return the first variables, as many as are looked at."""
     chosen: list[Declared] = []
+    left = _MOST_ELEMENTS
     for variable in variables:
-        if not variable.is_alias and variable.size > 0:
+        if not variable.is_alias and 0 < variable.size <= left:
             chosen.append(variable)
-        if sum(v.size for v in chosen) > _MOST_ELEMENTS:
-            return chosen[:-1]
+            left -= variable.size
     return chosen
 
 
