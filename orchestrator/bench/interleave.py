@@ -28,6 +28,14 @@ class Times:
         """Return the median over the rounds of one time as a multiple of another in its round."""
         return statistics.median(a / b for a, b in zip(self.seconds[name], self.seconds[reference]))
 
+    def ratio_of_least(self, name: str, reference: str) -> float:
+        """Return the least time of one as a multiple of the least one of another.
+
+        For work of some milliseconds that nothing can make shorter: what else the processor does
+        can only add to it.
+        """
+        return min(self.seconds[name]) / min(self.seconds[reference])
+
 
 def interleave(contestants: Mapping[str, Contestant], rounds: int) -> Times:
     """Let each contestant work once in every round, after one round that does not count.

@@ -17,6 +17,7 @@ from rockshed.fmus.native.fmu import CPU
 
 from ..temporary import TemporaryFolder
 from . import coupling, discs, rockfall
+from . import exchange_price as price
 from .exchange import BARE, OURS, PEERS, Pair
 from .interleave import interleave
 from .peer import Peer, answers
@@ -138,6 +139,35 @@ def exchange_rows(rounds: int) -> Iterator[BenchmarkRow]:
                 )
 
 
+_TURNS = 5
+"""Turns of each pair of relays in a round: they take some milliseconds, and their least counts."""
+
+
+def price_rows(rounds: int) -> Iterator[BenchmarkRow]:
+    """Measure what an exchange of native FMUs costs with ledger and rows, and with FMI 3.0."""
+    turns = _TURNS * rounds
+    try:
+        with price.accounts_of_relays(turns + 1) as contestants:
+            relays = interleave(contestants, turns)
+        impact = interleave(price.accounts_of_impact(), rounds)
+        with price.versions_of_fmi(turns + 1) as contestants:
+            versions = interleave(contestants, turns)
+    except BuildError as error:
+        yield BenchmarkRow("exchange of native FMUs, with ledger, rows, FMI 3.0", None, str(error))
+        return
+    bonds = f"exchange of two relays, {2 * price.CHANNELS} forces in bonds"
+    whole = "exchange of the laboratory impact, 1e-5 s, with ledger and a row every 0.1 ms"
+    arrays = f"exchange of {price.VALUES} values, {price.ARRAYS}"
+    for times, name, contestant, reference, goal in (
+        (relays, f"{bonds}, with ledger", price.LEDGER, price.BARE, None),
+        (relays, f"{bonds}, with ledger and a row each", price.KEPT, price.BARE, 1.3),
+        (impact, whole, price.KEPT, price.BARE, 1.3),
+        (versions, arrays, price.ARRAYS, price.SCALARS, 1.0),
+    ):
+        ratio = times.ratio_of_least(contestant, reference)
+        yield BenchmarkRow(name, ratio, "ratio", reference, goal)
+
+
 def start_rows(rounds: int) -> Iterator[BenchmarkRow]:
     """Measure a warm start of the command, to the first exchange and to its end."""
     first: list[float] = []
@@ -225,6 +255,7 @@ PARTS: Mapping[str, Callable[[int], Iterator[BenchmarkRow]]] = {
     "discs": disc_rows,
     "coupling": coupling_rows,
     "exchange": exchange_rows,
+    "price": price_rows,
     "start": start_rows,
     "rockfall": rockfall_rows,
     "cluster": cluster_rows,

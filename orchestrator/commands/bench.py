@@ -23,7 +23,7 @@ _MANY, _FEW = 7, 3
 _Parts = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="discs|coupling|exchange|start|rockfall|cluster|residuals|systems",
+        metavar="discs|coupling|exchange|price|start|rockfall|cluster|residuals|systems",
         help="All of them by default, but systems, which is asked for alone.",
     ),
 ]

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from rockshed.core.errors import RunFailed
+from rockshed.core.loop.ledger import _sums
+from rockshed.core.loop.recording import _runs
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
+from rockshed.core.system.timing import Timing
 from tests.cosim.mocks import Mock, inp, mass, out, par, spring, wired
 
 BOND = {"giver": "spring", "force": ["end1.force"], "taker": "mass", "position": ["position"]}
@@ -260,3 +263,24 @@ def test_the_summary_has_the_final_accounts(tmp_path):
         metric = result.metrics[name.replace(".", "_")]
         assert metric.value == result.series[name][-1]
         assert metric.unit == "J"
+
+
+def test_sums_are_added_from_left_to_right_to_the_bit():
+    rows = np.random.default_rng(5).normal(size=(7, 31)) * 10.0 ** np.arange(-15, 16)
+    expected = [0.0] * len(rows)
+    for i, row in enumerate(rows):
+        for value in row:
+            expected[i] += value
+    np.testing.assert_array_equal(_sums(rows), expected)
+    np.testing.assert_array_equal(_sums(rows[:1]), expected[:1])
+
+
+def test_moments_have_the_bits_of_single_times():
+    timing = Timing(3 * 10**17, 7, 10**6, 1, 1, {}, 10**12)
+    found = timing.moments(range(0, 10**6, 997))
+    assert found.tolist() == [timing.seconds(n) for n in range(0, 10**6, 997)]
+
+
+def test_places_that_follow_one_another_are_copied_together():
+    assert list(_runs([4, 5, 6, 2, 9, 10])) == [(0, 4, 3), (3, 2, 1), (4, 9, 2)]
+    assert list(_runs([])) == []

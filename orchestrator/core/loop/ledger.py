@@ -260,6 +260,11 @@ class Accounts:
 def _sums(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the sum of each row, added up from left to right.
 
-    The bits are then the same however many rows there are.
+    The bits are then the same however many rows there are. Columns are added, a fraction of the
+    time of adding along rows.
     """
-    return np.add.accumulate(rows, axis=1)[:, -1]
+    first, *others = rows.T
+    total = first.copy()
+    for column in others:
+        total += column
+    return total

@@ -2,7 +2,8 @@
 
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -70,7 +71,7 @@ class Recorder:
         self._sink = sink
         self._driver = driver
         recorded = self._plan.recorded
-        self._places = np.array([snapshots.place[end.name] for end in recorded], np.int64)
+        self._runs = list(_runs([snapshots.place[end.name] for end in recorded]))
         components = self._plan.system.components
         self._framed = [name for name in self._plan.order if components[name].record_states]
         self._flushed_at = time.monotonic()
@@ -103,16 +104,24 @@ class Recorder:
         waiting = self._snapshots.waiting
         if waiting:
             rows = self._snapshots.rows[: len(waiting)]
-            times = np.array([self._plan.timing.seconds(exchange) for exchange in waiting])
+            times = self._plan.timing.moments(waiting)
             if self.ended_at is not None:
                 times[-1] = self.ended_at
-            energies = self._accounts.values(rows, times)
-            told = self._driver.values(waiting)
-            self._sink.rows(times, np.concatenate((rows[:, self._places], energies, told), axis=1))
+            self._sink.rows(times, self._table(rows, times))
             self.rows_passed += len(waiting)
             waiting.clear()
         self._flushed_at = time.monotonic()
         self._accounts.refuse_runaway()
+
+    def _table(self, rows: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return all columns of snapshots that wait, in memory of its own."""
+        behind = (self._accounts.values(rows, times), self._driver.values(self._snapshots.waiting))
+        recorded = len(self._plan.recorded)
+        table = np.empty((len(rows), recorded + sum(part.shape[1] for part in behind)))
+        for first, place, number in self._runs:
+            table[:, first : first + number] = rows[:, place : place + number]
+        table[:, recorded:] = np.concatenate(behind, axis=1)
+        return table
 
     def next_frames(self, exchange: int) -> int:
         """Return the next exchange after which states are recorded; the last one if none are."""
@@ -144,6 +153,17 @@ class Recorder:
             return self._slaves[name].state()
         except RuntimeError as error:
             raise RunFailed(name, at, str(error)) from error
+
+
+def _runs(places: Sequence[int]) -> Iterator[tuple[int, int, int]]:
+    """Yield places that follow one another: number of the first one, its place, how many.
+
+    They are copied together, which takes a fraction of one by one.
+    """
+    jumps = np.flatnonzero(np.diff(places) != 1) + 1
+    for begin, end in pairwise([0, *jumps.tolist(), len(places)]):
+        if end > begin:
+            yield begin, places[begin], end - begin
 
 
 def last_words(slave: Slave) -> str:

@@ -87,7 +87,7 @@ class Course:
             return
         timing = self._plan.timing
         end = min(first + len(course), timing.exchanges)
-        times = np.array([timing.seconds(exchange) for exchange in range(first, end)])
+        times = timing.moments(range(first, end))
         columns = {name: column for column, name in enumerate(self._scenario.restless)}
         course[:] = np.nan
         for driven in self._scenario.driven:

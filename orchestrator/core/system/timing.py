@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..errors import Problem
 from .clock import exact, fraction_near, ticks_per_second, to_seconds, to_ticks
 from .schedule import fits, nearest_steps
@@ -46,6 +49,11 @@ class Timing:
     def seconds(self, exchange: int) -> float:
         """Return the time (s) at the beginning of an exchange."""
         return self.lasts(self.start + exchange * self.exchange)
+
+    def moments(self, exchanges: Sequence[int]) -> NDArray[np.float64]:
+        """Return the times (s) at the beginning of exchanges, the bits of :meth:`seconds`."""
+        ticks = self.start + self.exchange * np.array(exchanges, np.int64)
+        return ticks.astype(np.float64) / float(self.rate)
 
     def lasts(self, ticks: int) -> float:
         """Return a length of time in s."""
