@@ -162,10 +162,10 @@ class _Nowhere:
     """Takes rows and frames, and keeps none."""
 
     def rows(self, times: NDArray[np.float64], values: NDArray[np.float64]) -> None:
-        """Pass over rows."""
+        """Pass over rows, which have been put together and are not written."""
 
     def frame(self, component: str, at: float, state: bytes) -> None:
-        """Pass over a state."""
+        """Pass over a state, which no contestant records."""
 
 
 @contextmanager
