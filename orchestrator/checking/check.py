@@ -130,7 +130,9 @@ def _about(file: Path) -> _About:
     xml = _description(file)
     if xml is None:
         what = f"is no FMU: there is no {_DESCRIPTION} in it"
-        raise InputRefused([Problem(str(file), what, "export it again")])
+        is_ssp = file.suffix.lower() == ".ssp"
+        remedy = "it is an SSP: unpack it, and check the FMUs in its folder resources"
+        raise InputRefused([Problem(str(file), what, remedy if is_ssp else "export it again")])
     try:
         root = ElementTree.fromstring(xml)
     except (ElementTree.ParseError, LookupError, ValueError) as error:

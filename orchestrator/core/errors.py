@@ -1,10 +1,14 @@
 """Errors of a co-simulation, made for the person who has to act on them."""
 
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+_PLACE = re.compile(r", line (\d+)(?:, column (\d+))?(?=:|$)")
+"""Line and column in the place of a problem."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,22 @@ class Problem:
 
     def __str__(self) -> str:
         return f"{self.where}: {self.what}" + (f"; {self.remedy}" if self.remedy else "")
+
+
+def in_order(problems: Iterable[Problem]) -> list[Problem]:
+    """Return problems, each once, in the order of each file."""
+    each = list(dict.fromkeys(problems))
+    files = list(dict.fromkeys(_place(problem)[0] for problem in each))
+    each.sort(key=lambda problem: (files.index(_place(problem)[0]), _place(problem)))
+    return each
+
+
+def _place(problem: Problem) -> tuple[str, int, int]:
+    """Return file, line and column of a problem; 0 where it has none."""
+    found = _PLACE.search(problem.where)
+    if found is None:
+        return problem.where, 0, 0
+    return problem.where[: found.start()], int(found.group(1)), int(found.group(2) or 0)
 
 
 def counted(number: int, noun: str) -> str:

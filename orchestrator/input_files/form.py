@@ -4,7 +4,6 @@ Where a part of the form is wrong, the rest is checked all the same: the values 
 left out, and a check that asks for one of them ends there.
 """
 
-import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_origin
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from ..core.errors import Problem
+from ..core.errors import Problem, in_order
 from ..core.form_faults import UNKNOWN_KEY, sentences
 from ..core.form_keys import known_keys, models_in
 from ..core.input_text import read_text, toml_content
@@ -37,7 +36,6 @@ Positive = Annotated[
 ]
 NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST, allow_inf_nan=False, strict=True)]
 
-_PLACE = re.compile(r", line (\d+)(?:, column (\d+))?(?=:|$)")
 _MOST_SHOWN = 20
 """Problems that a person reads at once."""
 
@@ -253,14 +251,6 @@ def _problem(model: type[BaseModel], key: Key, texts: list[str], where: Places) 
     return Problem(place, prefix + " or ".join(texts), _remedy(model, key, texts))
 
 
-def in_order(problems: Iterable[Problem]) -> list[Problem]:
-    """Return problems, each once, in the order of each file."""
-    each = list(dict.fromkeys(problems))
-    files = list(dict.fromkeys(_place(problem)[0] for problem in each))
-    each.sort(key=lambda problem: (files.index(_place(problem)[0]), _place(problem)))
-    return each
-
-
 def first(problems: list[Problem]) -> list[Problem]:
     """Return as many problems as a person reads, each once, in the order of each file."""
     each = in_order(problems)
@@ -269,14 +259,6 @@ def first(problems: list[Problem]) -> list[Problem]:
         return each
     rest = Problem(f"{more} more", "are not listed", "correct these first")
     return [*each[:_MOST_SHOWN], rest]
-
-
-def _place(problem: Problem) -> tuple[str, int, int]:
-    """Return file, line and column of a problem; 0 where it has none."""
-    found = _PLACE.search(problem.where)
-    if found is None:
-        return problem.where, 0, 0
-    return problem.where[: found.start()], int(found.group(1)), int(found.group(2) or 0)
 
 
 def _name(key: Key) -> str:

@@ -101,7 +101,9 @@ Cell = tuple[int, int]
 """Row, of the component that gives, and column, of the one that takes."""
 
 
-def system_diagram(system: SystemSpec, loops: Sequence[str] = ()) -> str:
+def system_diagram(
+    system: SystemSpec, loops: Sequence[str] = (), fmus: Mapping[str, str] | None = None
+) -> str:
     """Draw a system.
 
     Parameters
@@ -111,6 +113,8 @@ def system_diagram(system: SystemSpec, loops: Sequence[str] = ()) -> str:
     loops : sequence of str
         Its algebraic loops, ``a.y -> b.u -> b.y -> a.u -> a.y``; components and connections in one
         are marked.
+    fmus : mapping of str to str, optional
+        Names of the FMUs by component, where they are others than those of the system.
 
     Returns
     -------
@@ -119,7 +123,8 @@ def system_diagram(system: SystemSpec, loops: Sequence[str] = ()) -> str:
     """
     order = [name for name in system.order if name in system.components]
     order += [name for name in system.components if name not in order]
-    boxes = {(i, i): _component(system, name, i) for i, name in enumerate(order)}
+    named = {name: spec.fmu for name, spec in system.components.items()} | dict(fmus or {})
+    boxes = {(i, i): _component(system, name, i, named[name]) for i, name in enumerate(order)}
     boxes |= _cells(system, order, next(room for most, room in _ROOM if len(order) <= most))
     for cell in _in_loops(loops, order) & boxes.keys():
         boxes[cell] = replace(boxes[cell], in_loop=True)
@@ -140,12 +145,11 @@ def _in_loops(loops: Iterable[str], order: Sequence[str]) -> set[Cell]:
 # ---------------------------------------------------------------------- what stands in the boxes
 
 
-def _component(system: SystemSpec, name: str, place: int) -> _Box:
+def _component(system: SystemSpec, name: str, place: int, fmu: str) -> _Box:
     """Return the box of a component: name, FMU, step."""
-    spec = system.components[name]
     step = system.step(name)
     turn = "" if system.master == "jacobi" else f"{place + 1} "
-    model = Path(spec.fmu).stem if spec.fmu.endswith(".fmu") else spec.fmu.partition(" (")[0]
+    model = Path(fmu).stem if fmu.endswith(".fmu") else fmu.partition(" (")[0]
     lines = [Text(_cut(f"{turn}{name}", 20), _NAME, bold=True)]
     lines += [Text(_cut(model, 22), colour=_GREY)] if model else []
     lines.append(Text(f"step {_time(step)}"))
@@ -161,7 +165,7 @@ def _component(system: SystemSpec, name: str, place: int) -> _Box:
     ]
     if own:
         lines.append(Text("feeds itself", colour=_GREY))
-    return _Box(lines, f"{name}: {spec.fmu}, step {step:g} s")
+    return _Box(lines, f"{name}: {fmu}, step {step:g} s")
 
 
 def _owner(system: SystemSpec, end: str) -> str:

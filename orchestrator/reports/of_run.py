@@ -244,9 +244,10 @@ def _system(run: StoredRun) -> Iterator[Chapter]:
     except InputRefused:  # another version wrote it
         return
     loops = texts_of(run.provenance, "loops")
+    fmus = {name: str(fmu) for name, fmu in table_of(run.provenance, "fmus").items()}
     drawn = Illustration(
         "Components, their steps, and the values that go between them",
-        draw=lambda file: write_file(file, system_diagram(system, loops)),
+        draw=lambda file: write_file(file, system_diagram(system, loops, fmus)),
         printed=_SHARP,
         shown=_SHARP,
     )

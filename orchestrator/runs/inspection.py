@@ -295,8 +295,10 @@ def describe_system(job: Job) -> Overview:
         f"time in {len(system.connections)} connections"
     ]
     components = Table(("component", "model", "step (s)", "FMU"))
-    for name, spec in system.components.items():
-        components.add(name, plan.descriptions[name].model, f"{system.step(name):g}", spec.fmu)
+    for name in system.components:
+        components.add(
+            name, plan.descriptions[name].model, f"{system.step(name):g}", job.fmus[name]
+        )
     parts.append(components)
     if len(values := _values(plan)):
         parts.append(values)

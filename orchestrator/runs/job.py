@@ -4,7 +4,7 @@ Everything that is wrong with a request is collected before it is refused.
 """
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -41,7 +41,15 @@ from .values_in_si import case_in_si, file_in_si, shared_in_si, source_in
 if TYPE_CHECKING:
     from ..ssp.reading import Imported
 
-__all__ = ["Job", "Request", "look_at_target", "plan_problems", "prepare", "recorded_names"]
+__all__ = [
+    "Job",
+    "Request",
+    "file_problems",
+    "look_at_target",
+    "plan_problems",
+    "prepare",
+    "recorded_names",
+]
 
 
 @dataclass(frozen=True)
@@ -78,8 +86,20 @@ class Job:
     file: SystemFile | None = None
 
     def placed(self, problems: Sequence[Problem]) -> list[Problem]:
-        """Return problems with line and column of what they are about, where a file has it."""
+        """Return problems with line and column of what they are about, where a file has it.
+
+        Files of an SSP have their names in it.
+        """
+        if self.ssp is not None:
+            named = self.ssp.package.named
+            return [Problem(*map(named, (p.where, p.what, p.remedy))) for p in problems]
         return [*problems] if self.file is None else self.file.placed(problems)
+
+    @property
+    def fmus(self) -> dict[str, str]:
+        """Names of the FMUs by component, for people: in an SSP those that they have there."""
+        named = str if self.ssp is None else self.ssp.package.named
+        return {name: named(spec.fmu) for name, spec in self.system.components.items()}
 
     @contextmanager
     def refused_in_place(self) -> Iterator[None]:
@@ -265,6 +285,8 @@ def _from_ssp(request: Request, facts: dict[str, Any]) -> Job:
     from ..ssp.reading import read_ssp  # lxml, which systems of other kinds do not need
 
     read = read_ssp(Path(request.target), request.options)
+    named = read.package.named
+    facts["fmus"] = {name: named(spec.fmu) for name, spec in read.system.components.items()}
     if read.warnings:
         facts["warnings"] = list(read.warnings)
     return Job(read.system.name, read.system, {}, facts, ssp=read)
@@ -420,6 +442,28 @@ def plan_problems(system: SystemSpec, sources: Mapping[str, Source]) -> list[Pro
     from ..core.system.planning import problems_with
 
     return problems_with(system, {**sources_of(system), **sources})
+
+
+def file_problems(job: Job, varied: Collection[str]) -> list[Problem]:
+    """Return what the FMUs of a system have against its file, with line and column.
+
+    Parameters
+    ----------
+    job : Job
+        The system.
+    varied : collection of str
+        Names of values that take the place of those in the file.
+
+    Returns
+    -------
+    list of Problem
+        Empty of a system that comes from no file.
+    """
+    if job.file is None:
+        return []
+    file = replace(job.file, replaced={*job.file.replaced, *varied})
+    problems = plan_problems(job.system, job.sources)
+    return [problem for problem in file.placed(problems) if problem not in problems]
 
 
 def recorded_names(job: Job) -> list[str]:

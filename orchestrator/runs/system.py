@@ -592,7 +592,7 @@ class System:
         with suppress(InputRefused):
             sources = {**sources_of(self.spec, to_run=False), **self.job.sources}
             loops = make_plan(self.spec, sources).loops
-        return system_diagram(self.spec, loops)
+        return system_diagram(self.spec, loops, self.job.fmus)
 
     def _repr_svg_(self) -> str | None:
         return self.diagram() if self.spec.components else None

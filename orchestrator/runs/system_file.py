@@ -7,15 +7,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, in_order
 from ..core.fmu.fmu_slave import FmuFile
 from ..core.system.in_si import fmu_of, numbers_in
 from ..core.system.names import matches, split_name
 from ..core.system.parts import Connection
-from ..core.system.reading import system_in
-from ..core.system.remaining import Remaining, UnnamedFmu
+from ..core.system.reading import in_folder, system_in
 from ..core.system.system import SystemSpec
-from ..input_files.form import in_order, read_toml
+from ..input_files.form import read_toml
 from ..input_files.places import Key, Places
 from .scenario import read_inputs, with_inputs_read, without_file
 
@@ -87,26 +86,20 @@ class SystemFile:
         """Return what is wrong besides the form."""
         # the core's loop takes longer to import than most files to read
         from ..core.run import sources_of
-        from ..core.system.planning import problems_with
+        from ..core.system.remaining import Remaining, other_problems
 
         folder = self.path.resolve().parent
         data, _ = numbers_in(
             self.content, lambda _, entry: FmuFile(folder / fmu_of(entry), to_run=False)
         )
-        known = Remaining(data)
-        system = known.system()
-        if system is None:
-            return []
-        parts = {
-            name: spec.model_copy(update={"fmu": str(folder / spec.fmu)})
-            for name, spec in system.components.items()
-        }
-        system = changed(without_file(system.model_copy(update={"components": parts})))
-        sources = sources_of(system) | {name: UnnamedFmu() for name in known.unnamed}
-        more = problems_with(system, sources, known.timed)
-        if isinstance(known.data.get("scenario"), dict):
-            more += _table_problems(known.data["scenario"].get("inputs"), self.path.parent)
-        return [known.numbered(problem) for problem in more]
+        more = other_problems(
+            Remaining(data),
+            lambda known: sources_of(in_folder(known, folder)),
+            lambda known: changed(without_file(in_folder(known, folder))),
+        )
+        if isinstance(data.get("scenario"), dict):
+            more += _table_problems(data["scenario"].get("inputs"), self.path.parent)
+        return more
 
     # ------------------------------------------------------------------ where it stands
 

@@ -85,6 +85,11 @@ class Package:
             raise OutsideError(f"{uri} lies outside of the SSP")
         return file
 
+    def named(self, text: str) -> str:
+        """Return a text in which files of the SSP have the names of the SSP: ``lab.ssp/...``."""
+        place = self.path.parent if self.path.suffix.lower() == ".ssd" else self.path
+        return text.replace(f"{self.folder}{os.sep}", f"{place}/")
+
     def name_of(self, file: Path) -> str:
         """Return the name in the SSP of one of its files."""
         return file.relative_to(self.folder).as_posix()

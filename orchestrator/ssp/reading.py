@@ -8,13 +8,15 @@ from typing import Any
 
 from lxml import etree
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, in_order
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
-from ..core.fmu.slave import BINARY, BOOLEAN, CLOCK, INTEGER, REAL, STRING
+from ..core.fmu.slave import BINARY, BOOLEAN, CLOCK, INTEGER, REAL, STRING, Source
 from ..core.system.fields import RESERVED, Value
+from ..core.system.in_si import fmu_of, numbers_in
 from ..core.system.names import expand, nearest, split_name
 from ..core.system.reading import system_from
+from ..core.system.remaining import NoFmu, Remaining, other_problems
 from ..core.system.system import SystemSpec
 from ..core.system.values import written
 from .conversion import UNCHANGED, between
@@ -128,6 +130,7 @@ class _Import:
     warnings: list[str] = field(default_factory=list)
     descriptions: dict[str, Description] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
+    timed: bool = True
 
     def imported(self) -> Imported:
         """Return the system, or refuse it with every problem."""
@@ -146,13 +149,41 @@ class _Import:
         bindings = Bindings(self.package, reader, targets_of(wires), self._variable_of)
         bindings.read(system)
         self.warnings += bindings.warnings
-        hints = own_hints(system_xml, self.where)
+        hints = self._hints(system_xml)
         data = self._data(system_xml, wires, bindings.values, hints)
-        if self.problems:
-            raise InputRefused(self.problems)
+        spec = self._formed({**data, **self.options})
         names = {clean: name for name, clean in self.names.items()}
-        spec = system_from({**data, **self.options}, self.where)
         return Imported(spec, self.package, names, tuple(self.warnings), self.options)
+
+    def _source_of(self, component: str, entry: Any) -> Source:
+        return _Described(Path(fmu_of(entry)), self.describe)
+
+    def _sources_of(self, system: SystemSpec) -> dict[str, Source]:
+        return {name: self._source_of(name, spec) for name, spec in system.components.items()}
+
+    def _hints(self, system_xml: etree._Element) -> dict[str, Any]:
+        """Return this program's own annotation; of one that cannot be read, times to go on with."""
+        try:
+            return own_hints(system_xml, self.where)
+        except InputRefused as refusal:
+            self.problems += refusal.problems
+            self.timed = False
+            return {"exchange_step": 1.0, "stop_time": 1.0}
+
+    def _formed(self, data: Mapping[str, Any]) -> SystemSpec:
+        """Return the system, or refuse it with every problem, also of its hints and its FMUs."""
+        is_whole = not self.problems
+        told = {f"{self.where}: {problem.where}" for problem in self.problems}
+        try:
+            spec = system_from(data, self.where, self._source_of)
+            if is_whole:
+                return spec
+        except InputRefused as refusal:
+            self.problems += [p for p in refusal.problems if p.where not in told]
+        unread = {clean for name, clean in self.names.items() if name not in self.descriptions}
+        sound, _ = numbers_in(data, self._source_of)
+        known = Remaining(sound, unread, self.timed, connected=is_whole)
+        raise InputRefused(in_order([*self.problems, *other_problems(known, self._sources_of)]))
 
     def _refuse(self, where: str, what: str, remedy: str = "") -> None:
         self.problems.append(Problem(where, what, remedy))
@@ -385,6 +416,19 @@ class _Import:
         full = next((n for n, clean in self.names.items() if clean == owner), "")
         known = self.descriptions.get(full)
         return [] if known is None else [(owner, key) for key in expand(name, known.ports)]
+
+
+class _Described(NoFmu):
+    """An FMU of an SSP, which is described and not run."""
+
+    def __init__(self, path: Path, describe: Describe) -> None:
+        super().__init__()
+        self.path = str(path)
+        self._describe = describe
+
+    def model_description(self) -> bytes:
+        """Return the ``modelDescription.xml`` of the FMU."""
+        return self._describe(Path(self.path))
 
 
 def _port_of(known: Description, name: str) -> Port | None:

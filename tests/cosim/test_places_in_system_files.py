@@ -247,3 +247,14 @@ def test_a_file_of_whatever_form_is_refused_with_its_faults(tmp_path, text):
     (tmp_path / "odd.toml").write_text(text)
     with pytest.raises(InputRefused):
         SystemFile.read(tmp_path / "odd.toml").system()
+
+
+def test_a_study_tells_the_lines_of_its_file_and_not_of_what_varies(written):
+    file = written(
+        ("mass = 2.0", "mass = -2.0"),  # in its place are those that vary
+        ('watch = ["a.position.x"]', 'watch = ["a.nothing"]'),
+        ('"position0.x" = 0.5', '"position0.z" = 0.5'),
+    )
+    said = refused("study", file.name, "--vary", "a.mass=1 kg,2 m", "--set", "a.radius=0.1")
+    assert lines(said) == [8, 22]
+    assert "--vary a.mass: must be a mass, in kg (given: '2 m'" in said

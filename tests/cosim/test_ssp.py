@@ -285,6 +285,54 @@ def test_all_that_is_wrong_is_told_at_once_with_the_element_and_its_line(read):
     assert f"{MAIN}, line 3: " in told
 
 
+RIGHT_LINK = link(("push", "force"), ("mass", "force"))
+WRONG_LINK = link(("push", "forc"), ("mass", "force"))
+
+
+def hinted(hints, elements=PUSH + MASS, connections=RIGHT_LINK):
+    own = f'<rockshed:System xmlns:rockshed="urn:org.rockshed:system">{hints}</rockshed:System>'
+    told = f'<ssc:Annotation type="org.rockshed">{own}</ssc:Annotation>'
+    annotations = f"<ssd:Annotations>{told}</ssd:Annotations>"
+    parts = f"<ssd:Elements>{elements}</ssd:Elements>"
+    links = f"<ssd:Connections>{connections}</ssd:Connections>"
+    return document(f'<ssd:System name="given">{parts}{links}{annotations}</ssd:System>')
+
+
+HINTS = "exchange_step = 0.1\n{}\n[components.mass]\nstep = 0.1\n"
+
+
+@pytest.mark.parametrize(
+    ("hints", "told"),
+    [
+        (HINTS.format('mastr = "jacobi"'), "mastr: there is no such key; did you mean master?"),
+        (HINTS.format('output_interval = "3 kg"'), "output_interval: must be a time, in s"),
+        (HINTS.format('watch = ["mass.positon"]'), "watch: 'mass.positon' selects no output"),
+        (HINTS.format('order = ["mass"]'), "order: does not name push"),
+        ("exchange_step = 3 kg", "annotation of org.rockshed: is not valid TOML"),
+    ],
+)
+def test_a_wrong_connection_hides_neither_hints_nor_what_fmus_say(read, hints, told):
+    said = problems(read, hinted(hints, connections=WRONG_LINK), options={})
+    assert "push.forc -> mass.force: push has no connector forc" in said
+    assert told in said
+    assert len(said.splitlines()) == 2, said  # and nothing that only follows from these
+
+
+def test_hints_with_units_are_read(read):
+    hints = HINTS.format('output_interval = "200 ms"\nenergy_alarm = {reference = "2 kJ"}')
+    found = read(hinted(hints), options={}).system
+    assert (found.output_interval, found.energy_alarm.reference) == (0.2, 2000.0)
+
+
+def test_an_fmu_that_is_missing_hides_no_other_fault(read):
+    gone = component("gone", "https://example.com/a.fmu")
+    hints = HINTS.format('watch = ["push.forc"]')
+    said = problems(read, hinted(hints, PUSH + MASS + gone), options={})
+    assert "component gone: https://example.com/a.fmu is no file of the SSP" in said
+    assert "watch: 'push.forc' selects no output" in said
+    assert len(said.splitlines()) == 2, said
+
+
 def test_connectors_of_systems_that_feed_one_another_are_refused(read):
     both = f"<ssd:Connectors>{connector('i', 'input')}{connector('o', 'output')}</ssd:Connectors>"
     through = system(MASS, link(("", "i"), ("", "o")), "through", both)
@@ -584,6 +632,46 @@ def rows(folder):
 
     run = read_run(folder)
     return {column.name: np.asarray(run[column.name]) for column in run.columns}
+
+
+def test_fmus_are_named_as_the_archive_names_them(two_rocks, tmp_path, monkeypatch):
+    from rockshed.reports.of_run import _system
+    from rockshed.runs.simulation import simulate
+
+    monkeypatch.chdir(tmp_path)
+    System.load(two_rocks).save("two.ssp")
+    with zipfile.ZipFile("two.ssp") as archive:
+        archive.extractall("unpacked")
+    for place, named in (
+        ("two.ssp", "two.ssp"),
+        ("unpacked", "unpacked"),
+        ("unpacked/SystemStructure.ssd", "unpacked"),
+    ):
+        system = System.load(place)
+        name = f"{named}/resources/FallingRock.fmu"
+        assert set(system.job.fmus.values()) == {name}
+        shown = f"{system.describe()}{system.diagram()}"
+        assert shown.count(name) == 4  # two in the table, two in the picture
+        assert str(system.job.ssp.package.folder) not in shown
+        run = simulate(system, tmp_path / "run")
+        assert run.provenance["fmus"] == {"b": name, "upper.a": name}
+        (chapter,) = _system(run)
+        chapter.illustrations[0].draw(tmp_path / "system.svg")
+        assert (tmp_path / "system.svg").read_text().count(name) == 2
+
+
+def test_a_message_about_an_fmu_of_an_ssp_names_it_as_the_archive_does(
+    two_rocks, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    System.load(two_rocks).save("two.ssp")
+    system = System.load("two.ssp")
+    Path(system.spec.components["b"].fmu).unlink()
+    try:
+        (problem, *_) = system.validate()
+    finally:
+        System.load("two.ssp")  # unpacks it again
+    assert "two.ssp/resources/FallingRock.fmu: there is no such file" in problem.what
 
 
 def test_a_system_runs_from_its_ssp_with_the_same_bits(two_rocks, tmp_path, capsys):

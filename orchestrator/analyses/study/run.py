@@ -18,7 +18,7 @@ from ...runs.building import Note, silent
 from ...runs.cluster import Certificates
 from ...runs.dask_executor import dask
 from ...runs.executors import Crew, number_of_workers, processes
-from ...runs.job import prepare
+from ...runs.job import file_problems, prepare
 from ...runs.kept import FINISHED, KeptRuns
 from ...runs.parameters import SystemValues
 from ...runs.request import Request, plain
@@ -289,6 +289,7 @@ def _plan(asked: StudyArguments, note: Note) -> _Plan:
     chosen = asked.design or (RANDOM if any(f.is_distribution for f in factors) else GRID)
     problems += [*_argument_problems(asked), *_seed_problems(seeds, asked.vary, known)]
     problems += [] if problems else design_problems(chosen, factors, asked.samples)
+    problems += file_problems(job, asked.vary)
     if problems:
         raise InputRefused(problems)
     found = points(chosen, factors, asked.samples or 0, asked.draw)

@@ -36,9 +36,12 @@ class Bonder:
     ----------
     finder : Finder
         Finds their ports, and takes problems.
+    connected : bool
+        Whether all connections are known; else none is missed.
     """
 
     finder: Finder
+    connected: bool = True
 
     def bond(self, name: str, bond: PowerBond, links: Links) -> BondEnds | None:
         """Return a bond by its ports; None where something about it is wrong."""
@@ -87,8 +90,9 @@ class Bonder:
     ) -> list[End]:
         """Return the inputs of a component that the sources feed."""
         missing = [source.name for source in sources if source.name not in fed]
-        if missing:
+        if missing and self.connected:
             self.finder.refuse(where, f"{missing[0]} is connected to no input of {component}", why)
+        if missing:
             return []
         return [fed[source.name] for source in sources]
 

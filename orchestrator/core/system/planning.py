@@ -57,7 +57,7 @@ def make_plan(system: SystemSpec, sources: Mapping[str, Source]) -> Plan:
 
 
 def problems_with(
-    system: SystemSpec, sources: Mapping[str, Source], timed: bool = True
+    system: SystemSpec, sources: Mapping[str, Source], timed: bool = True, connected: bool = True
 ) -> list[Problem]:
     """Return everything that is wrong with a system.
 
@@ -69,6 +69,8 @@ def problems_with(
         Give the model descriptions of the components.
     timed : bool
         Whether its times are looked at.
+    connected : bool
+        Whether it has all its connections; else nothing is refused because one is missing.
 
     Returns
     -------
@@ -76,7 +78,7 @@ def problems_with(
         Empty if it can be run.
     """
     try:
-        _Planner(system, sources, Finder(system), timed).plan()
+        _Planner(system, sources, Finder(system), timed, connected).plan()
     except InputRefused as refusal:
         return refusal.problems
     return []
@@ -109,6 +111,7 @@ class _Planner:
     sources: Mapping[str, Source]
     finder: Finder
     timed: bool = True
+    connected: bool = True
 
     def plan(self) -> Plan:
         """Go through the system part by part, then refuse it or return the plan."""
@@ -149,16 +152,19 @@ class _Planner:
 
     def _parts(self, timing: Timing | None) -> _Parts:
         linker = Linker(self.finder, self.sources)
+        told = len(self.finder.problems)
         links = linker.links()
+        self.connected = self.connected and len(self.finder.problems) == told
         starter = Starter(self.finder)
         fed = {target.name for _, target in links}
         starts = starter.starts(fed)
         starter.check_arrays(links, starts)
-        bonder = Bonder(self.finder)
+        bonder = Bonder(self.finder, self.connected)
         bonds = [bonder.bond(name, bond, links) for name, bond in self.system.bonds.items()]
-        self.finder.problems += extrapolation_problems(
-            self.system, self.finder.descriptions, (target for _, target in links)
-        )
+        if self.connected:
+            self.finder.problems += extrapolation_problems(
+                self.system, self.finder.descriptions, (target for _, target in links)
+            )
         scenario = self._scenario(links, starts, timing)
         return _Parts(
             [link for link in links if link[0].port.is_number],
@@ -182,7 +188,7 @@ class _Planner:
 
         fed = {target.name: target for _, target in links}
         given = {f"{name}.{port.name}" for name, listed in starts.items() for port, _ in listed}
-        reader = ScenarioReader(find, fed, given, timing, self.finder.problems)
+        reader = ScenarioReader(find, fed, given, timing, self.connected, self.finder.problems)
         return reader.read(self.system.scenario)
 
     def _resolved(self, order: tuple[str, ...], timing: Timing, parts: _Parts) -> Plan:
@@ -261,7 +267,8 @@ class _Planner:
 
     def _check_iteration(self, parts: _Parts, timing: Timing | None) -> None:
         """Refuse what the implicit master cannot do, or what only it would understand."""
-        self.finder.problems += iteration_problems(self.system.iteration, parts.links)
+        if self.connected:
+            self.finder.problems += iteration_problems(self.system.iteration, parts.links)
         if self.system.master != "implicit":
             if self.system.iteration != Iteration():
                 self.finder.warnings.append(

@@ -99,7 +99,11 @@ def system_in(content: Mapping[str, Any], path: Path) -> SystemSpec:
     def source_of(component: str, entry: Any) -> Source:
         return FmuFile(folder / fmu_of(entry), to_run=False)
 
-    system = system_from(content, str(path), source_of)
+    return in_folder(system_from(content, str(path), source_of), folder)
+
+
+def in_folder(system: SystemSpec, folder: Path) -> SystemSpec:
+    """Return a system with the whole paths of its FMUs, which count from a folder."""
     components = {
         name: spec.model_copy(update={"fmu": str(folder / spec.fmu)})
         for name, spec in system.components.items()

@@ -1,13 +1,14 @@
 """A system without its faults of form, to see what else is wrong with it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import ValidationError
 
 from ..errors import InputRefused, Problem
-from ..fmu.slave import Slave
+from ..fmu.slave import Slave, Source
+from .planning import problems_with
 from .system import SystemSpec
 
 _TIMES = {
@@ -26,8 +27,8 @@ _PASSES = 4
 """A fault may hide another one of the same entry."""
 
 
-class UnnamedFmu:
-    """Source of a component that names no FMU, which has been told."""
+class NoFmu:
+    """Source of a component whose FMU is not to be had, which has been told."""
 
     path = ""
     """As an FMU file has one: such a component may be isolated."""
@@ -66,13 +67,14 @@ class Remaining:
         As in a TOML file; it loses what is faulty.
     unnamed : set of str
         Components whose FMU is not named.
-    timed : bool
-        Whether its times are those of the data.
+    timed, connected : bool
+        Whether its times are those of the data, and all connections.
     """
 
     data: dict[str, Any]
     unnamed: set[str] = field(default_factory=set)
     timed: bool = True
+    connected: bool = True
     _numbers: dict[tuple[str, ...], list[int]] = field(default_factory=dict)
 
     def system(self) -> SystemSpec | None:
@@ -104,6 +106,7 @@ class Remaining:
             self.data[head] = {k: v for k, v in self.data[head].items() if k != loc[1]}
         else:
             self.data.pop(head, None)
+            self.connected = self.connected and head != "connections"
         return True
 
     def _without_in(self, component: str, key: str = "fmu", inner: Any = None) -> bool:
@@ -133,6 +136,7 @@ class Remaining:
         sound = [place for place in range(len(listed)) if place not in faulty]
         table[above[-1]] = [listed[place] for place in sound]
         self._numbers[above] = [numbers[place] for place in sound]
+        self.connected = self.connected and above != ("connections",)
 
     def numbered(self, problem: Problem) -> Problem:
         """Return a problem with the number that an entry of a list has in the whole data."""
@@ -143,6 +147,35 @@ class Remaining:
                 where = f"{before}{numbers[int(number)]}{dot}{rest}"
                 return Problem(where, problem.what, problem.remedy)
         return problem
+
+
+def other_problems(
+    known: Remaining,
+    sources_of: Callable[[SystemSpec], Mapping[str, Source]],
+    changed: Callable[[SystemSpec], SystemSpec] = lambda known: known,
+) -> list[Problem]:
+    """Return what is wrong with a system besides its form.
+
+    Parameters
+    ----------
+    known : Remaining
+        Its sound part.
+    sources_of : callable
+        Returns the sources of its components.
+    changed : callable
+        Returns a system with what is given beside the data.
+
+    Returns
+    -------
+    list of Problem
+        Nothing where too little is sound.
+    """
+    system = known.system()
+    if system is None:
+        return []
+    sources = {**sources_of(system), **{name: NoFmu() for name in known.unnamed}}
+    found = problems_with(changed(system), sources, known.timed, known.connected)
+    return [known.numbered(problem) for problem in found]
 
 
 def _is_in(loc: Sequence[Any], above: tuple[str, ...]) -> bool:

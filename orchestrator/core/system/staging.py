@@ -41,6 +41,8 @@ class ScenarioReader:
         Variables that have a value among the parameters.
     timing : Timing or None
         Of the run; None where its times do not fit.
+    connected : bool
+        Whether all connections are known; else none is missed.
     problems : list of Problem
         Gets what is wrong.
     """
@@ -49,6 +51,7 @@ class ScenarioReader:
     fed: Mapping[str, End]
     given: Container[str]
     timing: Timing | None
+    connected: bool = True
     problems: list[Problem] = field(default_factory=list)
 
     def read(self, scenario: Scenario) -> PlannedScenario:
@@ -222,7 +225,8 @@ class ScenarioReader:
         if end_ is None and self.timing is not None:
             end_ = self.timing.exchanges
         for end in self.find(f"{where}.port", entry.port):
-            if end.name not in self.fed or not end.port.is_number:
+            is_missed = end.name not in self.fed and self.connected
+            if is_missed or not end.port.is_number:
                 what = f"{end.name} is no input that a connection feeds with numbers"
                 self._refuse(f"{where}.port", what, "name the target of a connection")
                 return
