@@ -27,6 +27,9 @@ _Output = Annotated[
 ]
 
 
+_OPTIONS = ("values", "sizes", "coupling", "model", "output")
+
+
 def command(
     target: _Target = "lab-impact",
     output: _Output = None,
@@ -40,8 +43,8 @@ def command(
     problems: list[Problem] = []
     values = values_of("--set", set_ or [], problems)
     asked = Request(target, values, sizes_of(size or [], problems), coupling, model=model)
-    look = partial(look_at_target, target)
-    with opened(quiet) as screen, options_named((), target), all_causes(look):
+    look, named = partial(look_at_target, target), options_named(_OPTIONS, target)
+    with opened(quiet) as screen, named, all_causes(look):
         if problems:
             raise InputRefused(problems)
         with screen.progress("compiling"):
