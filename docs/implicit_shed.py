@@ -1,7 +1,13 @@
-"""Measure the table of the shed on piles in `docs/masters.md`: `python -m docs.implicit_shed`."""
+"""Measure the shed on piles for `docs/masters.md`: `python -m docs.implicit_shed`.
 
+What was found takes the place of what is kept in `docs/results`; then `python -m docs.tables`
+writes the table of the page.
+"""
+
+import json
+import platform
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,51 +15,14 @@ from numpy.typing import NDArray
 
 import rockshed
 from rockshed.runs.run import Run
-from rockshed.tables import Table
 
-STOP, STEP = 0.04, 5e-6
-"""End of the runs, and the internal step of all components (s), which is the shortest exchange."""
-FORCES = {
-    "transmitted": "sand.transmitted_force",
-    "rock": "sand.rock.force.y",
-    "head": "rod_left.head.contact_force",
-    "toe": "ground_left.toe.mean_force",
-}
-"""Outputs that are means over an exchange, but the head's: that is the mean over the last step."""
-MOTIONS = {"head's way": "rod_left.head.position", "settlement": "ground_left.settlement"}
-Rules = Mapping[str, Any]
-RUNS: Mapping[str, tuple[float, Rules | None]] = {
-    "sequential, 0.005 ms": (5e-6, None),
-    "sequential, 0.01 ms": (1e-5, None),
-    "implicit, 0.1 ms": (1e-4, {"window": 1e-4}),
-    "implicit, 0.05 ms": (5e-5, {"window": 5e-5}),
-    "implicit, 0.05 ms in windows of 0.2 ms, parabolas": (
-        5e-5,
-        {"window": 2e-4, "interpolation": 2},
-    ),
-    "implicit, 0.01 ms in windows of 0.05 ms": (1e-5, {"window": 5e-5}),
-    "implicit, 0.01 ms in windows of 0.4 ms": (1e-5, {"window": 4e-4}),
-}
-"""Exchange step (s), and what is other in the table ``[iteration]``, if it is iterated at all."""
+from .tables.masters import DATA, OUTPUTS, RUNS, STEP, STOP, Row, Rules, stamp, system
 
 
-def run(step: float, rules: Rules | None) -> tuple[Run, float]:
-    """Return a run and its processor time (s).
-
-    The sequential run has the ports of the implicit one: the systems are the same.
-    """
-    parts = ("sand", "rock", "beam", "ground_left", "ground_right")
-    values: dict[str, Any] = {f"{part}.internal_step": STEP for part in parts}
-    system = rockshed.case("shed-on-piles", values=values, coupling="implicit", in_process=True)
-    system = system.with_options(
-        stop_time=STOP,
-        exchange_step=step,
-        output_interval=step,
-        record=[*FORCES.values(), *MOTIONS.values()],
-        **({"master": "sequential"} if rules is None else {"iteration": rules}),
-    )
+def run(step: float, rules: Rules | None, stop: float = STOP) -> tuple[Run, float]:
+    """Return a run and its processor time (s)."""
     began = time.process_time()
-    return rockshed.simulate(system), time.process_time() - began
+    return rockshed.simulate(system(step, rules, stop)), time.process_time() - began
 
 
 def over_exchanges(values: NDArray[np.float64], number: int) -> NDArray[np.float64]:
@@ -61,7 +30,7 @@ def over_exchanges(values: NDArray[np.float64], number: int) -> NDArray[np.float
     return np.asarray(values[1:].reshape(-1, number).mean(axis=1))
 
 
-def error(found: Run, reference: Run, name: str) -> float:
+def error(found: Run, reference: Run, name: str, is_mean: bool) -> float:
     """Return the largest difference of an output over time, as a part of its largest amount.
 
     A force is the mean over an exchange: it is held against the mean of the reference over the
@@ -69,31 +38,46 @@ def error(found: Run, reference: Run, name: str) -> float:
     """
     every = round((found.time[1] - found.time[0]) / (reference.time[1] - reference.time[0]))
     known = np.asarray(reference[name])
-    if name in FORCES.values():
-        known = np.append(known[0], over_exchanges(known, every))
-    else:
-        known = known[::every]
+    known = np.append(known[0], over_exchanges(known, every)) if is_mean else known[::every]
     return float(np.abs(found[name] - known).max() / np.abs(known).max())
 
 
-def rows() -> Iterator[list[str]]:
-    """Yield run, windows, iterations in all, processor time and errors (%)."""
-    outputs = [*FORCES.values(), *MOTIONS.values()]
+def rows() -> Iterator[Row]:
+    """Yield windows, iterations, steps, processor time (s) and errors of each run."""
+    for _, step, rules in RUNS:
+        run(step, rules, 40 * step)  # kernels are compiled, or read, before time is taken
     reference, _ = run(STEP, {"window": 10 * STEP, "tolerance": 1e-6})
-    shortest = 0.0
-    for name, (step, rules) in RUNS.items():
+    for title, step, rules in RUNS:
         found, took = run(step, rules)
         told = found.provenance.get("iteration", {}).get("iterations", {"1": round(STOP / step)})
         windows = sum(told.values())
-        every = sum(int(number) * count for number, count in told.items())
-        shortest = shortest or took
-        errors = (f"{100.0 * error(found, reference, output):.4f}" for output in outputs)
-        yield [name, f"{windows}", f"{every}", f"{took / shortest:.1f}", *errors]
+        iterations = sum(int(number) * count for number, count in told.items())
+        exchanges = round(STOP / step) // windows
+        again = windows if exchanges > 1 else 0  # a window is made once more for its rows
+        yield {
+            "title": title,
+            "step": step,
+            "rules": rules,
+            "windows": windows,
+            "iterations": iterations,
+            "steps": (iterations + again) * exchanges,
+            "time": took,
+            "errors": {
+                output.title: error(found, reference, output.name, output.is_mean)
+                for output in OUTPUTS
+            },
+        }
+
+
+def measurement() -> dict[str, Any]:
+    """Return all runs, what they follow from, and where they were made."""
+    return {
+        "stamp": stamp(),
+        "rockshed": rockshed.__version__,
+        "platform": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        "rows": list(rows()),
+    }
 
 
 if __name__ == "__main__":
-    columns = ("run", "windows", "iterations", "time", *FORCES, *MOTIONS)
-    table = Table(columns, right=columns[1:])
-    for row in rows():
-        table.add(*row)
-    print(table)
+    DATA.write_text(json.dumps(measurement(), indent=1) + "\n", encoding="utf-8")

@@ -8,6 +8,7 @@ same content gives the same file, byte for byte. Native ones: :mod:`rockshed.fmu
 
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import pythonfmu
@@ -24,7 +25,7 @@ from .description.fmi2 import model_description
 from .description.legal import license_files, license_text, needed_by_python
 from .experiments.files import experiment_files
 from .ls_wasm import PLATFORM as WASM
-from .native.fmu import described_files, native_files
+from .native.fmu import files_of_one_stamp, library_files, native_files
 from .parts import (
     DESCRIPTION,
     BuildError,
@@ -235,11 +236,10 @@ def _native_files(
 
     if fmi is not Fmi.THREE:
         raise BuildError(f"{component.name}: {ONLY_FMI3}")
-    own = component_files(component, sizes)
-    others = [name for name in platforms if name != WASM]
-    if not others:
-        return described_files(component, sizes, fmi) | own
-    return native_files(component, sizes, others, fmi) | own
+    parts = [partial(component_files, component, sizes)]
+    if others := [name for name in platforms if name != WASM]:
+        parts.append(partial(library_files, component, sizes, others, fmi=fmi))
+    return files_of_one_stamp(component, sizes, parts, fmi)
 
 
 def store(

@@ -117,6 +117,28 @@ def digest(files: Files) -> str:
     return found.hexdigest()
 
 
+def refuse_changed(component: Component, before: object, after: object) -> None:
+    """Raise a BuildError if what an FMU follows from is not what it was when the build began.
+
+    Parameters
+    ----------
+    component : Component
+        That is built.
+    before, after : object
+        Digests at the beginning and at the end.
+
+    Raises
+    ------
+    BuildError
+        They differ.
+    """
+    if before != after:
+        raise BuildError(
+            f"{component.name}: its sources have changed while it was built, and its parts may not "
+            "fit together; nothing was kept. Remedy: build it again"
+        )
+
+
 def archive(files: Files) -> bytes:
     """Return a zip archive that follows from the files alone: fixed order, dates and permissions.
 

@@ -114,22 +114,28 @@ def source_stamp(place: Path) -> str:
     str
         64 hexadecimal digits.
     """
-    return _stamp(_root(place if place.is_dir() else place.parent, place))
+    return _stamp(_root_of(place))
 
 
 @cache
 def _stamp(root: Path) -> str:
+    """Return the hash of the sources when this process first asked, which it has imported."""
+    return _present_stamp(root)
+
+
+def _present_stamp(root: Path) -> str:
     digest = hashlib.sha256(__name__.encode())
     for path in sorted(set(_sources(root))):
         digest.update(f"{_name(path, root)}\0".encode() + path.read_bytes() + b"\0")
     return digest.hexdigest()
 
 
-def _root(folder: Path, place: Path) -> Path:
+def _root_of(place: Path) -> Path:
     """Return the outermost package around a place that is no room of this library; else the place.
 
     Kernels of a package may call any function of it.
     """
+    folder = place if place.is_dir() else place.parent
     if not (folder / "__init__.py").is_file():
         return place
     while (folder.parent / "__init__.py").is_file() and folder.parent not in (
@@ -176,7 +182,8 @@ class SourceLocator:
 
     def __init__(self, function: Callable[..., Any], source: str, folder: Path) -> None:
         self._function = function
-        self._stamp = source_stamp(Path(source))
+        self._root = _root_of(Path(source))
+        self._stamp = _stamp(self._root)
         self._folder = folder / self._stamp[:_TAG_LENGTH]
 
     @classmethod
@@ -209,6 +216,20 @@ class SourceLocator:
     def get_source_stamp(self) -> str:
         """Return what changes with every change of the sources and makes older code stale."""
         return self._stamp
+
+    def has_changed(self) -> bool:
+        """Tell whether the sources are others now: then it is not known which ones were compiled.
+
+        They may have been edited while they were imported, or imported anew after an edit.
+
+        Returns
+        -------
+        bool
+        """
+        try:
+            return _present_stamp(self._root) != self._stamp
+        except OSError:  # they are being removed
+            return True
 
     def get_disambiguator(self) -> str:
         """Return the part of the file's name that tells functions of one name apart."""

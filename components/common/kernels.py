@@ -95,6 +95,19 @@ class _KernelCache(FunctionCache):
             self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp()
         )
 
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep compiled code, but not that of sources that may be others than its name says.
+
+        Parameters
+        ----------
+        sig : tuple
+            Signature.
+        data : object
+            What numba has compiled.
+        """
+        if not self._impl.locator.has_changed():
+            super().save_overload(sig, data)
+
 
 class _KeptFiles(IndexDataCacheFile):
     """Index and code of a function; a file that was damaged or planted counts as not there.

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from .convergence import TABLES as CONVERGENCE
 from .kept import NotKeptError
+from .masters import TABLES as MASTERS
 from .other_papers import TABLES as OTHERS
 from .platforms import TABLES as PLATFORMS
 from .sonoda1993 import TABLES as SONODA
@@ -18,6 +19,7 @@ PAGES = (
     "docs/convergence.md",
     "docs/impact-systems.md",
     "docs/compatibility.md",
+    "docs/masters.md",
 )
 """Pages with blocks."""
 BLOCK = re.compile(r"^<!-- table: ([\w.-]+)/([\w-]+) -->\n(.*?)^<!-- end -->$", re.M | re.S)
@@ -29,6 +31,7 @@ TABLES: Mapping[str, Mapping[str, Callable[[], str]]] = {
     "convergence": CONVERGENCE,
     "systems": SYSTEMS,
     "platforms": PLATFORMS,
+    "masters": MASTERS,
 }
 """Functions that write a block, by paper and name."""
 

@@ -54,7 +54,7 @@ _LICENSES = {
 """Texts in the package ziglang that go with what is linked in."""
 
 
-def component_files(component: Component, sizes: Sizes) -> Files:
+def component_files(component: Component, sizes: Sizes, token: str) -> Files:
     """Return what FMI-LS-WASM adds to an FMU of FMI 3.0.
 
     Parameters
@@ -63,6 +63,8 @@ def component_files(component: Component, sizes: Sizes) -> Files:
         The component.
     sizes : mapping of str to int
         All its sizes.
+    token : str
+        The FMU's :func:`rockshed.fmus.native.fmu.stamp`.
 
     Returns
     -------
@@ -78,7 +80,7 @@ def component_files(component: Component, sizes: Sizes) -> Files:
     refuse_without_linker()
     wrapper = _wrapper()
     with TemporaryFolder() as work:
-        sources = slave_sources(component, sizes, Fmi.THREE) | {
+        sources = slave_sources(component, sizes, token, Fmi.THREE) | {
             "kernels.o": kernel_object(component, VARIANT),
             _SHIM.name: _SHIM.read_bytes(),
             FMA.name: FMA.read_bytes(),

@@ -15,17 +15,15 @@ import shutil
 import subprocess
 import sys
 import uuid
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from rockshed.components.common.cache import CACHE_VARIABLE, cache_directory
+from rockshed.components.common.cache import CACHE_VARIABLE
 from rockshed.components.common.component import Component
-from rockshed.components.common.kept import keep, kept
 from rockshed.components.common.ports import Sizes
 from rockshed.platforms import PLATFORMS as KNOWN
 from rockshed.platforms import Platform, this_machine
@@ -35,6 +33,7 @@ from rockshed.versions import version_of
 
 from ..description.documentation import documentation
 from ..description.legal import license_files, needed_by_native
+from ..kept_code import kept_or_made
 from ..parts import (
     DESCRIPTION,
     EXPERIMENTS,
@@ -45,6 +44,7 @@ from ..parts import (
     component_sources,
     digest,
     picture,
+    refuse_changed,
 )
 from .header import Baseline, model_header
 from .subset import UNKNOWN_PLACE
@@ -177,8 +177,6 @@ def native_files(
 ) -> Files:
     """Return everything that goes into a native FMU.
 
-    Its GUID (FMI 3.0: instantiation token) is a hash over all that it is made from.
-
     Parameters
     ----------
     component : Component
@@ -200,13 +198,90 @@ def native_files(
     BuildError
         A kernel needs Python, there is no compiler, or it fails.
     """
+    own = partial(library_files, component, sizes, platforms, fmi=fmi)
+    return files_of_one_stamp(component, sizes, [own], fmi)
+
+
+def files_of_one_stamp(
+    component: Component,
+    sizes: Sizes,
+    parts: Sequence[Callable[[str], Files]],
+    fmi: Fmi = Fmi.TWO,
+) -> Files:
+    """Return the files of an FMU whose description and binaries have the same token.
+
+    The :func:`stamp` is made once and handed on. It is compared in the end, as compilers read the
+    sources in between.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    parts : sequence of callable
+        Return the files that belong to a stamp, beside those of :func:`described_files`.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to bytes
+        Files by their path in the FMU.
+
+    Raises
+    ------
+    BuildError
+        A part cannot be made, or the sources have changed meanwhile.
+    """
+    token = stamp(component, sizes, fmi)
+    files: Files = {}
+    for part in parts:
+        files |= part(token)
+    files = described_files(component, sizes, token, fmi) | files
+    refuse_changed(component, token, stamp(component, sizes, fmi))
+    return files
+
+
+def library_files(
+    component: Component,
+    sizes: Sizes,
+    platforms: Sequence[str],
+    token: str,
+    fmi: Fmi = Fmi.TWO,
+) -> Files:
+    """Return the libraries of a native FMU, and what they need.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    sizes : mapping of str to int
+        All its sizes.
+    platforms : sequence of str
+        Keys of :data:`PLATFORMS`; by default this machine's.
+    token : str
+        The FMU's :func:`stamp`.
+    fmi : Fmi
+        Version of FMI.
+
+    Returns
+    -------
+    dict of str to bytes
+        Files by their path in the FMU.
+
+    Raises
+    ------
+    BuildError
+        A kernel needs Python, there is no compiler, or it fails.
+    """
     platforms = tuple(dict.fromkeys(platforms)) or (own_platform(),)
     if ALL_PLATFORMS in platforms:
         platforms = tuple(PLATFORMS)
     compilers = {name: compiler(name) for name in platforms}
-    files = described_files(component, sizes, fmi)
+    files: Files = {}
     libraries = {}
-    for name, sources in library_sources(component, sizes, platforms, fmi).items():
+    for name, sources in library_sources(component, sizes, platforms, token, fmi).items():
         path = _library(component, name, fmi)
         files[path] = _linked(
             component.name, compilers[name], name, Path(path).name, _SHIMS[fmi].name, sources
@@ -216,7 +291,11 @@ def native_files(
 
 
 def library_sources(
-    component: Component, sizes: Sizes, platforms: Sequence[str], fmi: Fmi = Fmi.TWO
+    component: Component,
+    sizes: Sizes,
+    platforms: Sequence[str],
+    token: str,
+    fmi: Fmi = Fmi.TWO,
 ) -> dict[str, Files]:
     """Return the files that a library is made of: the shim, what it includes, and the kernels.
 
@@ -228,6 +307,8 @@ def library_sources(
         Sizes to build it with.
     platforms : sequence of str
         Keys of :data:`PLATFORMS`.
+    token : str
+        The FMU's :func:`stamp`.
     fmi : Fmi
         Version of FMI.
 
@@ -241,12 +322,12 @@ def library_sources(
     BuildError
         A kernel needs Python.
     """
-    shared = slave_sources(component, sizes, fmi)
+    shared = slave_sources(component, sizes, token, fmi)
     objects = _objects(component, sizes, platforms)
     return {name: {**shared, "kernels.o": objects[name]} for name in platforms}
 
 
-def slave_sources(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> Files:
+def slave_sources(component: Component, sizes: Sizes, token: str, fmi: Fmi = Fmi.TWO) -> Files:
     """Return the slave in C around kernels: the shim and what it includes.
 
     Parameters
@@ -255,6 +336,8 @@ def slave_sources(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> Fil
         The component.
     sizes : mapping of str to int
         Sizes to build it with.
+    token : str
+        The FMU's :func:`stamp`.
     fmi : Fmi
         Version of FMI.
 
@@ -263,7 +346,7 @@ def slave_sources(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> Fil
     dict of str to bytes
         ``model.h``, ``slave.h`` and the shim.
     """
-    header = model_header(component, sizes, stamp(component, sizes, fmi), CPU)
+    header = model_header(component, sizes, token, CPU)
     return {"model.h": header, **{p.name: p.read_bytes() for p in (_SLAVE, _SHIMS[fmi])}}
 
 
@@ -340,7 +423,7 @@ def stamp(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> str:
     return f"{{{uuid.UUID(digest(made_from)[:32])}}}"
 
 
-def described_files(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> Files:
+def described_files(component: Component, sizes: Sizes, token: str, fmi: Fmi = Fmi.TWO) -> Files:
     """Return description, documentation, icon and terminals, for which nothing is compiled.
 
     Parameters
@@ -349,6 +432,8 @@ def described_files(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> F
         The component.
     sizes : mapping of str to int
         All its sizes.
+    token : str
+        The FMU's :func:`stamp`.
     fmi : Fmi
         Version of FMI.
 
@@ -363,11 +448,10 @@ def described_files(component: Component, sizes: Sizes, fmi: Fmi = Fmi.TWO) -> F
 
     files = documentation(component, sizes, experiment_files(component, sizes, fmi))
     files |= license_files()
-    guid = stamp(component, sizes, fmi)
     if fmi is Fmi.THREE:
-        own = {DESCRIPTION: description3.model_description(component, sizes, guid)}
+        own = {DESCRIPTION: description3.model_description(component, sizes, token)}
         return files | own | description3.terminals_and_icon(component)
-    own = {DESCRIPTION: description.model_description(component, sizes, guid, Runtime.NATIVE)}
+    own = {DESCRIPTION: description.model_description(component, sizes, token, Runtime.NATIVE)}
     return files | own | picture(component, "model.png")
 
 
@@ -381,24 +465,23 @@ def _versions(*packages: str) -> list[str]:
 
 def _objects(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, bytes]:
     """Return the object code of the kernels by platform; it is kept with the compiled kernels."""
+
+    def made(work: Path) -> dict[str, bytes]:
+        _compile_or_refuse(component, sizes, platforms, work)
+        return {name: (work / f"{name}.o").read_bytes() for name in platforms}
+
+    return kept_or_made(component, lambda: _object_files(component, sizes, platforms), made)
+
+
+def _object_files(component: Component, sizes: Sizes, platforms: Sequence[str]) -> dict[str, str]:
+    """Return the names of the files of object code by platform, with a digest of its sources."""
     made_from = component_sources(component) | {
         path.name: path.read_bytes() for path in NATIVE_KERNELS
     }
     versions = _versions("numba", "llvmlite")
     made_from["for"] = repr([_targets(PLATFORMS), dict(sizes), *versions]).encode()
-    stamp = digest(made_from)[:24]
-    files = _object_files(f"{component.name}-%s-{stamp}.o", platforms)
-    found = {name: kept(path) for name, path in files.items()}
-    sound = {name: content for name, content in found.items() if content is not None}
-    if sound.keys() == set(platforms):
-        return sound
-    with TemporaryFolder() as work:
-        _compile_or_refuse(component, sizes, platforms, work)
-        objects = {name: (work / f"{name}.o").read_bytes() for name in platforms}
-    for name, path in files.items():
-        with suppress(OSError):  # then it is compiled again next time
-            keep(path, objects[name])
-    return objects
+    tag = digest(made_from)[:24]
+    return {platform: f"{component.name}-{platform}-{tag}.o" for platform in platforms}
 
 
 def _targets(platforms: Iterable[str]) -> dict[str, tuple[str, str]]:
@@ -410,12 +493,6 @@ def _processor_here() -> str:
     """Return the processor of this machine's kind that numba compiles for."""
     here = _platform_here()
     return PLATFORMS[here].processor if here else "generic"
-
-
-def _object_files(name: str, platforms: Sequence[str]) -> dict[str, Path]:
-    """Return the files in which object code is kept, by platform; none where nothing is kept."""
-    folder = cache_directory()
-    return {platform: folder / (name % platform) for platform in platforms} if folder else {}
 
 
 def _compile_or_refuse(
@@ -440,11 +517,7 @@ def _compile(
     component: Component, sizes: Sizes, platforms: Sequence[str], work: Path, **environment: str
 ) -> list[str]:
     """Write ``PLATFORM.o`` into a folder, and return the problems."""
-    order = {
-        "folder": str(component.folder),
-        "sizes": dict(sizes),
-        "targets": _targets(platforms),
-    }
+    order = {"sizes": dict(sizes), "targets": _targets(platforms)}
     return compiled_apart(f"{__package__}.kernels", component, order, work, **environment)
 
 
@@ -462,7 +535,7 @@ def compiled_apart(
     component : Component
         Whose kernels.
     order : mapping
-        What is asked for.
+        What is asked for, with the ``sizes`` that differ from the defaults.
     work : Path
         Folder of the files.
     **environment : str
@@ -484,9 +557,10 @@ def compiled_apart(
         "NUMBA_CPU_FEATURES": "",
         "PYTHONPATH": os.pathsep.join(_import_folders()),
     }
+    kind = component.instance(**order["sizes"]).kind.hex()
     done = subprocess.run(
         [sys.executable, "-P", "-m", module],
-        input=json.dumps(order),
+        input=json.dumps({**order, "folder": str(component.folder), "kind": kind}),
         cwd=work,
         text=True,
         env=inherited | settings | environment,

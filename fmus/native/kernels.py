@@ -37,9 +37,8 @@ ENTRIES = {name: f"rockshed_{name}" for name in ("initialise", "evaluate", "step
 def main() -> None:
     """Carry out the order on standard input."""
     order = json.load(sys.stdin)
-    folder = Path(order["folder"])
-    component = load(folder, f"{components.__name__}.{folder.name}")
-    instance = component.instance(**order["sizes"])
+    component, instance = ordered(order)
+    folder = component.folder
     problems = compile_problems(component, signatures(instance), folder)
     if not problems:
         module = linked(component, instance)
@@ -50,6 +49,32 @@ def main() -> None:
         for platform, target in order["targets"].items():
             _write(Path(f"{platform}.o"), emitted(module, *target))
     json.dump(problems, sys.stdout)
+
+
+def ordered(order: Mapping[str, Any]) -> tuple[Component, Instance]:
+    """Return the component that an order is for, and an instance of it.
+
+    Who orders has read the sources before. Where the variables have changed since, description and
+    binary would mean different ones by a number: then this process ends with the reason.
+
+    Parameters
+    ----------
+    order : mapping
+        With ``folder``, ``sizes`` and ``kind`` of an instance.
+
+    Returns
+    -------
+    tuple of Component and Instance
+    """
+    folder = Path(order["folder"])
+    component = load(folder, f"{components.__name__}.{folder.name}")
+    instance = component.instance(**order["sizes"])
+    if instance.kind.hex() != order["kind"]:
+        sys.exit(
+            f"the variables declared in {folder} are not those with which this program was "
+            "started. Remedy: start it again"
+        )
+    return component, instance
 
 
 def _write(file: Path, content: bytes) -> None:

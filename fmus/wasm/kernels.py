@@ -19,8 +19,6 @@ import llvmlite.binding as llvm
 from llvmlite import ir
 from numba import njit, types
 
-from rockshed import components
-from rockshed.components.catalogue import load
 from rockshed.components.common.component import Instance
 
 from ..native.kernels import (
@@ -28,6 +26,7 @@ from ..native.kernels import (
     compile_problems,
     described,
     linked,
+    ordered,
     shown_only,
     signatures,
 )
@@ -86,9 +85,8 @@ rounds once on some processors and twice on others; a host may use it only after
 def main() -> None:
     """Carry out the order on standard input."""
     order = json.load(sys.stdin)
-    folder = Path(order["folder"])
-    component = load(folder, f"{components.__name__}.{folder.name}")
-    instance = component.instance()
+    component, instance = ordered(order)
+    folder = component.folder
     problems = compile_problems(component, signatures(instance), folder)
     if not problems:
         module = linked(component, instance, any_size=True)

@@ -15,18 +15,16 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
-from rockshed.components.common.cache import cache_directory
 from rockshed.components.common.component import Component
-from rockshed.components.common.kept import keep, kept
 from rockshed.processes import with_parent
-from rockshed.temporary import TemporaryFolder
 from rockshed.versions import version_of
 
+from ..kept_code import kept_or_made
 from ..native.fmu import CPU, NATIVE_KERNELS, compiled_apart
 from ..parts import BuildError, component_sources, digest
 
@@ -88,19 +86,13 @@ def wasm_modules(
         A kernel needs Python, or the linker is missing or fails.
     """
     asked = {name: (table.kernel, table.columns) for name, table in (tables or {}).items()}
-    files = _kept_files(component, asked, ".wasm")
-    found = {name: kept(path) for name, path in files.items()}
-    sound = {name: content for name, content in found.items() if content is not None}
-    if sound.keys() == set(VARIANTS):
-        return sound
-    refuse_without_linker()
-    with TemporaryFolder() as work:
+
+    def made(work: Path) -> dict[str, bytes]:
+        refuse_without_linker()
         _compile(component, asked, VARIANTS, work)
-        made = {name: linked(component.name, name, tuple(asked), work) for name in VARIANTS}
-    for name, path in files.items():
-        with suppress(OSError):  # then it is compiled again next time
-            keep(path, made[name])
-    return made
+        return {name: linked(component.name, name, tuple(asked), work) for name in VARIANTS}
+
+    return kept_or_made(component, lambda: _file_names(component, asked, VARIANTS, ".wasm"), made)
 
 
 def kernel_object(component: Component, variant: str) -> bytes:
@@ -124,16 +116,13 @@ def kernel_object(component: Component, variant: str) -> bytes:
     BuildError
         A kernel needs Python.
     """
-    file = _kept_files(component, {}, ".o").get(variant)
-    if file and (found := kept(file)) is not None:
-        return found
-    with TemporaryFolder() as work:
+
+    def made(work: Path) -> dict[str, bytes]:
         _compile(component, {}, (variant,), work)
-        made = (work / f"{variant}.o").read_bytes()
-    if file:
-        with suppress(OSError):  # then it is compiled again next time
-            keep(file, made)
-    return made
+        return {variant: (work / f"{variant}.o").read_bytes()}
+
+    names = partial(_file_names, component, {}, (variant,), ".o")
+    return kept_or_made(component, names, made)[variant]
 
 
 def _compile(
@@ -143,7 +132,7 @@ def _compile(
     work: Path,
 ) -> None:
     """Write ``VARIANT.o`` into a folder, or raise a BuildError with everything that is wrong."""
-    order = {"folder": str(component.folder), "tables": asked, "variants": variants}
+    order = {"sizes": {}, "tables": asked, "variants": variants}
     problems = compiled_apart(f"{__package__}.kernels", component, order, work)
     if problems:
         raise BuildError(
@@ -151,20 +140,21 @@ def _compile(
         )
 
 
-def _kept_files(
-    component: Component, asked: Mapping[str, tuple[str, int]], suffix: str
-) -> dict[str, Path]:
-    folder = cache_directory()
-    if folder is None:
-        return {}
+def _file_names(
+    component: Component,
+    asked: Mapping[str, tuple[str, int]],
+    variants: Sequence[str],
+    suffix: str,
+) -> dict[str, str]:
+    """Return the names of the files of code by variant, with a digest of its sources."""
     ours = (*_HERE.glob("*.py"), _RUNTIME, FMA, *NATIVE_KERNELS)
     made_from = component_sources(component) | {
         f"{path.parent.name}/{path.name}": path.read_bytes() for path in ours
     }
     versions = [version_of(package) for package in ("numba", "llvmlite", "ziglang")]
     made_from["for"] = repr([CPU.name, asked, versions]).encode()
-    stamp = digest(made_from)[:24]
-    return {name: folder / f"{component.name}-{name}-{stamp}{suffix}" for name in VARIANTS}
+    tag = digest(made_from)[:24]
+    return {name: f"{component.name}-{name}-{tag}{suffix}" for name in variants}
 
 
 def refuse_without_linker() -> None:

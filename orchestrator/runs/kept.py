@@ -82,7 +82,7 @@ class KeptRuns:
         Outcome or None
             None where there is none, or its file is damaged.
         """
-        file = self._file(system, allow_unstable, about)
+        file = self._file(system, _present(system), allow_unstable, about)
         if file is None or not file.is_file():
             return None
         with suppress(*_DAMAGED):
@@ -92,14 +92,16 @@ class KeptRuns:
     def keep(
         self, system: SystemSpec, allow_unstable: bool, outcome: Outcome, about: object = None
     ) -> None:
-        """Keep the outcome of a run of this system.
+        """Keep the outcome of a run of this system, under the digests of the FMUs that have run.
+
+        The files may be others by now.
 
         Raises
         ------
         OSError
             It cannot be written, and will be run again.
         """
-        file = self._file(system, allow_unstable, about)
+        file = self._file(system, outcome.fmus, allow_unstable, about)
         if file is not None:
             self.folder.mkdir(parents=True, exist_ok=True)
             _write(file, outcome)
@@ -127,14 +129,19 @@ class KeptRuns:
         with suppress(OSError):
             self.folder.rmdir()
 
-    def _file(self, system: SystemSpec, allow_unstable: bool, about: object) -> Path | None:
-        """Return the file of a run; None if its components are not FMU files."""
-        fmus = {name: spec.fmu for name, spec in system.components.items()}
-        if not all(Path(fmu).is_file() for fmu in fmus.values()):
+    def _file(
+        self,
+        system: SystemSpec,
+        fmus: Mapping[str, str] | None,
+        allow_unstable: bool,
+        about: object,
+    ) -> Path | None:
+        """Return the file of a run with FMUs of these digests; None without digests of all."""
+        if fmus is None or fmus.keys() != system.components.keys():
             return None
         content = {
             "system": system.model_dump(mode="json"),
-            "fmus": {name: _sha256(Path(fmu)) for name, fmu in fmus.items()},
+            "fmus": dict(fmus),
             "allow_unstable": allow_unstable,
             "about": about,
             "program": program_stamp(),
@@ -154,6 +161,14 @@ def begun(place: Path) -> list[Path]:
     """
     found = [*place.glob(f"*/{FINISHED}/{ASKED}"), *place.glob(f".*-finished-trials/{ASKED}")]
     return sorted(file.parent for file in found)
+
+
+def _present(system: SystemSpec) -> dict[str, str] | None:
+    """Return the digests of a system's FMUs; None if its components are not FMU files."""
+    fmus = {name: Path(spec.fmu) for name, spec in system.components.items()}
+    if not all(fmu.is_file() for fmu in fmus.values()):
+        return None
+    return {name: _sha256(fmu) for name, fmu in fmus.items()}
 
 
 def _sha256(file: Path) -> str:

@@ -5,6 +5,7 @@ import os
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urlsplit
 
@@ -139,11 +140,11 @@ def open_package(path: Path) -> Package:
     if path.suffix.lower() == ".ssd":
         return Package(path, path.absolute().parent, path.name)
     try:
-        with Archive(path, "an SSP") as archive:
+        with path.open("rb") as file, Archive(file, "an SSP") as archive:
             archive.check_size()
             if MAIN not in archive.names:
                 raise ArchiveError(f"is not an SSP: there is no {MAIN} in it")
-            return Package(path, _unpacked(path, archive))
+            return Package(path, _unpacked(file, archive))
     except ArchiveError as error:
         raise InputRefused([Problem(str(path), str(error), error.remedy)]) from error
     except OSError as error:
@@ -151,13 +152,13 @@ def open_package(path: Path) -> Package:
         raise InputRefused([Problem(str(path), what, "make room, or correct the path")]) from error
 
 
-def _unpacked(path: Path, archive: Archive) -> Path:
-    """Return the folder of an archive, by the hash of its content.
+def _unpacked(file: BufferedReader, archive: Archive) -> Path:
+    """Return the folder of an archive, by the hash of the file that it is read from.
 
     Runs that are gone on with find the same files there.
     """
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()[:_DIGITS]
+    file.seek(0)
+    digest = hashlib.file_digest(file, "sha256").hexdigest()[:_DIGITS]
     try:
         place = cache_path() / UNPACKED
         make_private(place)

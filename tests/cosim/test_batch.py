@@ -15,6 +15,7 @@ import pytest
 
 from rockshed.core.loop.master import Interruption
 from rockshed.runs import batch, executors
+from rockshed.runs import kept as runs_kept
 from rockshed.runs.batch import COMPLETE, Task, run_all
 from rockshed.runs.job import Request
 from rockshed.runs.kept import KeptRuns
@@ -64,6 +65,22 @@ def test_a_run_of_other_values_is_run(kept):
     other = Task(Request("lab-impact", {"sand.damping": 0.3}, options={"stop_time": 0.001}))
     (order,) = (batch._order(task, print) for task in [other])
     assert runs.find(order.key, order.system, order.allow_unstable, order.about) is None
+
+
+def test_a_run_is_kept_under_the_fmus_that_have_run_though_their_files_are_others_by_now(
+    kept, tmp_path, monkeypatch
+):
+    before = kept[1]
+    (order,) = (batch._order(task, print) for task in [SHORT])
+    asked = (order.key, order.system, order.allow_unstable, order.about)
+    runs = KeptRuns(tmp_path / "runs")
+    fmus = dict(before.fmus)
+    built_anew = {name: "0" * 64 for name in fmus}
+    monkeypatch.setattr(runs_kept, "_present", lambda _: built_anew)
+    runs.keep(order.system, order.allow_unstable, before, order.about)
+    assert runs.find(*asked) is None
+    monkeypatch.setattr(runs_kept, "_present", lambda _: fmus)
+    assert runs.find(*asked).metrics == before.metrics
 
 
 @pytest.mark.parametrize("at", [0, 0.3, 0.6, 0.9])

@@ -7,6 +7,7 @@ import shutil
 import time
 import zipfile
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -238,7 +239,11 @@ def a_system():
 
 def a_kept_run(place: Path) -> None:
     series = {name: np.linspace(0.0, 1.0, 50) for name in ("time", "sand.force")}
-    kinds = {"metrics": {"peak": 2.0}, "options": {"packing": "square"}, "fmus": {"sand": "0f"}}
+    kinds = {
+        "metrics": {"peak": 2.0},
+        "options": {"packing": "square"},
+        "fmus": {"sand": sha256(Path(__file__).read_bytes()).hexdigest()},
+    }
     outcome = Outcome("task", "complete", series=series, **kinds, wall_time=3.0)
     KeptRuns(place / FINISHED).keep(a_system(), False, outcome)
     for name in (MINE, "run-of-mine.npz"):

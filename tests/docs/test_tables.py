@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from docs.tables import convergence, kept, platforms, systems
+from docs.tables import convergence, kept, masters, platforms, systems
 from docs.tables.filling import BLOCK, PAGES, TABLES, filled
 from docs.tables.forms import beside, number
 from docs.tables.kept import Kept, NotKeptError, outdated, take
@@ -78,28 +78,65 @@ def test_something_was_found_about_every_master_of_the_impact_systems():
     assert [each.master for each in found if each.are_none] == []
 
 
-def test_fmus_of_all_components_were_run_on_every_other_platform():
+def test_fmus_of_all_components_were_run_on_every_other_platform_with_the_present_kernels():
     """Otherwise: see `docs/tables/platforms.py`."""
     assert platforms.outdated(platforms.kept()["rows"]) == []
 
 
-def test_runs_on_other_platforms_are_kept_from_the_results_of_the_tests(tmp_path, monkeypatch):
-    monkeypatch.setattr(platforms, "DATA", tmp_path / "platforms.json")
-    monkeypatch.setattr(platforms, "kept", cache(platforms.kept.__wrapped__))
+def test_runs_on_other_platforms_by_an_older_kernel_are_refused_with_the_remedy():
+    rows = copy.deepcopy(platforms.kept()["rows"])
+    chosen = [("SandCushion", "2.0", "win64"), (platforms.IMPACT, "2.0", "")]
+    for row in rows:
+        if (row["name"], row["fmi"], row["platform"]) in chosen:
+            row["stamp"] = "0" * 64
+    found = platforms.outdated(rows)
+    assert [line.partition(": ")[0] for line in found] == [
+        "SandCushion, FMI 2.0, win64",
+        f"{platforms.IMPACT}, FMI 2.0, system",
+    ]
+    assert all("other than when it was run, by kernels; run `pytest" in line for line in found)
+
+
+def junit(folder, stamp):
+    """Results of the tests of other platforms, without wine."""
+    told = '<properties><property name="stamp" value="{}"/></properties>'
     cases = [
         f'<testcase classname="{module}" name="test_x[{name}-{platform}]">'
-        f"{'<skipped message=no wine/>' if platform == 'win64' else ''}</testcase>"
+        f"{'<skipped message=no wine/>' if platform == 'win64' else told.format(stamp(name))}"
+        "</testcase>"
         for module in platforms.TESTS
         for name in NAMES
         for platform in platforms.RUNNERS
     ]
     text = "".join(cases).replace("message=no wine", 'message="no wine"')
-    (tmp_path / "results.xml").write_text(f"<testsuites>{text}</testsuites>")
-    platforms.take([tmp_path / "results.xml"])
+    (folder / "results.xml").write_text(f"<testsuites>{text}</testsuites>")
+    return [folder / "results.xml"]
+
+
+def test_runs_on_other_platforms_are_kept_from_the_results_of_the_tests(tmp_path, monkeypatch):
+    monkeypatch.setattr(platforms, "DATA", tmp_path / "platforms.json")
+    monkeypatch.setattr(platforms, "kept", cache(platforms.kept.__wrapped__))
+    platforms.take(junit(tmp_path, platforms.stamp))
     assert "| FallingRock | 2.0 | native | not run: no wine | equal bits |" in platforms.platforms()
+    with pytest.raises(NotKeptError, match=r"aarch64-linux: other than when it was run"):
+        platforms.take(junit(tmp_path, lambda name: platforms.stamp(name)[::-1]))
     (tmp_path / "results.xml").write_text("<testsuites/>")
     with pytest.raises(NotKeptError, match="FallingRock, FMI 3"):
         platforms.take([tmp_path / "results.xml"])
+
+
+def test_the_measurement_of_masters_on_a_shed_comes_from_the_present_kernels():
+    """Otherwise: `python -m docs.implicit_shed`, then `python -m docs.tables`."""
+    assert masters.outdated(masters.kept()) == []
+
+
+def test_a_measurement_of_masters_by_an_older_kernel_or_of_other_runs_is_refused():
+    older = {**masters.kept(), "stamp": "0" * 64, "rows": masters.kept()["rows"][1:]}
+    remedy = "run `python -m docs.implicit_shed`, then `python -m docs.tables`"
+    assert masters.outdated(older) == [
+        f"has other runs than are measured; {remedy}",
+        f"other than when measured, by kernels; {remedy}",
+    ]
 
 
 def test_every_picture_of_a_run_of_the_sand_has_a_stamp():

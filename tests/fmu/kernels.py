@@ -3,7 +3,8 @@
 import numpy as np
 
 
-def _put(instance, experiment, time):
+def put(instance, experiment, time):
+    """Set the inputs that an experiment has at a time."""
     for name, stimulus in experiment.inputs.items():
         if callable(stimulus):
             instance[name] = stimulus(time)
@@ -19,14 +20,14 @@ def course(component, sizes, experiment):
     for name, value in experiment.parameters.items():
         instance[name] = value
     rows = {name: [] for name in experiment.expected}
-    _put(instance, experiment, 0.0)
+    put(instance, experiment, 0.0)
     instance.initialise()
     for number in range(experiment.steps + 1):
         if number >= experiment.first and (number - experiment.first) % experiment.every == 0:
             for name, found in rows.items():
                 found.append(np.copy(instance[name]))
         if number < experiment.steps:
-            _put(instance, experiment, number * experiment.step)
+            put(instance, experiment, number * experiment.step)
             instance.step(number * experiment.step, experiment.step)
     return {name: np.array(found) for name, found in rows.items()}
 

@@ -13,6 +13,7 @@ from rockshed.fmus.native.fmu import (
     library_sources,
     own_binary,
     own_platform,
+    stamp,
 )
 
 SLAVE = "slave.h"
@@ -351,7 +352,9 @@ SEEDS = (
 def seeded(fault, fmu, folder):
     """Write a copy of a native FMU with a fault into a folder; return its file."""
     kind = component(fault.model)
-    sources = library_sources(kind, kind.with_sizes(), [own_platform()], fault.fmi)[own_platform()]
+    sizes, platform = kind.with_sizes(), own_platform()
+    token = stamp(kind, sizes, fault.fmi)
+    sources = library_sources(kind, sizes, [platform], token, fault.fmi)[platform]
     with zipfile.ZipFile(fmu) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     for name, old, new in fault.edits:

@@ -13,7 +13,7 @@ import pytest
 
 from rockshed.components.catalogue import NAMES, component
 from rockshed.components.common.component import ComponentError
-from rockshed.fmus.native.fmu import library_sources, own_platform
+from rockshed.fmus.native.fmu import library_sources, own_platform, stamp
 from rockshed.fmus.parts import Fmi, Runtime
 
 from .conftest import HERE
@@ -205,7 +205,8 @@ def fuzzer(name, fmi, folder):
     platform = own_platform()
     made = component(name)
     sizes = made.with_sizes(SMALL.get(name))
-    for file, content in library_sources(made, sizes, [platform], fmi)[platform].items():
+    token = stamp(made, sizes, fmi)
+    for file, content in library_sources(made, sizes, [platform], token, fmi)[platform].items():
         (folder / file).write_bytes(content)
     folders = [f"-I{folder}", f"-I{HERE}"]
     command = [compiler, "-std=gnu11", "-O1", "-g", *SANITIZERS, "-ffp-contract=off", *folders]

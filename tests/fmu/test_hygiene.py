@@ -12,7 +12,7 @@ from rockshed.fmus.description.documentation import DIAGRAM, EXPERIMENTS_PAGE
 from rockshed.fmus.description.fmi3 import TERMINALS
 from rockshed.fmus.description.legal import LICENSE, NEEDED
 from rockshed.fmus.experiments.files import MANIFEST
-from rockshed.fmus.native.fmu import PLATFORMS, compiler, described_files, own_platform
+from rockshed.fmus.native.fmu import PLATFORMS, compiler, files_of_one_stamp, own_platform
 from rockshed.fmus.parts import DESCRIPTION
 
 EVENTS = {"SlopeRockfall"}
@@ -21,8 +21,8 @@ SEGMENTS = {"PileRod"}
 """Components whose internal step follows from their parameters."""
 KINDS = {
     "python": lambda made, sizes: fmu_files(made, sizes),
-    "native": lambda made, sizes: described_files(made, sizes, Fmi.TWO),
-    "native-fmi3": lambda made, sizes: described_files(made, sizes, Fmi.THREE),
+    "native": lambda made, sizes: files_of_one_stamp(made, sizes, [], Fmi.TWO),
+    "native-fmi3": lambda made, sizes: files_of_one_stamp(made, sizes, [], Fmi.THREE),
 }
 
 

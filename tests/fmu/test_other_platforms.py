@@ -13,6 +13,7 @@ import pytest
 from fmpy import read_model_description
 
 import rockshed
+from docs.tables.platforms import EXCHANGES, IMPACT, OUT_OF_THE_WAY, STEP, STEPS, stamp
 from rockshed.components.catalogue import NAMES
 from rockshed.core.run import simulate, sources_of
 from rockshed.core.system.planning import make_plan
@@ -34,9 +35,8 @@ pytestmark = [
 ]
 HOST = Path(__file__).parent / "plain_host.c"
 COUPLED_HOST = HOST.with_name("coupled_host.c")
-STEPS = ("1e-5", "50")
-OUT_OF_THE_WAY = {"rock.position.x": 0.6, "rock.position.y": 0.2}
-"""Inputs of the sand that it does not refuse."""
+TIMES = (repr(STEP), str(STEPS))
+"""Words of a host."""
 
 
 def host(folder, target, name, source=HOST):
@@ -70,7 +70,7 @@ def said(hosts, prefix, platform, folder, model):
     suffix = "dll" if platform == "win64" else "so"
     library = folder / "binaries" / platform / f"{model.coSimulation.modelIdentifier}.{suffix}"
     reals = [v for v in model.modelVariables if v.type == "Real"]
-    words = [str(library), model.guid, *STEPS]
+    words = [str(library), model.guid, *TIMES]
     if model.modelName.startswith("SandCushion"):
         for variable in reals:
             if variable.name in OUT_OF_THE_WAY:
@@ -92,8 +92,9 @@ def said(hosts, prefix, platform, folder, model):
 )
 @pytest.mark.parametrize("name", NAMES)
 def test_an_fmu_for_another_platform_gives_the_bits_of_that_for_linux(
-    hosts, prefix, tmp_path, name, platform
+    hosts, prefix, tmp_path, name, platform, record_property
 ):
+    record_property("stamp", stamp(name))
     platforms = ("linux64", platform)
     file = rockshed.build_fmu(name, folder=tmp_path, runtime="native", platforms=platforms)
     model = read_model_description(str(file), validate=False)
@@ -146,10 +147,11 @@ def order(plan, folder, platform):
 
 
 @needs_qemu
-def test_the_laboratory_impact_on_arm_has_the_bits_of_a_run(impact, tmp_path):
+def test_the_laboratory_impact_on_arm_has_the_bits_of_a_run(impact, tmp_path, record_property):
+    record_property("stamp", stamp(IMPACT))
     plan, folder = impact
-    exchanges = 1000
     step = plan.system.exchange_step
+    assert step == STEP
     shown = {}
     hosts = {
         "linux64": [host(tmp_path, "x86_64-linux-gnu", "host", COUPLED_HOST)],
@@ -162,7 +164,7 @@ def test_the_laboratory_impact_on_arm_has_the_bits_of_a_run(impact, tmp_path):
     }
     for platform, program in hosts.items():
         done = subprocess.run(
-            [*map(str, program), repr(step), str(exchanges)],
+            [*map(str, program), repr(step), str(EXCHANGES)],
             input=order(plan, folder, platform),
             capture_output=True,
             text=True,
@@ -172,7 +174,7 @@ def test_the_laboratory_impact_on_arm_has_the_bits_of_a_run(impact, tmp_path):
         assert done.returncode == 0, done.stdout[-500:] + done.stderr[-500:]
         shown[platform] = done.stdout.split()
     assert shown["aarch64-linux"] == shown["linux64"]
-    run = simulate(plan.system.model_copy(update={"stop_time": step * exchanges}), tmp_path / "run")
+    run = simulate(plan.system.model_copy(update={"stop_time": step * EXCHANGES}), tmp_path / "run")
     there = {end.name: bits for end, bits in zip(plan.outputs, shown["aarch64-linux"], strict=True)}
     for name in ("rock.position.y", "rock.velocity.y", "sand.rock.force.y"):
         assert struct.pack(">d", run.series[name][-1]).hex() == there[name]

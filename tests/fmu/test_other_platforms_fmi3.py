@@ -9,14 +9,14 @@ import pytest
 from fmpy import read_model_description
 
 import rockshed
+from docs.tables.platforms import OUT_OF_THE_WAY, stamp
 from rockshed.components.catalogue import NAMES
 
 from .test_other_platforms import (
     ARM,
     HOST,
-    OUT_OF_THE_WAY,
     QEMU,
-    STEPS,
+    TIMES,
     WINE,
     host,
     needs_qemu,
@@ -68,8 +68,9 @@ def words(model):
 )
 @pytest.mark.parametrize("name", NAMES)
 def test_an_fmu_of_fmi_3_for_another_platform_gives_the_bits_of_that_for_linux(
-    commands, tmp_path, tmp_path_factory, name, platform
+    commands, tmp_path, tmp_path_factory, name, platform, record_property
 ):
+    record_property("stamp", stamp(name))
     prefix = tmp_path_factory.getbasetemp() / "wine"
     made = {"folder": tmp_path, "runtime": "native", "fmi": 3}
     file = rockshed.build_fmu(name, platforms=("linux64", platform), **made)
@@ -81,7 +82,7 @@ def test_an_fmu_of_fmi_3_for_another_platform_gives_the_bits_of_that_for_linux(
         folder, suffix = LIBRARIES[each]
         library = tmp_path / "fmu" / "binaries" / folder / f"{name}{suffix}"
         done = subprocess.run(
-            [*map(str, commands[each]), str(library), model.guid, *STEPS, *words(model)],
+            [*map(str, commands[each]), str(library), model.guid, *TIMES, *words(model)],
             capture_output=True,
             text=True,
             timeout=300,

@@ -136,6 +136,34 @@ def test_code_that_names_a_module_which_is_gone_is_compiled_anew(tmp_path, endin
     assert kept(file) != b"crockshed_0123_lib.kernels\nmoved\n."
 
 
+EDITED = """
+import importlib, pathlib, sys
+sys.path.insert(0, sys.argv[1])
+sys.dont_write_bytecode = True
+import mine
+file = pathlib.Path(mine.__file__)
+file.write_text(file.read_text().replace("+ 1.0", "+ 2000.0"))
+importlib.reload(mine)
+print(mine.twice(4.0))
+"""
+
+
+def test_code_of_edited_sources_is_not_kept_under_the_stamp_of_the_old_ones(tmp_path):
+    """As in a notebook that imports a module anew; who goes back would be given the new code."""
+    source, folder = tmp_path / "mine.py", tmp_path / "cache"
+    source.write_text(KERNEL.format(constant=1.0))
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", EDITED, tmp_path],
+        env=os.environ | {cache.CACHE_VARIABLE: str(folder)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.stdout == "2008.0\n", done.stderr
+    assert not list(folder.rglob("*.nbc"))
+    source.write_text(KERNEL.format(constant=1.0))
+    assert result(tmp_path, folder) == "9.0\n"
+
+
 @pytest.fixture
 def files(tmp_path):
     """Kept code of a function for two processors."""

@@ -185,9 +185,14 @@ class FmuFile:
         Raises
         ------
         InputRefused
-            The archive is damaged or too large.
+            The archive is damaged or too large, or is another one than that whose description was
+            read.
         """
-        with self._archive() as archive:
+        content = self.path.read_bytes()
+        found = hashlib.sha256(content).hexdigest()
+        if found != self.origin.get("sha256", found):
+            raise self._refusal("has changed while it was loaded", "run again")
+        with self._archive(content) as archive:
             archive.unpack(folder, under)
 
     def _find_library(self, root: ElementTree.Element, archive: Archive) -> None:
