@@ -17,7 +17,7 @@ from .building import FmusOf, Note, case_fmus, each_once, silent
 from .executors import Crew, Lost, at_end, number_of_workers, processes, running
 from .job import prepare
 from .kept import KeptRuns
-from .outcome import Outcome
+from .outcome import Outcome, digests_of
 from .request import Request
 
 if TYPE_CHECKING:
@@ -526,7 +526,7 @@ def _outcome(order: _Order, run: "StoredRun", began: float) -> Outcome:
         {name: float(metric.value) for name, metric in complete.items()},
         dict(run.series) if order.with_series else {},
         _options(components),
-        {name: str(facts["sha256"]) for name, facts in components.items()},
+        digests_of(run),
         time.perf_counter() - began,
         {name: metric.unit for name, metric in complete.items()},
         tuple(warnings(run)) if complete and not order.with_series else (),

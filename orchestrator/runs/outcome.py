@@ -8,6 +8,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ..core.results.reading import StoredRun
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -50,3 +52,15 @@ class Outcome:
     wall_time: float = 0.0
     units: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+
+
+def digests_of(run: "StoredRun") -> dict[str, str]:
+    """Return the SHA-256 of the FMUs that have run, by component, without those in the process.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
+    components = run.provenance["components"]
+    return {name: facts["sha256"] for name, facts in components.items() if "sha256" in facts}

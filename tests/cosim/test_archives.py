@@ -83,3 +83,18 @@ def test_an_archive_of_too_many_files_is_refused_with_the_limit(rock_fmu, tmp_pa
 def test_the_true_reason_is_told_why_an_fmu_cannot_be_run(rock_fmu, tmp_path, xml, reason):
     found = said(packed(rock_fmu, tmp_path / "x.fmu", modelDescription=xml.encode()))
     assert re.search(reason, found), found
+
+
+def test_an_fmu_that_becomes_another_one_while_it_is_loaded_is_refused(rock_fmu, tmp_path):
+    """Its binary would be another one's than the description and the digest of the run."""
+    path = packed(rock_fmu, tmp_path / "x.fmu")
+    file = FmuFile(path)
+    file.model_description()
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("resources/other.txt", "built anew")
+    with pytest.raises(InputRefused, match=r"x\.fmu: has changed while it was loaded.*run again"):
+        file.unpack(tmp_path / "unpacked")
+    assert not (tmp_path / "unpacked").exists()
+    file.model_description()
+    file.unpack(tmp_path / "unpacked")
+    assert (tmp_path / "unpacked" / "resources" / "other.txt").is_file()

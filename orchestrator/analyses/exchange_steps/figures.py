@@ -13,7 +13,7 @@ from ...core.results.metric import identifier
 from ...metrics import names
 from ...metrics.energy import largest
 from ...runs.batch import metrics_of
-from ...runs.outcome import Outcome
+from ...runs.outcome import Outcome, digests_of
 from ...runs.run import Run
 from ..frame import FloatArray
 from ..study.headline import FIRST, MOST_OTHERS, UTILISATION, is_main
@@ -91,6 +91,7 @@ def outcome_of(run: Run, watch: Sequence[str], wall_time: float) -> Outcome:
         metrics=numbers,
         series={name: np.array(run.series[name], dtype=np.float64) for name in watch},
         options=facts,
+        fmus=digests_of(run),
         wall_time=wall_time,
         units={metric.name: metric.unit for metric in run.metrics.values()},
         warnings=tuple(run.warnings),
