@@ -179,9 +179,9 @@ giver = "a"
     code, said = rockshed("run", "x.toml")
     assert code == 2
     for text in (
-        "x.toml: connections.1: 'a.position.x' is no connection",
-        "x.toml: bonds.wrong.taker: is missing",
-        "a.no -> b.force.x: a has no variable 'no'",
+        "x.toml, line 4, column 37: connections.1: 'a.position.x' is no connection",
+        "x.toml, line 9, column 1: bonds.wrong.taker: is missing",
+        "x.toml, line 4, column 16: a.no -> b.force.x: a has no variable 'no'",
         "a.position.x -> b.mass: b.mass is of the causality parameter",
         "c.y -> b.no: there is no component 'c'",
         "c.y -> b.no: b has no variable 'no'",
