@@ -1,7 +1,9 @@
 """System files with one fault of each kind, or with several: told with line and column, at once."""
 
 import re
+import shutil
 from functools import partial
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -9,6 +11,7 @@ from typer.testing import CliRunner
 import rockshed
 from rockshed.commands.app import app
 from rockshed.core.errors import InputRefused
+from rockshed.fmus.build import build_if_needed
 from rockshed.runs.system_file import SystemFile
 
 RIGHT = """\
@@ -258,3 +261,27 @@ def test_a_study_tells_the_lines_of_its_file_and_not_of_what_varies(written):
     said = refused("study", file.name, "--vary", "a.mass=1 kg,2 m", "--set", "a.radius=0.1")
     assert lines(said) == [8, 22]
     assert "--vary a.mass: must be a mass, in kg (given: '2 m'" in said
+
+
+def test_the_page_on_system_files_shows_a_file_that_runs_and_what_is_told_of_a_wrong_one(
+    rock_fmu, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    page = (Path(__file__).parents[2] / "docs/system-files.md").read_text(encoding="utf-8")
+    right, said = (page.split(f"```{kind}\n")[1].split("```")[0] for kind in ("toml", "text"))
+    shutil.copy(rock_fmu, "FallingRock.fmu")
+    shutil.copy(build_if_needed("SandCushion"), "SandCushion.fmu")
+    Path("drop.toml").write_text(right.replace('"20 ms"', '"0.1 ms"'))
+    done = CliRunner().invoke(app, ["run", "drop.toml", "--no-figures", "-q"])
+    assert done.exit_code == 0, done.output
+    for sound, wrong in (
+        ('"20 ms"', '"2 kg"'),
+        ("rock.force.y ->", "rock.forc.y ->"),
+        ('"4 kg"', "-1"),
+    ):
+        assert right.count(sound) == 1
+        right = right.replace(sound, wrong)
+    Path("drop.toml").write_text(right)
+    told = CliRunner().invoke(app, ["run", "drop.toml", "--no-figures", "-q"]).output
+    assert [line.rstrip() for line in told.splitlines()] == said.splitlines()
