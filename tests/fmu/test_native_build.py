@@ -19,6 +19,7 @@ from typer.testing import CliRunner
 
 from rockshed.commands.app import app
 from rockshed.components.catalogue import NAMES, component
+from rockshed.fmus import kept_code
 from rockshed.fmus.build import (
     BuildError,
     Fmi,
@@ -95,7 +96,7 @@ ALSO_IN_FMI_3 = {"strspn"}
 @pytest.fixture
 def no_cache(monkeypatch, tmp_path):
     """Objects that are compiled in a test are not kept, and none are found."""
-    monkeypatch.setattr(native_fmu, "cache_directory", lambda: None)
+    monkeypatch.setattr(kept_code, "cache_directory", lambda: None)
 
 
 # ------------------------------------------------------------------ symbols
