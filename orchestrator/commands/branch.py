@@ -1,6 +1,8 @@
 """The command ``rockshed branch``: variants of a run, from one of its states."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,11 +18,20 @@ from ..runs.run import Run, read_run
 from .analysis import kept_if_ended, options_named, show, stages
 from .assignments import values_of
 from .options import Json, NoFigures, Quiet, Strict, Workers, simulated_time
-from .results_place import free_place, look_at_folder, provenance_in
+from .results_place import free_place, look_at_folder, look_at_place, provenance_in
 from .run import show_run
 from .screen import Screen, opened
 from .streams import stdout_for_results
 from .variants import read_variants
+from .vary import (
+    AnotherDraw,
+    Design,
+    SampleCount,
+    ToldMetrics,
+    ToldPercentiles,
+    percentiles_of,
+    varied_of,
+)
 
 _Parent = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run with checkpoints.")]
 _At = Annotated[
@@ -50,17 +61,38 @@ _Variants = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.csv",
-        help="Many variants from the start: the names of the values in the first line, then a line "
-        "for each variant. One table for all, in results/NAME-variants.",
+        help="Many variants: the names of the values in the first line, then a line for each "
+        "variant. One table for all, in results/NAME-variants.",
     ),
 ]
+_Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=HOW",
+        help="Many variants, as those of `rockshed study --vary`: levels A,B,C, a range "
+        "LOW..HIGH:LEVELS or a distribution of what --set takes. May be repeated.",
+    ),
+]
+_OPTIONS = (
+    *("at", "vary", "values", "design", "samples", "draw", "metrics", "percentiles"),
+    *("workers", "folder", "variants"),
+)
+"""Arguments of the analysis of many variants that are options of the command."""
+_DRAWN = ("design", "samples", "draw")
+"""Options of variants that vary, and do not stand in a table."""
 
 
 def command(
     run: _Parent,
     at: _At = None,
     set_: _Values = None,
+    vary: _Vary = None,
     variants: _Variants = None,
+    design: Design = None,
+    samples: SampleCount = None,
+    draw: AnotherDraw = None,
+    metric: ToldMetrics = None,
+    percentiles: ToldPercentiles = None,
     output_dir: _Folder = None,
     checkpoint_every: _Every = None,
     workers: Workers = None,
@@ -71,59 +103,101 @@ def command(
 ) -> None:
     """Run variants of a run from one of its states.
 
-    Sand that has settled does not settle again.
+    Sand that has settled does not settle again. Many variants have one table, and go on when they
+    are killed.
     """
-    if variants is not None:
-        alone = {"--at": at, "--set": set_, "--checkpoint-every": checkpoint_every}
-        others = [name for name, value in alone.items() if value is not None]
-        looks = (
-            partial(read_run, run),
-            partial(read_variants, variants),
-            look_at_folder(output_dir),
-        )
-        with opened(quiet, as_json) as screen, all_causes(*looks):
-            show(screen, _many(run, variants, others, output_dir, workers, not no_figures, screen))
+    drawn = {"design": design, "samples": samples, "draw": draw}
+    told = {"metrics": metric, "percentiles": percentiles, "workers": workers}
+    alone = {"checkpoint_every": checkpoint_every, "strict": strict or None}
+    asked = _Asked(run, at, set_ or [], vary or [], variants, output_dir)
+    if vary or variants is not None:
+        look = partial(_read, asked, {**drawn, **told})
+        with opened(quiet, as_json) as screen, all_causes(look, *asked.looks_of_many):
+            _refuse(alone, "is for a single variant, and these are many")
+            show(screen, _run_many(asked, {**drawn, **told}, not no_figures, screen))
         return
     announce(quiet=quiet, as_json=as_json, figures=not no_figures)
-    look = look_at_folder(output_dir)
-    with opened(quiet, as_json) as screen, all_causes(partial(read_run, run), look):
-        asked = {"at": at, "checkpoint_every": checkpoint_every}
-        done = _branched(run, set_ or [], output_dir, asked, screen)
-        show_run(done, screen, not no_figures, strict)
+    with opened(quiet, as_json) as screen, all_causes(*asked.looks):
+        what = "is for many variants, and this is one"
+        _refuse({**drawn, **told}, what, "add --vary or --variants, or ")
+        conduct = {"at": at, "checkpoint_every": checkpoint_every}
+        show_run(_branched(asked, conduct, screen), screen, not no_figures, strict)
 
 
-def _many(
-    folder: Path,
-    file: Path,
-    others: Sequence[str],
-    output_dir: Path | None,
-    workers: int | None,
-    pictures: bool,
-    screen: Screen,
-) -> StudyResult:
-    """Run the variants of a table.
+@dataclass(frozen=True)
+class _Asked:
+    """Options of one variant as of many.
+
+    Attributes
+    ----------
+    run, at, assigned, vary, variants, folder
+        As the user has given them.
+    """
+
+    run: Path
+    at: float | None
+    assigned: Sequence[str]
+    vary: Sequence[str]
+    variants: Path | None
+    folder: Path | None
+
+    @property
+    def looks(self) -> list[Callable[[], object] | None]:
+        """Looks at the inputs of one variant, each alone."""
+        return [partial(read_run, self.run), look_at_folder(self.folder)]
+
+    @property
+    def looks_of_many(self) -> list[Callable[[], object] | None]:
+        """Looks at the inputs of many variants, each alone."""
+        table = None if self.variants is None else partial(read_variants, self.variants)
+        return [partial(read_run, self.run), table, look_at_place(self.folder)]
+
+    def place(self, ending: str) -> tuple[Path, str]:
+        """Return the folder of the results, and what is to be said when something is in it."""
+        if self.folder:
+            return self.folder, ""
+        name = f"{self.run.resolve().name}-{ending}"
+        return free_place(name, {"never": "the same"}, provenance_in)
+
+
+def _refuse(options: Mapping[str, object], what: str, remedy: str = "") -> None:
+    """Refuse options that are given and mean nothing here.
 
     Raises
     ------
     InputRefused
-        The table cannot be read, or options of a single variant are given too.
+        With each of them.
     """
-    if others:
-        what = "is for a single variant, and --variants has many, from the start"
-        raise InputRefused([Problem(name, what, "leave one of them out") for name in others])
-    variants = read_variants(file)
-    parent = read_run(folder)
-    place, said = _place(f"{parent.folder.resolve().name}-variants", output_dir)
+    with options_named(("metrics", *options)):
+        given = [name for name, value in options.items() if value is not None]
+        if given:
+            raise InputRefused([Problem(name, what, f"{remedy}leave it out") for name in given])
+
+
+def _run_many(
+    asked: _Asked, options: Mapping[str, Any], pictures: bool, screen: Screen
+) -> StudyResult:
+    """Run the variants of a table, or those that vary.
+
+    Raises
+    ------
+    InputRefused
+        Texts or the table cannot be read, or options that do not go together.
+    """
+    read = _read(asked, options)
+    table = None if asked.variants is None else read_variants(asked.variants)
+    parent = read_run(asked.run)
+    place, said = asked.place("variants")
     with (
         kept_if_ended(screen, place),
-        options_named(("workers", "folder", "variants")),
-        variants.placed(),
+        options_named(_OPTIONS),
+        nullcontext() if table is None else table.placed(),
         stages(screen) as progress,
     ):
         found = branches(
             parent,
-            variants.values,
-            workers=workers,
+            **{"variants": table.values if table else None, **read},
+            at=asked.at,
             folder=place,
             pictures=pictures,
             progress=progress,
@@ -134,39 +208,48 @@ def _many(
     return found
 
 
-def _place(name: str, output_dir: Path | None) -> tuple[Path, str]:
-    """Return the folder of the results, and what is to be said when something is in it."""
-    return (
-        (output_dir, "") if output_dir else free_place(name, {"never": "the same"}, provenance_in)
-    )
+def _read(asked: _Asked, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Read options that are texts.
 
-
-def _branched(
-    folder: Path, texts: list[str], output_dir: Path | None, asked: dict[str, Any], screen: Screen
-) -> Run:
-    """Run a variant; one that fails or is interrupted gives what was computed until then."""
+    Raises
+    ------
+    InputRefused
+        With all that cannot be read, and options that do not go together.
+    """
     problems: list[Problem] = []
-    values = values_of("--set", texts, problems)
-    if not values and not problems:
-        what = "is missing: a variant has another value of something"
-        problems.append(Problem("--set", what, "write --set component.name=value"))
+    found = {**options, "percentiles": percentiles_of(options["percentiles"], problems)}
+    found["values"] = values_of("--set", asked.assigned, problems)
+    if asked.variants is None:
+        found["variants"] = varied_of(asked.vary, problems)
+    else:
+        drawn = {"--vary": asked.vary or None, **{f"--{n}": options[n] for n in _DRAWN}}
+        what = "means nothing beside --variants, whose table has the values of each variant"
+        problems += [Problem(n, what, "leave one of them out") for n, v in drawn.items() if v]
     if problems:
         raise InputRefused(problems)
-    parent = read_run(folder)
-    place, said = _place(_name(parent), output_dir)
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _branched(asked: _Asked, conduct: Mapping[str, Any], screen: Screen) -> Run:
+    """Run a variant; one that fails or is interrupted gives what was computed until then."""
+    problems: list[Problem] = []
+    values = values_of("--set", asked.assigned, problems)
+    if not values and not problems:
+        what = "is missing: a variant has another value of something"
+        remedy = "write --set component.name=value, or --vary for many variants"
+        problems.append(Problem("--set", what, remedy))
+    if problems:
+        raise InputRefused(problems)
+    parent = read_run(asked.run)
+    place, said = asked.place("branch")
     with stdout_for_results(), screen.progress("preparing") as progress:
         try:
             with options_named(("at", "checkpoint_every")):
                 done = branch(
-                    parent, values, folder=place, progress=progress, note=screen.note, **asked
+                    parent, values, folder=place, progress=progress, note=screen.note, **conduct
                 )
         except RunFailed as failure:
             done = failure.run
     if said:
         screen.warn(said)
     return done
-
-
-def _name(parent: Run) -> str:
-    """Return the name of the folder of a variant's results."""
-    return f"{parent.folder.resolve().name}-branch"

@@ -22,50 +22,25 @@ from .cluster_options import Authority, Certificate, PrivateKey, Scheduler, cert
 from .options import Assignments, Json, NoFigures, Quiet, Target, Workers, simulated_time
 from .results_place import free_folder, look_at_place
 from .screen import Screen, opened
-from .vary import varied_of
+from .vary import (
+    AnotherDraw,
+    Design,
+    SampleCount,
+    ToldMetrics,
+    ToldPercentiles,
+    Vary,
+    percentiles_of,
+    varied_of,
+)
 
 _OPTIONS = (
     *("vary", "design", "samples", "seeds", "draw", "metrics", "percentiles", "values"),
     *("workers", "scheduler", "certificates", "folder"),
 )
 """Arguments of the analysis that are options of the command."""
-_Vary = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="NAME=HOW",
-        help="Vary a field of a project, component.parameter or a shared value: levels A,B,C, a "
-        "range LOW..HIGH:LEVELS, or normal(MEAN, DEVIATION), lognormal(MEDIAN, DEVIATION OF LN), "
-        "uniform(LOW, HIGH), triangular(LOW, MODE, HIGH). May be repeated.",
-    ),
-]
-_Design = Annotated[
-    str | None,
-    typer.Option(
-        metavar="grid|oat|listed|random|lhs|sobol",
-        help="Every combination, one at a time, the n-th values of all together, independent "
-        "samples, Latin hypercube, or Sobol sequence; default grid, with a distribution random.",
-    ),
-]
-_Samples = Annotated[
-    int | None, typer.Option(help="Samples that are drawn; sobol runs (factors + 2) times as many.")
-]
 _Seeds = Annotated[
     int,
     typer.Option(help="Packings of the sand: of each combination; of samples, one each in turn."),
-]
-_Draw = Annotated[int, typer.Option(min=0, help="Another draw of the samples.")]
-_Metrics = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--metric",
-        metavar="ID",
-        help="Tell this metric (peak_transmitted_force, ...); default: forces, penetration, "
-        "moment, deflection, utilisation. May be repeated.",
-    ),
-]
-_Percentiles = Annotated[
-    str | None,
-    typer.Option(metavar="50,95", help="Percentiles that are told; default: all that are borne."),
 ]
 _StopTime = Annotated[float | None, simulated_time("End of every run.")]
 _Folder = Annotated[
@@ -75,15 +50,15 @@ _Folder = Annotated[
 
 def command(
     target: Target,
-    vary: _Vary = None,
-    design: _Design = None,
-    samples: _Samples = None,
+    vary: Vary = None,
+    design: Design = None,
+    samples: SampleCount = None,
     seeds: _Seeds = 1,
-    draw: _Draw = 0,
+    draw: AnotherDraw = None,
     set_: Assignments = None,
     stop_time: _StopTime = None,
-    metric: _Metrics = None,
-    percentiles: _Percentiles = None,
+    metric: ToldMetrics = None,
+    percentiles: ToldPercentiles = None,
     output_dir: _Folder = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -105,7 +80,7 @@ def command(
             "design": design,
             "samples": samples,
             "seeds": seeds,
-            "draw": draw,
+            "draw": draw or 0,
             "options": {} if stop_time is None else {"stop_time": stop_time},
             "metrics": metric or (),
             "workers": workers,
@@ -131,7 +106,7 @@ def _read(
     found = {
         "vary": varied_of(vary or [], problems),
         "values": values_of("--set", assigned or [], problems),
-        "percentiles": _percentiles(percentiles, problems),
+        "percentiles": percentiles_of(percentiles, problems),
     }
     if problems:
         raise InputRefused(problems)
@@ -146,18 +121,6 @@ def _studied(target: str, asked: Mapping[str, Any], screen: Screen) -> StudyResu
         stages(screen) as progress,
     ):
         return study(target, **asked, progress=progress, note=screen.note)
-
-
-def _percentiles(text: str | None, problems: list[Problem]) -> list[float] | None:
-    """Read percentiles, numbers in percent with commas between them."""
-    if text is None:
-        return None
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        what = f"{text!r} is no list of numbers"
-        problems.append(Problem("--percentiles", what, "write --percentiles 50,95"))
-        return None
 
 
 def _folder(target: str, screen: Screen) -> Path:

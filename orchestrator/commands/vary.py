@@ -1,11 +1,51 @@
-"""Texts that say how a value varies: levels, ranges and distributions."""
+"""Options that say how values vary, and the texts in them: levels, ranges and distributions."""
 
 import re
 from collections.abc import Sequence
+from typing import Annotated
+
+import typer
 
 from ..analyses.study.factors import KINDS, Interval, Levels, RandomValue, Varied
 from ..core.errors import Problem
 from ..core.input_text import shown
+
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=HOW",
+        help="Vary a field of a project, component.parameter or a shared value: levels A,B,C, a "
+        "range LOW..HIGH:LEVELS, or normal(MEAN, DEVIATION), lognormal(MEDIAN, DEVIATION OF LN), "
+        "uniform(LOW, HIGH), triangular(LOW, MODE, HIGH). May be repeated.",
+    ),
+]
+Design = Annotated[
+    str | None,
+    typer.Option(
+        metavar="grid|oat|listed|random|lhs|sobol",
+        help="Every combination, one at a time, the n-th values of all together, independent "
+        "samples, Latin hypercube, or Sobol sequence; default grid, with a distribution random.",
+    ),
+]
+SampleCount = Annotated[
+    int | None, typer.Option(help="Samples that are drawn; sobol runs (factors + 2) times as many.")
+]
+AnotherDraw = Annotated[
+    int | None, typer.Option(min=0, help="Another draw of the samples; default 0.")
+]
+ToldMetrics = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--metric",
+        metavar="ID",
+        help="Tell this metric (peak_transmitted_force, ...); default: forces, penetration, "
+        "moment, deflection, utilisation. May be repeated.",
+    ),
+]
+ToldPercentiles = Annotated[
+    str | None,
+    typer.Option(metavar="50,95", help="Percentiles that are told; default: all that are borne."),
+]
 
 _CALL = re.compile(r"(\w+)\s*\((.*)\)")
 _COUNT = re.compile(r"[0-9]{1,15}")
@@ -82,3 +122,23 @@ def _with_unit_of(low: str, high: str) -> str:
     """Return a lower bound without a unit with that of the upper one: ``0.6..1.5m``."""
     unit = re.sub(r"^[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*", "", high)
     return f"{low} {unit}" if unit and re.fullmatch(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?", low) else low
+
+
+def percentiles_of(text: str | None, problems: list[Problem]) -> list[float] | None:
+    """Read percentiles, numbers in percent with commas between them.
+
+    Parameters
+    ----------
+    text : str, optional
+        As the option has it.
+    problems : list of Problem
+        Takes what is wrong with it.
+    """
+    if text is None:
+        return None
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        what = f"{text!r} is no list of numbers"
+        problems.append(Problem("--percentiles", what, "write --percentiles 50,95"))
+        return None

@@ -14,9 +14,10 @@ import numpy as np
 from ..versions import sources_digest
 from .errors import InputRefused, Problem
 from .fmu.slave import Source
-from .loop.changes import ValueChange, plan_change
+from .loop.changes import plan_change
 from .loop.checkpointing import PROGRAM, Checkpointing, checkpoint_exchanges
 from .loop.master import Interruption, Progress
+from .results.changes import ValueChange, branch_record, changes_of
 from .results.checkpoints import (
     Checkpoint,
     copy_checkpoints,
@@ -25,6 +26,7 @@ from .results.checkpoints import (
     read_settled,
     readable_checkpoints,
 )
+from .results.memory import MemoryResults
 from .results.own_files import is_marked, read_data
 from .results.provenance import program_problems, source_problems
 from .results.reading import StoredRun, read_run
@@ -194,9 +196,9 @@ def resume(
     provenance = stopped.run.provenance
     plan = make_plan(system_of(stopped.run), sources)
     refuse_others(stopped.run, sources, (stopped.base, stopped.witness))
-    plan = replace(plan, warnings=_warnings_before(stopped.run))
+    plan = replace(plan, warnings=warnings_before(stopped.run))
     every = checkpoint_exchanges(plan, float(provenance["checkpoints"]["every"]))
-    course = Continuation(plan, sources, every, change_of(provenance), progress)
+    course = Continuation(plan, sources, every, changes_of(provenance), progress)
     return _gone_on(stopped, course, _continued(stopped, plan))
 
 
@@ -210,7 +212,7 @@ class Continuation:
         Of the run.
     every : int
         Number of exchanges between two checkpoints; 0 for none.
-    change : ValueChange, optional
+    changes : sequence of ValueChange
         Values that change on the way.
     progress : callable, optional
         Called now and then with the time reached and the stop time (s).
@@ -219,25 +221,23 @@ class Continuation:
     plan: Plan
     sources: Mapping[str, Source]
     every: int
-    change: ValueChange | None = None
+    changes: Sequence[ValueChange] = ()
     progress: Progress | None = None
 
 
 def _gone_on(stopped: Stopped, course: Continuation, facts: dict[str, Any]) -> StoredRun:
     """Let a run go on into the folder of its results, or into another one."""
-    changing = plan_change(course.plan, course.change) if course.change is not None else None
+    changes = [plan_change(course.plan, change) for change in course.changes]
     with Interruption() as interruption, RunFolder(stopped.folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
         session = Session(course.plan, course.sources, results, interruption)
-        session.begin_with(stopped.settled, changing)
+        session.begin_with(stopped.settled, changes)
         if course.every:
             keeper = Checkpointing(course.every, results.running, stopped.witness)
             session.take_checkpoints(keeper)
         try:
             session.prepare(True, facts)
-            _take_over(stopped, session, results)
-            if changing is not None:
-                changing.look(stopped.base.exchange)
+            take_over(stopped, session, results)
             session.run(course.progress)
         except InputRefused:
             results.discard()
@@ -245,14 +245,6 @@ def _gone_on(stopped: Stopped, course: Continuation, facts: dict[str, Any]) -> S
         finally:
             session.close()
     return read_run(stopped.folder)
-
-
-def change_of(provenance: Mapping[str, Any]) -> ValueChange | None:
-    """Return the change of a run that has branched off another one on its way."""
-    record = provenance.get("branch")
-    if not isinstance(record, Mapping) or record["at"] == provenance["system"]["start_time"]:
-        return None
-    return ValueChange(float(record["at"]), dict(record["values"]))
 
 
 def branch(
@@ -299,48 +291,76 @@ def branch(
     plan = make_plan(system_of(parent), sources)
     number = plan_change(plan, change).exchange
     every = checkpoint_exchanges(plan, checkpoint_every)
+    stem = stopped_before(parent, change.at, number, folder)
+    refuse_others(parent, sources, (stem.base,))
+    plan = replace(plan, warnings=warnings_before(parent))
+    facts = branch_facts(parent, change)
+    if checkpoint_every is not None:
+        facts["checkpoints"] = new_record(checkpoint_every, plan.warnings)
+    changes = [*changes_of(parent.provenance), change]
+    return _gone_on(stem, Continuation(plan, sources, every, changes, progress), facts)
+
+
+def stopped_before(parent: StoredRun, at: float, number: int, folder: Path) -> Stopped:
+    """Return where variants of a run go on: at its newest checkpoint before a time, or then.
+
+    Parameters
+    ----------
+    parent : StoredRun
+        The run.
+    at : float
+        The time (s).
+    number : int
+        Of the exchanges until then.
+    folder : Path
+        Of the results of the variant.
+
+    Raises
+    ------
+    InputRefused
+        There is no such checkpoint, or a component has ended the run before.
+    """
+    if parent.status == "complete" and parent.time.size and parent.time[-1] < at:
+        what = f"{at:g} s is after the end of the run, which a component has ended"
+        remedy = f"give a time before {float(parent.time[-1]):.9g} s"
+        raise InputRefused([Problem("at", what, remedy)])
     known = readable_checkpoints(parent.folder)
     before = [c for c in known if c.exchange <= number and c.rows <= parent.time.size]
     if not before:
         what = "has no checkpoint before this time"
         remedy = "run it again with checkpoint_every=..., or branch at its start"
         raise InputRefused([Problem(str(parent.folder), what, remedy)])
-    stem = Stopped(folder, parent, read_settled(parent.folder), before[-1], None)
-    refuse_others(parent, sources, (stem.base,))
-    plan = replace(plan, warnings=_warnings_before(parent))
-    facts = _branch_facts(parent, change)
-    if checkpoint_every is not None:
-        facts["checkpoints"] = new_record(checkpoint_every, plan.warnings)
-    return _gone_on(stem, Continuation(plan, sources, every, change, progress), facts)
+    return Stopped(folder, parent, read_settled(parent.folder), before[-1], None)
 
 
-def _warnings_before(run: StoredRun) -> tuple[str, ...]:
-    """Return the warnings that a run with checkpoints had before its first step."""
+def warnings_before(run: StoredRun) -> tuple[str, ...]:
+    """Return the warnings that a run with checkpoints had before its first step.
+
+    Parameters
+    ----------
+    run : StoredRun
+        The run.
+    """
     record = run.provenance.get("checkpoints") or {}
     return tuple(map(str, record.get("warnings", ())))
 
 
-def _branch_facts(parent: StoredRun, change: ValueChange) -> dict[str, Any]:
-    """Return the provenance of a variant that has its parent's up to a time."""
+def branch_facts(parent: StoredRun, change: ValueChange) -> dict[str, Any]:
+    """Return the provenance of a variant that has its parent's up to a time.
+
+    Parameters
+    ----------
+    parent : StoredRun
+        The run that it branches off.
+    change : ValueChange
+        Time and values.
+    """
     left_out = (*_OF_THE_END, "checkpoints", "resumed")
     known = {key: value for key, value in parent.provenance.items() if key not in left_out}
     differing = {**known.get("differences", {}), **change.values}
     started = datetime.now(UTC).isoformat()
-    record = branch_record(parent.folder, change)
+    record = branch_record(parent.folder, parent.provenance, change)
     return {**known, "started": started, "differences": differing, "branch": record}
-
-
-def branch_record(parent: Path, change: ValueChange) -> dict[str, Any]:
-    """Return the entry of a variant in its provenance.
-
-    Parameters
-    ----------
-    parent : Path
-        Folder of the run that it branches off.
-    change : ValueChange
-        Time and values.
-    """
-    return {"of": str(parent.resolve()), "at": change.at, "values": dict(change.values)}
 
 
 def refuse_others(
@@ -387,10 +407,24 @@ def _continued(stopped: Stopped, plan: Plan) -> dict[str, Any]:
     return {**known, "status": "running", "resumed": [*known.get("resumed", []), event]}
 
 
-def _take_over(stopped: Stopped, session: Session, results: RunFolder) -> None:
-    """Bring a session and its folder to the state of a run that goes on.
+def take_over(stopped: Stopped, session: Session, results: RunFolder | MemoryResults) -> None:
+    """Bring a session and its results to the state of a run that goes on.
 
     Checkpoints come last: a folder that has one has all rows before it.
+
+    Parameters
+    ----------
+    stopped : Stopped
+        The run.
+    session : Session
+        Prepared for it.
+    results : RunFolder or MemoryResults
+        Of the session.
+
+    Raises
+    ------
+    InputRefused
+        A component does not take its state back.
     """
     base = stopped.base
     session.parts.put_back(base)
@@ -399,7 +433,7 @@ def _take_over(stopped: Stopped, session: Session, results: RunFolder) -> None:
     results.rows(stopped.run.time[: base.rows], np.reshape(values, (-1, base.rows)).T)
     for name, at, state in _frames(stopped, session.plan):
         results.frame(name, at, state)
-    if session.checkpointing is not None:
+    if session.checkpointing is not None and results.running is not None:
         known = {base.exchange, *known_checkpoints(stopped.run.folder)[:1]}
         copy_checkpoints(stopped.run.folder, results.running, sorted(known))
 

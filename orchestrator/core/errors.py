@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 _PLACE = re.compile(r", line (\d+)(?:, column (\d+))?(?=:|$)")
@@ -47,6 +48,18 @@ def _place(problem: Problem) -> tuple[str, int, int]:
     if found is None:
         return problem.where, 0, 0
     return problem.where[: found.start()], int(found.group(1)), int(found.group(2) or 0)
+
+
+def check_of(fmu: str) -> str:
+    """Return what finds out why the code of an FMU crashes; empty where it is in no file.
+
+    Parameters
+    ----------
+    fmu : str
+        Its path.
+    """
+    is_file = "\0" not in fmu and Path(fmu).is_file()
+    return f"`rockshed check {quote(fmu)}` looks for the reason" if is_file else ""
 
 
 def counted(number: int, noun: str) -> str:

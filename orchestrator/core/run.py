@@ -2,10 +2,11 @@
 
 import time
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -14,7 +15,7 @@ from .fmu.fmu_slave import FmuFile
 from .fmu.slave import FATAL, OK, WARNING, Slave, SlaveLost, Source, counts_of, status_name
 from .isolation.slave import IsolatedFmu
 from .loop.buses import Buses
-from .loop.changes import Changing, ValueChange, plan_change
+from .loop.changes import Changing, advice, plan_change
 from .loop.checkpointing import Checkpointing, Parts, checkpoint_exchanges
 from .loop.initialisation import free, initialise, instantiate, losses_refused
 from .loop.instances import FreshInstances, KeptInstances, SettledInstances
@@ -24,6 +25,7 @@ from .loop.master import Interruption, Keeper, Master, Progress
 from .loop.recording import Hearing, Recorder
 from .loop.scenario import Course
 from .masters import driver_of
+from .results.changes import ValueChange
 from .results.checkpoints import Checkpoint, new_record, write_settled
 from .results.memory import MemoryResults
 from .results.metric import Metric
@@ -66,7 +68,7 @@ def simulate(
     allow_unstable: bool = False,
     checkpoint_every: float | None = None,
     settled: Checkpoint | None = None,
-    change: ValueChange | None = None,
+    changes: Sequence[ValueChange] = (),
     progress: Progress | None = None,
     facts: Facts | Callable[[Plan], Facts] | None = None,
     note: Callable[[str], None] = lambda text: None,
@@ -93,8 +95,8 @@ def simulate(
         default there are none.
     settled : Checkpoint, optional
         Settled states of another run, which are of use where the same was set before.
-    change : ValueChange, optional
-        Values that change at one time of the run.
+    changes : sequence of ValueChange
+        Values that change, each time at one time of the run.
     progress : callable, optional
         Called now and then with the time reached and the stop time (s).
     facts : mapping or callable, optional
@@ -122,11 +124,11 @@ def simulate(
     known = dict(facts(plan) if callable(facts) else facts or {})
     plan = replace(plan, warnings=(*plan.warnings, *known.pop("warnings", ())))
     every = checkpoint_exchanges(plan, checkpoint_every)
-    changing = plan_change(plan, change) if change is not None else None
+    planned = [plan_change(plan, change) for change in changes]
     with Interruption() as interruption, RunFolder(folder) as results:
         announce(folder=str(results.folder), running=str(results.running))
         session = Session(plan, made_from, results, interruption)
-        session.begin_with(settled, changing)
+        session.begin_with(settled, planned)
         if checkpoint_every is not None:
             session.take_checkpoints(Checkpointing(every, results.running))
             known["checkpoints"] = new_record(checkpoint_every, plan.warnings)
@@ -230,7 +232,7 @@ def starting_problems(
     slaves: dict[str, Slave] = {}
     try:
         plan = make_plan(system, every)
-        with losses_refused():
+        with losses_refused(system):
             slaves = instantiate(plan, every)
             buses = Buses(plan)
             initialise(slaves, buses, allow_unstable)
@@ -272,7 +274,7 @@ def _against_steps(
     slaves: dict[str, Slave] = {}
     try:
         plan = make_plan(system.model_copy(update=fitting), sources)
-        with losses_refused():
+        with losses_refused(system):
             slaves = instantiate(plan, sources)
             initialise(slaves, Buses(plan), allow_unstable)
     except InputRefused as refusal:
@@ -303,7 +305,7 @@ class Session:
     instances: FreshInstances | KeptInstances = field(default_factory=FreshInstances)
     keepers: list[Keeper] = field(default_factory=list)
     checkpointing: Checkpointing | None = None
-    changing: Changing | None = None
+    changes: Sequence[Changing] = ()
     course: Course | None = None
     slaves: dict[str, Slave] = field(default_factory=dict)
     initialised: bool = False
@@ -317,14 +319,13 @@ class Session:
         if not isinstance(self.instances, SettledInstances):
             self.instances = SettledInstances()
 
-    def begin_with(self, settled: Checkpoint | None, changing: Changing | None) -> None:
+    def begin_with(self, settled: Checkpoint | None, changes: Sequence[Changing] = ()) -> None:
         """Begin with settled states of another process, and with values that change on the way."""
         if settled is not None:
             self.instances = SettledInstances()
             self.instances.know(settled)
-        if changing is not None:
-            self.changing = changing
-            self.keepers.insert(0, changing)
+        self.changes = changes
+        self.keepers[:0] = changes
 
     def prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         """Make and initialise the slaves, then open the results.
@@ -336,13 +337,13 @@ class Session:
         ComponentLost
             The process of an isolated one has ended, or does not return.
         """
-        with losses_refused(self.plan.timing.seconds(0)):
+        with losses_refused(self.plan.system):
             self._prepare(allow_unstable, facts)
 
     def _prepare(self, allow_unstable: bool, facts: dict[str, Any]) -> None:
         began = time.perf_counter()
         plan = self.plan
-        self.journal = Journal(self.results.running, plan.order)
+        self.journal = Journal(self.results.running, plan)
         self.slaves = self.instances.make(plan, self.sources, self._enter)
         buses = Buses(plan, self.journal.entries)
         if plan.scenario:
@@ -351,20 +352,21 @@ class Session:
         initial = self.instances.initialise(self.slaves, buses, allow_unstable, self._enter)
         self.warnings = [*plan.warnings, *initial]
         self.initialised = True
-        self.accounts = Accounts(self.slaves, buses)
+        advised = partial(advice, self.changes)
+        self.accounts = Accounts(self.slaves, buses, advised)
         driver = driver_of(buses, self.slaves)
         if self.course is not None:
             self.course.asks_always = not driver.halts
         recorder = Recorder(self.slaves, buses.snapshots, self.accounts, self.results, driver)
         self.watched = buses.watched
         self.texts = buses.texts
-        self.master = Master(self.slaves, buses, recorder, driver, self.keepers)
+        self.master = Master(self.slaves, buses, recorder, driver, self.keepers, advised)
         self.hearing = Hearing(self.slaves)
         self.parts = Parts(self.slaves, buses, self.accounts, recorder, self.master, self.hearing)
         if self.checkpointing is not None:
             self.checkpointing.parts = self.parts
-        if self.changing is not None:
-            self.changing.slaves = self.slaves
+        for change in self.changes:
+            change.slaves = self.slaves
         self.journal.legend(buses.operations, plan)
         self.journal.rests()
         self.preparation = time.perf_counter() - began
@@ -382,7 +384,7 @@ class Session:
     def large_results(self) -> str:
         """Say what the results will take, if that is much; else nothing."""
         names = [name for name, spec in self.plan.system.components.items() if spec.record_states]
-        with losses_refused(self.plan.timing.seconds(0)):
+        with losses_refused(self.plan.system):
             states = [self.slaves[name].state() for name in names]
         state = sum(len(zlib.compress(content, 1)) for content in states)
         columns = 1 + len(self.columns)
@@ -400,6 +402,7 @@ class Session:
         try:
             if files is not None and self.results.running is not None:
                 files(self.results.running)
+            self._set_again()
             is_complete = self.master.run(self.interruption, progress)
             status = "complete" if is_complete else "interrupted"
         except RunFailed as error:
@@ -413,6 +416,15 @@ class Session:
         self._finish(status, failure)
         if failure is not None:
             raise failure
+
+    def _set_again(self) -> None:
+        """Set the values that change at the time of a checkpoint from which the run goes on.
+
+        It may be that of a run without them.
+        """
+        if self.master.exchanges:
+            for change in self.changes:
+                change.look(self.master.exchanges)
 
     def _finish(self, status: str, failure: RunFailed | None) -> None:
         self.journal.rests()

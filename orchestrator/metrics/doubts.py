@@ -8,6 +8,7 @@ import numpy as np
 from rockshed.components.common.roles import Role
 from rockshed.components.common.units import kN, mm, ms
 
+from ..core.results.changes import changes_of
 from ..core.results.metric import Metric
 from ..core.results.reading import StoredRun
 from . import contents, names
@@ -246,9 +247,10 @@ def _open_balance(run: StoredRun, found: list[Metric]) -> Iterator[str]:
                 "it has not what faults of the scenario make, and what that imposes elsewhere than "
                 "on power ports; see whether it closes without them"
             )
-        elif (at := (run.provenance.get("branch") or {}).get("at")) is not None:
+        elif changes := changes_of(run.provenance):
+            when = " and ".join(f"{change.at / ms:.4g} ms" for change in changes)
             remedy = (
-                f"it has not the work of what was set at {at / ms:.4g} ms; see whether it closes "
+                f"it has not the work of what was set at {when}; see whether it closes "
                 "in the run that this is a variant of"
             )
         missing = f"{100.0 * share:+.3g} % of the {whole}"

@@ -7,10 +7,13 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.errors import InputRefused, Problem
+from ..core.errors import InputRefused, Problem, RunFailed
+from ..core.system.fields import Value
 from ..core.system.names import split_name
 from ..core.system.system import SystemSpec
 from .building import FmusOf, Note, case_fmus, each_once, silent
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from ..core.loop.instances import KeptInstances
     from ..core.results.metric import Metric
     from ..core.results.reading import StoredRun
+    from ..core.variants import Stem
 
 COMPLETE = "complete"
 FAILED = "failed"
@@ -80,6 +84,22 @@ def uncounted(ended: int, total: int) -> None:
 
 
 @dataclass(frozen=True)
+class BranchPoint:
+    """Where variants of a run branch off.
+
+    Attributes
+    ----------
+    run : str
+        Folder of the run, absolute.
+    at : float
+        Time (s) from which on a variant has other values.
+    """
+
+    run: str
+    at: float
+
+
+@dataclass(frozen=True)
 class Task:
     """Run that a study or a calibration needs.
 
@@ -100,6 +120,9 @@ class Task:
         recorded, and the outcome has metrics only.
     label : str
         Names the run in messages.
+    branch : BranchPoint, optional
+        Where it branches off a run, with the values of the request from then on. The request then
+        says what was run, as far as it is known.
     """
 
     request: Request
@@ -108,6 +131,7 @@ class Task:
     allow_unstable: bool = False
     columns: tuple[str, ...] | None = COLUMNS
     label: str = ""
+    branch: BranchPoint | None = None
 
     @property
     def settings(self) -> list[str]:
@@ -145,6 +169,8 @@ class _Order:
         Whether the outcome has the recorded columns.
     label : str
         Names the run in messages.
+    variant : _Variant, optional
+        Of a run that branches off another one on its way.
     """
 
     key: str
@@ -153,11 +179,36 @@ class _Order:
     facts: Mapping[str, Any] = field(default_factory=dict)
     with_series: bool = True
     label: str = ""
+    variant: "_Variant | None" = None
 
     @property
     def about(self) -> dict[str, Any]:
         """Everything besides the system from which the outcome follows."""
-        return {"design": self.facts.get("design"), "series": self.with_series}
+        variant = asdict(self.variant) if self.variant else None
+        return {
+            "design": self.facts.get("design"),
+            "series": self.with_series,
+            "variant": variant,
+        }
+
+
+@dataclass(frozen=True)
+class _Variant:
+    """Values that a run has from a time on, when it branches off another one.
+
+    Attributes
+    ----------
+    point : BranchPoint
+        Where it branches off.
+    state : str
+        SHA-256 of what describes the other run and of its checkpoint, by which it is known.
+    values : mapping of str to Value
+        By ``component.variable``.
+    """
+
+    point: BranchPoint
+    state: str
+    values: Mapping[str, Value]
 
 
 Opening = Callable[[int], AbstractContextManager[Crew]]
@@ -225,11 +276,15 @@ def orders_of(tasks: Sequence[Task], note: Note = silent) -> list[_Order]:
         Tasks that cannot be prepared, with the reasons of all of them.
     """
     fmus_of = each_once()
+    parent_of = lru_cache(_parent)
     orders = []
     refused: list[tuple[str, Problem]] = []
     for task in {task.key: task for task in tasks}.values():
         try:
-            orders.append(_order(task, note, fmus_of))
+            if task.branch is not None:
+                orders.append(_order_of_variant(task, *parent_of(task.branch)))
+            else:
+                orders.append(_order(task, note, fmus_of))
         except InputRefused as refusal:
             refused += [(task.label, problem) for problem in refusal.problems]
     if refused:
@@ -304,6 +359,7 @@ def carry_out(
     by_key = {order.key: order for order in waiting}
     tell = _once(note)
     try:
+        counted(len(outcomes), len(orders))
         for outcome in _carry_out(waiting, opening, check_first):
             outcomes[outcome.key] = outcome
             _keep(kept, by_key[outcome.key], outcome, tell)
@@ -388,6 +444,28 @@ def _order(task: Task, note: Note, fmus_of: FmusOf = case_fmus) -> _Order:
     )
 
 
+def _parent(point: BranchPoint) -> tuple[SystemSpec, str]:
+    """Return the system of the run that variants branch off, and what its state is known by."""
+    from ..core.results.reading import read_run
+    from ..core.variants import digest_of_state, system_of
+
+    parent = read_run(Path(point.run))
+    return system_of(parent), digest_of_state(parent, point.at)
+
+
+def _order_of_variant(task: Task, system: SystemSpec, state: str) -> _Order:
+    """Return the system of a run that branches off another one, and its values from then on."""
+    assert task.branch is not None
+    return _Order(
+        task.key,
+        slim(system, task.columns),
+        task.allow_unstable,
+        with_series=task.columns is not None,
+        label=task.label,
+        variant=_Variant(task.branch, state, task.request.values),
+    )
+
+
 def slim(system: SystemSpec, recorded: tuple[str, ...] | None = COLUMNS) -> SystemSpec:
     """Return a system that records some variables and no states.
 
@@ -446,7 +524,8 @@ def _refuse(orders: Sequence[_Order], executor: Crew) -> None:
 # --- in a process ---
 
 _of_thread = threading.local()
-"""Instances of FMUs that the runs of a thread use one after the other."""
+"""Instances of FMUs, and the run up to its branching, that the runs of a thread use one after the
+other."""
 
 
 def _instances() -> "KeptInstances":
@@ -469,12 +548,34 @@ def check_one(order: _Order) -> list[Problem]:
         Of :func:`orders_of`.
     """
     from ..core.run import plan_of
+    from ..core.variants import refuse_values
 
     try:
-        plan_of(order.system, _instances())
+        if order.variant is None:
+            plan_of(order.system, _instances())
+        else:
+            with running():
+                refuse_values(_stem(order, order.variant), order.variant.values)
     except InputRefused as refusal:
         return refusal.problems
+    except RunFailed as failure:
+        what = f"the run does not come to the time of its branching: {failure}"
+        return [Problem("at", what, "see the run itself, or branch at an earlier time")]
     return []
+
+
+def _stem(order: _Order, variant: _Variant) -> "Stem":
+    """Return the run up to the time at which a variant branches off; it is run there once."""
+    from ..core.results.reading import read_run
+    from ..core.variants import grow_stem
+
+    key = (variant.point, variant.state)
+    known, found = getattr(_of_thread, "stem", (None, None))
+    if found is None or known != key:
+        parent = read_run(Path(variant.point.run))
+        found = grow_stem(parent, variant.point.at, order.system, _instances())
+        _of_thread.stem = (key, found)
+    return found
 
 
 def run_one(order: _Order) -> Outcome:
@@ -490,25 +591,31 @@ def run_one(order: _Order) -> Outcome:
     Outcome
         Also of a run that fails.
     """
-    from ..core.run import simulate_in_memory
-
     began = time.perf_counter()
     with running():
         try:
-            run = simulate_in_memory(
-                order.system,
-                _instances(),
-                allow_unstable=order.allow_unstable,
-                facts=order.facts,
-            )
-            return _outcome(order, run, began)
+            return _outcome(order, _run(order), began)
         except InputRefused as refusal:
             reason = "; ".join(map(str, refusal.problems))
+        except RunFailed as failure:  # before the variant branches off
+            reason = str(failure)
         except KeyboardInterrupt:
             return Outcome(order.key, INTERRUPTED, "not run")
         except (OSError, MemoryError, RuntimeError, ArithmeticError) as error:
             reason = f"{type(error).__name__}: {error}"
         return Outcome(order.key, FAILED, reason, wall_time=time.perf_counter() - began)
+
+
+def _run(order: _Order) -> "StoredRun":
+    """Carry out one run in memory."""
+    from ..core.run import simulate_in_memory
+    from ..core.variants import run_variant
+
+    if order.variant is not None:
+        return run_variant(_stem(order, order.variant), order.variant.values, _instances())
+    return simulate_in_memory(
+        order.system, _instances(), allow_unstable=order.allow_unstable, facts=order.facts
+    )
 
 
 def _outcome(order: _Order, run: "StoredRun", began: float) -> Outcome:

@@ -12,8 +12,8 @@ from ..core import continuing
 from ..core.continuing import Stopped, find_stopped, system_of
 from ..core.errors import InputRefused, Problem, RunFailed, UnknownName
 from ..core.fmu.slave import Source
-from ..core.loop.changes import ValueChange
 from ..core.loop.master import Progress
+from ..core.results.changes import ValueChange, branch_record, changes_of
 from ..core.results.checkpoints import read_settled
 from ..core.results.own_files import read_data
 from ..core.results.reading import StoredRun
@@ -32,6 +32,7 @@ from .request import Request, plain
 from .run import Run, read_run
 from .simulation import checked, kept, measured, warnings_of
 from .system import System
+from .values_in_si import file_in_si
 
 
 def resume(
@@ -193,6 +194,7 @@ def branch(
         if change.at == begin:
             _from_start(parent, change, place, note, conduct)
         else:
+            change = replace(change, values=_in_si(parent, change.values))
             continuing.branch(parent, change, place, sources_of_run(parent), **conduct)
     except RunFailed as failure:
         failure.run = kept(measured(place), temporary)
@@ -204,13 +206,20 @@ def branch(
     return kept(measured(place), temporary)
 
 
+def _in_si(parent: StoredRun, values: Mapping[str, Value]) -> dict[str, Value]:
+    """Return values with those in a unit as numbers in SI; the others are refused by the run."""
+    name = str(parent.provenance.get("name", "run"))
+    read = file_in_si(Request(name, values), system_of(parent), [])
+    return {**values, **read.values}
+
+
 def _from_start(
     parent: StoredRun, change: ValueChange, folder: Path, note: Note, conduct: Mapping[str, Any]
 ) -> None:
     """Run a system with other values from the settled states of a run."""
     _refuse_other_system(parent, note)
     varied = _job_with(parent, change.values, note)
-    record = continuing.branch_record(parent.folder, change)
+    record = branch_record(parent.folder, parent.provenance, change)
 
     def facts(plan: Plan) -> dict[str, Any]:
         return {**varied.facts, "branch": record, "warnings": warnings_of(varied, plan)}
@@ -220,6 +229,7 @@ def _from_start(
         folder,
         sources=varied.sources,
         settled=read_settled(parent.folder),
+        changes=changes_of(parent.provenance),
         facts=facts,
         **conduct,
     )
@@ -259,15 +269,40 @@ def request_of(parent: StoredRun, varied: Collection[str], note: Note) -> Reques
     InputRefused
         The run is none of a case or file, ran in its process, or would be another one now.
     """
+    refuse_in_process(parent)
     told = parent.provenance.get("request")
-    request = None if told is None else _request_of(parent, told)
-    if request is None or request.in_process:
-        what = "has components in its process, and variants run in processes of their own"
-        remedy = "run a case or a file with FMUs, or branch it once for each variant"
+    if told is None:
+        what = "is none of a case, a project or a system file, whose variants could begin anew"
+        remedy = "branch it at a later time, at=..., or once for each variant"
         raise InputRefused([Problem(str(parent.folder), what, remedy)])
+    if changes_of(parent.provenance):
+        what = "is a variant whose values changed on the way, which no run has from its start"
+        remedy = "branch it at a later time, at=..., or once for each variant"
+        raise InputRefused([Problem(str(parent.folder), what, remedy)])
+    request = _request_of(parent, told)
     _refuse_other_system(parent, note)
     kept = {name: value for name, value in request.values.items() if name not in varied}
     return replace(request, values=kept)
+
+
+def refuse_in_process(parent: StoredRun) -> None:
+    """Refuse a run whose variants cannot run in other processes.
+
+    Parameters
+    ----------
+    parent : StoredRun
+        The run.
+
+    Raises
+    ------
+    InputRefused
+        Components that are in no FMU file.
+    """
+    known = parent.provenance.get("components") or {}
+    if not all("fmu" in facts for facts in known.values()):
+        what = "has components in its process, and variants run in processes of their own"
+        remedy = "run a case or a file with FMUs, or branch it once for each variant"
+        raise InputRefused([Problem(str(parent.folder), what, remedy)])
 
 
 def _request_of(run: StoredRun, told: Any) -> Request:

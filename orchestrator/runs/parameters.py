@@ -6,12 +6,15 @@ from pathlib import Path
 
 from rockshed.components.common.units import UNITS
 
-from ..core.errors import InputRefused
+from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
+from ..core.loop.changes import settable_end
 from ..core.system.fields import Value
-from ..core.system.names import split_name
+from ..core.system.names import nearest, split_name
+from ..core.system.plan import End, Plan
 from ..core.system.quantities import finite_number, in_si
+from ..core.system.values import value_for
 from ..input_files.fields import ANY, fields, unit_of
 from ..sites.shed.preparation import all_fields, is_field
 from ..sites.shed.site import ShedProject
@@ -64,6 +67,22 @@ class SystemValues:
         ]
         return [*(all_fields() if self.is_project else ()), *system.shared, *ports]
 
+    def refusal(self, name: str) -> Problem | None:
+        """Return why a value cannot be given; None where it can.
+
+        Parameters
+        ----------
+        name : str
+            Of the value.
+        """
+        if self.unit(name) is not None:
+            return None
+        return Problem(name, "is no value of this system", nearest(name, self.known()))
+
+    def fault(self, name: str, value: Value) -> str:
+        """Return nothing: what fits is for the project and the FMUs to say, with all values."""
+        return ""
+
     def unit(self, name: str) -> str | None:
         """Return the SI unit of a value, ``1`` where it has none; None if there is none.
 
@@ -103,19 +122,7 @@ class SystemValues:
         ValueError
             Its unit is of another kind, or does not exist.
         """
-        if not isinstance(value, str):
-            return value
-        text = value.strip()
-        if not text[:1].isdigit() and text[:1] not in ("+", "-", "."):
-            return text
-        unit = self.unit(name)
-        if unit in UNITS and unit != "1":
-            return in_si(text, unit)
-        number = finite_number(text)
-        if number is None:
-            named = "a number" if unit in (None, "1") else f"a number in {unit}"
-            raise ValueError(f"must be {named} (given: {text})")
-        return int(number) if text.lstrip("+-").isdigit() else number
+        return _read(value, self.unit(name))
 
     @property
     def seed(self) -> str | None:
@@ -139,3 +146,95 @@ class SystemValues:
         owner, _ = split_name(name, self._descriptions)
         given = self.job.system.components[owner].parameters.get(_SEED)
         return int(float(port.start or 0) if given is None else float(given))
+
+
+@dataclass(frozen=True)
+class BranchValues:
+    """Names and units of the values that a run can be given on its way.
+
+    Attributes
+    ----------
+    plan : Plan
+        Of the run.
+    """
+
+    plan: Plan
+    seed: str | None = None
+    first_seed: int = 0
+
+    def refusal(self, name: str) -> Problem | None:
+        """Return why a value cannot be given between two steps; None where it can.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+        """
+        problems: list[Problem] = []
+        settable_end(self.plan, name, problems)
+        return problems[0] if problems else None
+
+    def _end(self, name: str) -> End | None:
+        return settable_end(self.plan, name, [])
+
+    def unit(self, name: str) -> str | None:
+        """Return the SI unit of a value, ``1`` where it has none; None if it cannot be given.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+        """
+        end = self._end(name)
+        return None if end is None else end.port.unit_name
+
+    def read(self, name: str, value: Value) -> Value:
+        """Return a value in SI; a word stays as it is.
+
+        Parameters
+        ----------
+        name : str
+            Of the value.
+        value : Value
+            A number, or a text with a unit, or a word.
+
+        Raises
+        ------
+        ValueError
+            Its unit is of another kind, or does not exist.
+        """
+        return _read(value, self.unit(name))
+
+    def fault(self, name: str, value: Value) -> str:
+        """Return why a variable does not take a value; empty where it does.
+
+        Parameters
+        ----------
+        name : str
+            Of the variable.
+        value : Value
+            As :meth:`read` returns it.
+        """
+        end = self._end(name)
+        try:
+            if end is not None:
+                value_for(end.port, value)
+        except ValueError as error:
+            return str(error)
+        return ""
+
+
+def _read(value: Value, unit: str | None) -> Value:
+    """Return a value in SI, as ``read`` of the names of values has it."""
+    if not isinstance(value, str):
+        return value
+    text = value.strip()
+    if not text[:1].isdigit() and text[:1] not in ("+", "-", "."):
+        return text
+    if unit in UNITS and unit != "1":
+        return in_si(text, unit)
+    number = finite_number(text)
+    if number is None:
+        named = "a number" if unit in (None, "1") else f"a number in {unit}"
+        raise ValueError(f"must be {named} (given: {text})")
+    return int(number) if text.lstrip("+-").isdigit() else number

@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from ..core import continuing
-from ..core.continuing import change_of, system_of
+from ..core.continuing import system_of
 from ..core.errors import InputRefused, Problem, RunFailed
 from ..core.loop.master import Progress
 from ..core.results.bits import Difference, first_difference
+from ..core.results.changes import changes_of
 from ..core.results.checkpoints import read_settled
 from ..core.results.reading import StoredRun
 from ..core.run import simulate as simulate_spec
@@ -98,7 +99,7 @@ def verify(
     sources = sources_of_run(first, system)
     make_plan(spec, sources)  # reads the FMUs
     continuing.refuse_others(first, sources)
-    conduct: dict[str, Any] = {"change": change_of(first.provenance), "progress": progress}
+    conduct: dict[str, Any] = {"changes": changes_of(first.provenance), "progress": progress}
     if "branch" in first.provenance:
         conduct["settled"] = read_settled(first.folder)
     with TemporaryFolder("rockshed-") as place:

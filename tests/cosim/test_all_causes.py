@@ -35,7 +35,10 @@ CAUSES = {
     ],
     "branch": [
         (("nowhere", "--variants", "missing.csv"), ("nowhere", "missing.csv")),
-        (("nowhere", "--variants", "missing.csv", "--at", "1"), ("nowhere", "missing.csv", "--at")),
+        (
+            ("nowhere", "--variants", "missing.csv", "--strict"),
+            ("nowhere", "missing.csv", "--strict"),
+        ),
         (("nowhere", "--set", "broken"), ("nowhere", "broken")),
         (("nowhere",), ("nowhere", "--set: is missing")),
         (("nowhere", "--set", "a.b=1", "--output-dir", "occupied"), ("nowhere", "occupied")),

@@ -1,6 +1,7 @@
 """Variants of a run from one of its states, and runs that are run again to see whether they differ."""
 
 import json
+from dataclasses import replace
 
 import pyarrow as pa
 import pyarrow.parquet
@@ -14,8 +15,8 @@ from rockshed.commands.app import app
 from rockshed.core import continuing
 from rockshed.core.continuing import find_stopped
 from rockshed.core.errors import InputRefused, RunFailed
-from rockshed.core.loop.changes import ValueChange
 from rockshed.core.results.bits import first_difference
+from rockshed.core.results.changes import ValueChange, changes_of
 from rockshed.core.results.checkpoints import known_checkpoints
 from rockshed.core.results.reading import read_run
 from rockshed.core.run import simulate
@@ -60,7 +61,7 @@ def test_a_variant_is_the_run_in_one_go_whose_values_change_on_the_way(
     change = ValueChange(0.05 * exchange, {"free.force": force})
     branched = continuing.branch(parent, change, place / "branch", system()[1])
     one, sources = system()
-    whole = simulate(one, place / "whole", sources=sources, change=change)
+    whole = simulate(one, place / "whole", sources=sources, changes=[change])
     assert first_difference(whole, branched) is None
     before = branched.time <= change.at
     assert (branched.series["free.position"][before] == 0.0).all()
@@ -70,7 +71,7 @@ def test_a_variant_is_the_run_in_one_go_whose_values_change_on_the_way(
 def test_a_variant_that_is_ended_goes_on_with_its_values(parent, tmp_path):
     change = ValueChange(0.9, {"free.force": 3.0})
     one, sources = system()
-    whole = simulate(one, tmp_path / "whole", sources=sources, change=change)
+    whole = simulate(one, tmp_path / "whole", sources=sources, changes=[change])
     for breaks_at in (0.7, 0.9, 1.6):
         place = tmp_path / f"broken-{breaks_at}"
         with pytest.raises(RunFailed, match="broken"):
@@ -125,6 +126,79 @@ def test_tunable_parameters_may_be_set_on_the_way(tmp_path):
     variant = continuing.branch(whole, change, tmp_path / "variant", sources)
     assert variant.series["a.y"][5] == whole.series["a.y"][5]
     assert variant.series["a.y"][6] == 10.0 * whole.series["a.y"][6]
+
+
+def test_a_variant_of_a_variant_has_the_values_of_both(parent, tmp_path):
+    """Also where it begins at a checkpoint from before the change of the first one."""
+    changes = [ValueChange(0.5, {"free.force": 3.0}), ValueChange(1.0, {"free.force": -1.0})]
+    first = continuing.branch(
+        parent, changes[0], tmp_path / "first", system()[1], checkpoint_every=0.4
+    )
+    assert known_checkpoints(first.folder)[1] * 0.05 > 1.0
+    second = continuing.branch(first, changes[1], tmp_path / "second", system()[1])
+    one, sources = system()
+    whole = simulate(one, tmp_path / "whole", sources=sources, changes=changes)
+    assert first_difference(whole, second) is None
+    assert first_difference(first, second) is not None
+    assert changes_of(second.provenance) == changes
+
+
+def refusing():
+    """Mocks of which one takes no force of more than 5 N between two steps."""
+    _, sources = system()
+    made = type(sources["free"]).instantiate
+
+    class Wilful(Mock):
+        def instantiate(self, name):
+            slave = made(self, name)
+            take = slave.set
+
+            def put(references, values, kind="Real"):
+                if slave.running and max(values) > 5.0:
+                    return slave._said((3, "too strong"))
+                return take(references, values, kind)
+
+            slave.set = put
+            return slave
+
+    free = sources["free"]
+    return {**sources, "free": Wilful(free.ports, free.step, free.start)}
+
+
+@pytest.mark.parametrize("at", [1.2, 1.3])
+def test_a_value_that_is_refused_on_the_way_ends_a_variant_as_failed(parent, tmp_path, at):
+    """At a checkpoint too, where the value is set before the first exchange."""
+    change = ValueChange(at, {"free.force": 9.0})
+    with pytest.raises(RunFailed, match=r"free at t = 1\.[23] s: force = 9.0 is refused"):
+        continuing.branch(parent, change, tmp_path / "run", refusing())
+    kept = read_run(tmp_path / "run")
+    assert (kept.status, kept.time[-1]) == ("failed", pytest.approx(at))
+
+
+def test_what_was_set_on_the_way_is_told_as_the_cause_of_a_state_that_runs_away(parent, tmp_path):
+    _, sources = system()
+    step = sources["free"].step
+
+    def burst(v, t, h):
+        step(v, t, h)
+        if v["force"] > 5.0:
+            v["position"] = float("nan")
+
+    sources["free"].step = burst
+    change = ValueChange(1.2, {"free.force": 9.0})
+    with pytest.raises(RunFailed) as failure:
+        continuing.branch(parent, change, tmp_path / "run", sources)
+    told = str(failure.value)
+    assert "the likely cause is what was set on the way, free.force = 9.0 N at t = 1.2 s" in told
+    assert "reduce" not in told
+
+
+def test_a_run_that_a_component_has_ended_has_no_variants_after_its_end(parent, tmp_path):
+    short = replace(parent, series={name: x[:20] for name, x in parent.series.items()})
+    with pytest.raises(InputRefused, match=r"at: 1\.2 s is after the end of the run"):
+        continuing.branch(
+            short, ValueChange(1.2, {"free.force": 1.0}), tmp_path / "run", system()[1]
+        )
 
 
 # ---------------------------------------------------------------- from Python and the command line
@@ -252,6 +326,6 @@ def test_a_variant_of_a_strangers_fmu_is_its_run_in_one_go(foreign, tmp_path):
     whole = simulate(one, tmp_path / "run", sources=strangers(), checkpoint_every=0.3)
     change = ValueChange(1.3, {"a.speed": 2.0})
     variant = continuing.branch(whole, change, tmp_path / "variant", strangers())
-    expected = simulate(one, tmp_path / "expected", sources=strangers(), change=change)
+    expected = simulate(one, tmp_path / "expected", sources=strangers(), changes=[change])
     assert first_difference(expected, variant) is None
     assert first_difference(whole, variant) is not None

@@ -91,6 +91,7 @@ def test_a_crash_in_a_step_is_reported_with_component_and_time(tmp_path):
     done = run(tmp_path, crash_at=0.5)
     said = "wild at t = 0.5 s: its code crashed (SIGSEGV) in the step by 0.0005 s"
     assert f"failed: {said}" in done.stderr
+    said += f"; `rockshed check {tmp_path / 'Crash.fmu'}` looks for the reason"
     assert done.returncode == 1
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "Crash.fmu",
@@ -109,6 +110,8 @@ def test_a_crash_before_the_first_step_leaves_nothing(tmp_path):
     fmu(tmp_path, at_start=1)
     done = run(tmp_path)
     assert "failed: calm: its code crashed (SIGSEGV) while it was made ready" in done.stderr
+    remedy = f"`rockshed check {tmp_path / 'Crash.fmu'}` looks for the reason"
+    assert remedy.replace(" ", "") in "".join(done.stderr.split())
     assert done.returncode == 1
     assert not (tmp_path / "out").exists()
     assert not list(tmp_path.glob("*.running"))

@@ -9,7 +9,8 @@ import pytest
 from rockshed.core import continuing
 from rockshed.core.continuing import find_stopped
 from rockshed.core.errors import InputRefused, RunFailed
-from rockshed.core.loop.changes import ValueChange, plan_change
+from rockshed.core.loop.changes import plan_change
+from rockshed.core.results.changes import ValueChange
 from rockshed.core.run import simulate, starting_problems
 from rockshed.core.system.iteration import Iteration
 from rockshed.core.system.planning import make_plan

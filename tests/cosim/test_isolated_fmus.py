@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -97,6 +98,8 @@ def test_code_that_does_not_return_from_the_initialisation_is_told(tmp_path, sta
     with pytest.raises(ComponentLost) as lost:
         run(tmp_path, AT_START=start)
     assert told in str(lost.value)
+    (problem,) = lost.value.problems
+    assert re.fullmatch(r"`rockshed check \S+\.fmu` looks for the reason", problem.remedy)
     assert not (tmp_path / "out").exists()
 
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...core.results.run_folder import RUN
+from ...runs.batch import BranchPoint
 from ...runs.cluster import Certificates
 from ...runs.request import Request
 from .factors import Levels, Varied, varied_as_data, varied_from
@@ -26,16 +28,19 @@ class StudyArguments:
     scheduler: str | None = None
     certificates: Certificates | None = None
     pictures: bool = False
+    branch: BranchPoint | None = None
 
     @property
     def files(self) -> list[Path]:
-        """File of the system, absolute; none of a case."""
+        """File of the system or of the run that is branched, absolute; none of a case."""
+        if self.branch is not None:
+            return [Path(self.branch.run) / RUN]
         return [Path(self.request.target).absolute()] if self.request.is_file else []
 
     def as_data(self) -> dict[str, Any]:
         """Return the arguments as plain data that mean the same in any folder."""
         request = self.request.as_data()
-        if self.files:
+        if self.files and self.branch is None:
             request["target"] = str(self.files[0])
         held = self.certificates
         return {
@@ -43,6 +48,7 @@ class StudyArguments:
             "request": request,
             "vary": {name: varied_as_data(varied) for name, varied in self.vary.items()},
             "certificates": held.as_data() if held else None,
+            "branch": vars(self.branch) if self.branch else None,
         }
 
 
@@ -55,12 +61,14 @@ def arguments_from(data: Mapping[str, Any]) -> StudyArguments:
         As :meth:`StudyArguments.as_data` gives it.
     """
     held = data["certificates"]
+    branch = data.get("branch")
     return StudyArguments(
         **{
             **data,
             "request": Request(**data["request"]),
             "vary": {name: varied_from(varied) for name, varied in data["vary"].items()},
             "certificates": Certificates(**held) if held else None,
+            "branch": BranchPoint(**branch) if branch else None,
         }
     )
 

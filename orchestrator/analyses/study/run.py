@@ -10,17 +10,19 @@ from typing import Any
 from ...core.errors import AnalysisFailed, InputRefused, Problem, all_causes
 from ...core.input_text import shown
 from ...core.results.metric import identifier
+from ...core.results.reading import read_run
 from ...core.system.fields import Value
 from ...core.system.names import nearest
+from ...core.variants import plan_branching
 from ...metrics.percentiles import borne, needed
-from ...runs.batch import INTERRUPTED, Outcome, Task, carry_out, orders_of
+from ...runs.batch import INTERRUPTED, BranchPoint, Outcome, Task, carry_out, orders_of
 from ...runs.building import Note, silent
 from ...runs.cluster import Certificates
 from ...runs.dask_executor import dask
 from ...runs.executors import Crew, number_of_workers, processes
 from ...runs.job import file_problems, prepare
 from ...runs.kept import FINISHED, KeptRuns
-from ...runs.parameters import SystemValues
+from ...runs.parameters import BranchValues, SystemValues
 from ...runs.request import Request, plain
 from ...runs.system import System
 from ..asked import remembering
@@ -37,7 +39,7 @@ from .designs import (
     design_problems,
     points,
 )
-from .factors import Factor, Varied, in_si
+from .factors import Factor, Levels, Varied, in_si
 from .headline import headline_metrics
 from .records import (
     MetricName,
@@ -282,10 +284,12 @@ def _plan(asked: StudyArguments, note: Note) -> _Plan:
     InputRefused
         Everything that is wrong with what varies, and with the design.
     """
-    request, seeds = asked.request, asked.seeds
-    job = prepare(request, note)
-    known = SystemValues(job)
+    subject = _subject(asked, note)
+    seeds = asked.seeds
+    known = subject.known
+    request = subject.request
     factors, problems = _factors(asked.vary, known)
+    problems = [*subject.problems, *problems]
     chosen = asked.design or (RANDOM if any(f.is_distribution for f in factors) else GRID)
     problems += [*_argument_problems(asked), *_seed_problems(seeds, asked.vary, known)]
     problems += [] if problems else design_problems(chosen, factors, asked.samples)
@@ -297,14 +301,82 @@ def _plan(asked: StudyArguments, note: Note) -> _Plan:
         text = f"{len(found)} points of {shown(seeds)} packings; {MOST_POINTS:,} runs are most"
         raise InputRefused([Problem("seeds", text, "give fewer")])
     entries = [
-        (number, point, seed, _task(request, point, seeded, number, factors))
+        (number, point, seed, _task(request, point, seeded, number, factors, asked.branch))
         for number, point in enumerate(found, 1)
         for seed, seeded in _packings(known, seeds, number - 1, point, chosen)
     ]
-    kind = next(k for k in ("case", "project_file", "system_file", "request") if k in job.facts)
-    origin = {kind: job.facts[kind], "draw": asked.draw, "samples": asked.samples, "seeds": seeds}
+    origin = {"draw": asked.draw, "samples": asked.samples, "seeds": seeds}
     given = {"values": dict(request.values), "options": dict(request.options)}
-    return _Plan(job.name, chosen, factors, entries, {**origin, **given})
+    return _Plan(subject.name, chosen, factors, entries, {**subject.origin, **origin, **given})
+
+
+@dataclass(frozen=True)
+class _Subject:
+    """Something that is run with values that vary.
+
+    Attributes
+    ----------
+    name : str
+        Of the system.
+    request : Request
+        With the values that do not vary.
+    known : SystemValues or BranchValues
+        Values that there are.
+    origin : mapping of str to Any
+        For the provenance.
+    problems : sequence of Problem
+        What is wrong with it, whatever varies.
+    """
+
+    name: str
+    request: Request
+    known: SystemValues | BranchValues
+    origin: Mapping[str, Any]
+    problems: Sequence[Problem] = ()
+
+
+_KINDS = ("case", "project_file", "system_file", "request")
+"""Entries of the provenance of a run that say what was run; the first one counts."""
+
+
+def _subject(asked: StudyArguments, note: Note) -> _Subject:
+    """Return what is run: a system, or a run on its way.
+
+    Raises
+    ------
+    InputRefused
+        It cannot be prepared, or is no longer there.
+    """
+    if asked.branch is not None:
+        return _run_on_its_way(asked.request, asked.branch)
+    job = prepare(asked.request, note)
+    return _Subject(job.name, asked.request, SystemValues(job), _kind_of(job.facts))
+
+
+def _kind_of(facts: Mapping[str, Any]) -> dict[str, Any]:
+    return {kind: facts[kind] for kind in [k for k in _KINDS if k in facts][:1]}
+
+
+def _run_on_its_way(request: Request, point: BranchPoint) -> _Subject:
+    """Return a run whose variants have other values from a time on."""
+    parent = read_run(Path(point.run))
+    problems: list[Problem] = []
+    known = BranchValues(plan_branching(parent, point.at, problems))
+    values: dict[str, Value] = {}
+    for name, value in request.values.items():
+        refusal = known.refusal(name)
+        if refusal is not None:
+            problems.append(replace(refusal, where=f"values {name}"))
+            continue
+        try:
+            values[name] = known.read(name, value)
+            fault = known.fault(name, values[name])
+        except ValueError as error:
+            fault = str(error)
+        if fault:
+            problems.append(Problem(f"values {name}", f"{shown(value)}: {fault}"))
+    origin = {**_kind_of(parent.provenance), "branch": {"of": point.run, "at": point.at}}
+    return _Subject(request.target, replace(request, values=values), known, origin, problems)
 
 
 def _refuse_design(asked: StudyArguments) -> None:
@@ -326,27 +398,40 @@ def _argument_problems(asked: StudyArguments) -> Iterator[Problem]:
         yield Problem("draw", text, "give a whole number from 0 on")
 
 
-def _factors(vary: Mapping[str, Varied], known: SystemValues) -> tuple[list[Factor], list[Problem]]:
+def _factors(
+    vary: Mapping[str, Varied], known: SystemValues | BranchValues
+) -> tuple[list[Factor], list[Problem]]:
     """Return what varies with numbers in SI, and what is wrong with it."""
     factors = []
     problems = []
     for name, how in vary.items():
-        unit = known.unit(name)
-        if unit is None:
-            text = "is no value of this system"
-            problems.append(Problem(f"vary {name}", text, nearest(name, known.known())))
+        refusal = known.refusal(name)
+        if refusal is not None:
+            problems.append(replace(refusal, where=f"vary {name}"))
             continue
 
         def read(value: Value, name: str = name) -> Value:
             return known.read(name, value)
 
-        factor, wrong = in_si(name, how, unit, read)
+        factor, wrong = in_si(name, how, known.unit(name) or "1", read)
         factors.append(factor)
-        problems += wrong
+        problems += wrong or _level_faults(how, factor, known)
     return factors, problems
 
 
-def _seed_problems(seeds: int, vary: Mapping[str, Any], known: SystemValues) -> list[Problem]:
+def _level_faults(
+    how: Varied, factor: Factor, known: SystemValues | BranchValues
+) -> Iterator[Problem]:
+    """Yield the levels that the system does not take, as they were given."""
+    given = how.values if isinstance(how, Levels) else factor.levels()
+    for text, value in zip(given, factor.levels(), strict=True):
+        if fault := known.fault(factor.name, value):
+            yield Problem(f"vary {factor.name}", f"{shown(text)}: {fault}", "give another value")
+
+
+def _seed_problems(
+    seeds: int, vary: Mapping[str, Any], known: SystemValues | BranchValues
+) -> list[Problem]:
     if seeds < 1:
         return [Problem("seeds", f"{seeds} packings are no study", "give one at least")]
     if seeds == 1:
@@ -360,7 +445,7 @@ def _seed_problems(seeds: int, vary: Mapping[str, Any], known: SystemValues) -> 
 
 
 def _packings(
-    known: SystemValues, seeds: int, place: int, point: DesignPoint, design: str
+    known: SystemValues | BranchValues, seeds: int, place: int, point: DesignPoint, design: str
 ) -> Iterator[tuple[int | None, dict[str, Value]]]:
     """Yield the packings of a point, and the value that makes each.
 
@@ -388,6 +473,7 @@ def _task(
     seeded: Mapping[str, Value],
     number: int,
     factors: Sequence[Factor],
+    branch: BranchPoint | None,
 ) -> Task:
     units = {factor.name: factor.unit for factor in factors}
     told = ", ".join(f"{n} = {level_text(v, units[n])}" for n, v in point.values.items())
@@ -395,6 +481,7 @@ def _task(
         replace(request, values={**request.values, **seeded, **point.values}),
         columns=None,
         label=f"in design {number} ({told})" if told else f"in design {number}",
+        branch=branch,
     )
 
 

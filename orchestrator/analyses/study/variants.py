@@ -1,45 +1,67 @@
-"""Many variants of a run, from one settled state: a study of the system that was run."""
+"""Many variants of a run, from one of its states: a study of the run from there on."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from ...core.continuing import system_of
 from ...core.errors import InputRefused, Problem
 from ...core.results.reading import StoredRun
 from ...core.system.fields import Value
+from ...runs.batch import BranchPoint
 from ...runs.building import Note, silent
-from ...runs.continuing import request_of
+from ...runs.continuing import refuse_in_process, request_of
+from ...runs.request import Request, plain
 from ...runs.run import read_run
 from ..frame import StageProgress, no_progress
-from .arguments import StudyArguments
+from .arguments import StudyArguments, varied
 from .designs import LISTED
-from .factors import Listed
+from .factors import Listed, Varied
 from .result import StudyResult
 from .run import carry_out_study
 
 
 def branches(
     run: StoredRun | str | Path,
-    variants: Sequence[Mapping[str, Value]],
+    variants: Sequence[Mapping[str, Value]] | Mapping[str, Varied | Sequence[Value]],
     *,
+    at: float | None = None,
+    values: Mapping[str, Value] | None = None,
+    design: str | None = None,
+    samples: int | None = None,
+    draw: int = 0,
+    metrics: Sequence[str] = (),
+    percentiles: Sequence[float] | None = None,
     workers: int | None = None,
     folder: str | Path | None = None,
     pictures: bool = False,
     progress: StageProgress | None = None,
     note: Note = silent,
 ) -> StudyResult:
-    """Run many variants of a run, each with values of its own from the start on.
+    """Run many variants of a run from one of its states, each with values of its own.
 
-    FMUs are instantiated once in each process, and what none of the values changes settles once:
-    a bed of sand, for all variants of the rock. The numbers are those of :func:`rockshed.branch`
-    and of a run with these values, to the bit; rows and states are not kept.
+    FMUs are instantiated once in each process. From the start, what none of the values changes
+    settles once: a bed of sand, for all variants of the rock. From a later time on, the run goes on
+    to that time once in each process, and each variant begins with its state and rows then. The
+    numbers are those of :func:`rockshed.branch` to the bit; rows and states are not kept.
 
     Parameters
     ----------
     run : Run, str or Path
-        The run of a case, a project or a system file, or its folder.
-    variants : sequence of mapping of str to Value
-        Values of each by ``component.variable``, or as ``with_values`` takes them; all have the
-        same names.
+        The run, or its folder; its components are FMUs. From the start it is that of a case, a
+        project or a system file, from a later time on one that had ``checkpoint_every``.
+    variants : sequence of mapping, or mapping
+        Values of each variant by ``component.variable``, from the start also as ``with_values``
+        takes them; all have the same names. Or how the values vary, by name, as
+        :func:`rockshed.study` takes it.
+    at : float, optional
+        Time (s) from which on the values hold; by default the start of the run.
+    values : mapping of str to Value, optional
+        Other values than those of the run, the same in all variants.
+    design, samples, draw
+        Which combinations of values are run, as :func:`rockshed.study` has it; not of a sequence.
+    metrics, percentiles
+        What is told of the variants, as :func:`rockshed.study` has it.
     workers : int, optional
         Number of processes, by default one for each core.
     folder : path, optional
@@ -59,7 +81,8 @@ def branches(
     Raises
     ------
     InputRefused
-        FMUs, kernels or versions are others than those of the run; values that do not fit.
+        FMUs, kernels or versions are others than those of the run; values that do not fit, or that
+        cannot be set then; a time without an exchange.
     StudyFailed
         No variant has a result.
 
@@ -72,28 +95,53 @@ def branches(
     [-4.0, -6.0]
     """
     parent = run if isinstance(run, StoredRun) else read_run(run)
-    names = list(dict.fromkeys(name for values in variants for name in values))
-    _refuse_gaps(variants, names)
-    columns = {name: Listed(tuple(values[name] for values in variants)) for name in names}
+    known = plain(values or {})
+    if isinstance(variants, Mapping):
+        columns = {name: varied(given) for name, given in variants.items()}
+    else:
+        columns = _listed(variants)
+        design = LISTED
     asked = StudyArguments(
-        request_of(parent, names, note),
-        columns,
-        LISTED,
+        vary=columns,
+        design=design,
+        samples=samples,
+        draw=draw,
+        metrics=tuple(metrics),
+        percentiles=percentiles,
         workers=workers,
         pictures=pictures,
+        **_branched(parent, at, known, columns, note),
     )
     place = Path(folder) if folder else None
     return carry_out_study(asked, place, progress or no_progress, note)
 
 
-def _refuse_gaps(variants: Sequence[Mapping[str, Value]], names: Sequence[str]) -> None:
-    """Refuse variants that have no value of something that others have.
+def _branched(
+    parent: StoredRun,
+    at: float | None,
+    values: Mapping[str, Value],
+    columns: Mapping[str, Varied],
+    note: Note,
+) -> dict[str, Any]:
+    """Return what was asked in a run, and where its variants branch off on its way."""
+    if at is None or at == system_of(parent).start_time:
+        request = request_of(parent, columns, note)
+        return {"request": Request(**{**vars(request), "values": {**request.values, **values}})}
+    refuse_in_process(parent)
+    name = str(parent.provenance.get("name", "run"))
+    point = BranchPoint(str(parent.folder.resolve()), at)
+    return {"request": Request(name, values), "branch": point}
+
+
+def _listed(variants: Sequence[Mapping[str, Value]]) -> dict[str, Varied]:
+    """Return the values of some variants by name, in their order.
 
     Raises
     ------
     InputRefused
-        One problem for each of them.
+        A variant has no value of something that others have: one problem for each.
     """
+    names = list(dict.fromkeys(name for values in variants for name in values))
     problems = [
         Problem(f"variant {number}", f"has no value of {name}", "give it to all variants")
         for number, values in enumerate(variants, 1)
@@ -104,3 +152,4 @@ def _refuse_gaps(variants: Sequence[Mapping[str, Value]], names: Sequence[str]) 
         problems.append(Problem("variants", "have no values", "give some by component.variable"))
     if problems:
         raise InputRefused(problems)
+    return {name: Listed(tuple(values[name] for values in variants)) for name in names}

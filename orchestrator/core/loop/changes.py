@@ -1,35 +1,19 @@
 """Values that change at one time of a run: what FMI lets a master set between two steps."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..errors import InputRefused, Problem, RunFailed
 from ..fmu.slave import WARNING, Slave, status_name
-from ..system.fields import Value
+from ..results.changes import ValueChange
 from ..system.names import nearest, split_name
 from ..system.plan import End, Plan
 from ..system.renaming import present_name
 from ..system.timing import exchanges_in
 from ..system.values import value_for
 from .recording import last_words
-
-
-@dataclass(frozen=True)
-class ValueChange:
-    """Other values from a time on.
-
-    Attributes
-    ----------
-    at : float
-        Time (s), at an exchange.
-    values : mapping of str to Value
-        By ``component.variable``: tunable parameters, and inputs that nothing feeds.
-    """
-
-    at: float
-    values: Mapping[str, Value]
 
 
 @dataclass
@@ -71,6 +55,36 @@ class Changing:
         if exchange == self.exchange:
             for end, value in self.settings:
                 set_between_steps(self.slaves[end.component], end, value, self.at)
+
+    @property
+    def in_words(self) -> str:
+        """Say what is set, and when."""
+        told = [
+            f"{end.name} = {value} {end.port.unit_name}".removesuffix(" 1")
+            for end, value in self.settings
+        ]
+        return f"{', '.join(told)} at t = {self.at:.9g} s"
+
+
+def advice(changes: Sequence[Changing], at: float, otherwise: str) -> str:
+    """Say what may be done about values that run away: those that were set before are the cause.
+
+    Parameters
+    ----------
+    changes : sequence of Changing
+        Of the run; without them it is one that comes to its end, or would have failed too.
+    at : float
+        Time (s) at which values have run away.
+    otherwise : str
+        What may be done where nothing was set before.
+    """
+    before = [change.in_words for change in changes if change.at <= at]
+    if not before:
+        return otherwise
+    return (
+        f"the likely cause is what was set on the way, {' and '.join(before)}: the state jumps "
+        "there; set what is nearer to the value before, or let a scenario change it over time"
+    )
 
 
 def set_between_steps(slave: Slave, end: End, value: float | str, at: float) -> None:
@@ -126,7 +140,7 @@ def plan_change(plan: Plan, change: ValueChange) -> Changing:
     number = _exchange(plan, change.at, problems)
     settings = []
     for name, value in change.values.items():
-        end = _end(plan, name, problems)
+        end = settable_end(plan, name, problems)
         if end is None:
             continue
         try:
@@ -158,8 +172,18 @@ def _exchange(plan: Plan, at: float, problems: list[Problem]) -> int:
     return number
 
 
-def _end(plan: Plan, name: str, problems: list[Problem]) -> End | None:
-    """Return the port of a name that may be set between two steps; else tell why it may not."""
+def settable_end(plan: Plan, name: str, problems: list[Problem]) -> End | None:
+    """Return the port of a name that may be set between two steps; else tell why it may not.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the run.
+    name : str
+        ``component.variable``.
+    problems : list of Problem
+        Takes the reason.
+    """
     component, key = split_name(name, plan.order)
     if component not in plan.descriptions:
         what = "names no component of the run"

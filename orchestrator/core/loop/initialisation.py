@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import ComponentLost, InputRefused, Problem
+from ..errors import ComponentLost, InputRefused, Problem, check_of
 from ..fmu.access import read_value
 from ..fmu.slave import (
     DISCARD,
@@ -28,6 +28,7 @@ from ..system.limits import MOST_INTERNAL_STEPS
 from ..system.loops import told
 from ..system.plan import End, Plan
 from ..system.schedule import Action
+from ..system.system import SystemSpec
 from .buses import Buses, unfit_text
 from .start_values import set_values
 
@@ -60,13 +61,13 @@ NO_STAGES = Stages()
 
 
 @contextmanager
-def losses_refused(start: float = 0.0) -> Iterator[None]:
+def losses_refused(system: SystemSpec) -> Iterator[None]:
     """Refuse a system whose component is lost while it is made ready.
 
     Parameters
     ----------
-    start : float
-        Time (s) at which the run starts.
+    system : SystemSpec
+        Names the FMUs and the time at which the run starts.
 
     Raises
     ------
@@ -76,8 +77,8 @@ def losses_refused(start: float = 0.0) -> Iterator[None]:
     try:
         yield
     except SlaveLost as lost:
-        what = f"{lost.what} while it was made ready, at t = {start:.9g} s"
-        remedy = "`rockshed check` looks for the reason"
+        what = f"{lost.what} while it was made ready, at t = {system.start_time:.9g} s"
+        remedy = check_of(system.components[lost.name].fmu)
         raise ComponentLost([Problem(lost.name, what, remedy)]) from lost
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import check_of
 from ..system.clock import to_seconds
 from ..system.plan import Plan
 from ..system.schedule import Action, Operation
@@ -23,6 +24,8 @@ LEGEND = "journal.json"
 EXCHANGE, OPERATION = range(2)
 """Places in a journal."""
 _NOTHING = -1
+_BY_ITSELF = ("crashed", "ended")
+"""Beginnings of what code does when nobody has asked it to end."""
 _DAMAGED = (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError)
 """Errors that a journal leads to in which a crash has left nonsense."""
 _IS_FILE = os.name == "posix"
@@ -36,8 +39,8 @@ class Journal:
     ----------
     folder : Path or None
         In which the run writes; None where nobody would read a journal.
-    components : sequence of str
-        Their names in order.
+    plan : Plan
+        Of the run.
 
     Attributes
     ----------
@@ -46,9 +49,10 @@ class Journal:
         preparations of the first, second, ... component, and behind those of all come their ends.
     """
 
-    def __init__(self, folder: Path | None, components: Sequence[str]) -> None:
+    def __init__(self, folder: Path | None, plan: Plan) -> None:
         self._folder = folder
-        self._components = list(components)
+        self._components = list(plan.order)
+        self._fmus = {name: plan.system.components[name].fmu for name in plan.order}
         self.entries: IntegerTable = np.zeros(2, np.int64)
         if folder is not None and _IS_FILE:
             self.entries = np.memmap(folder / FILE, np.int64, "w+", shape=(2,))
@@ -69,6 +73,7 @@ class Journal:
             return
         legend = {
             "components": self._components,
+            "fmus": self._fmus,
             "start": plan.timing.start if plan else 0,
             "rate": plan.timing.rate if plan else 1,
             "exchange": plan.schedule.exchange if plan else 0,
@@ -116,7 +121,8 @@ def last_entry(folder: Path, reason: str) -> str:
     Returns
     -------
     str
-        Component, time, call and reason; no component if the code of none was running.
+        Component, time, call and reason, and what finds out why its code crashed; no component if
+        the code of none was running.
     """
     how = _how(reason)
     with suppress(*_DAMAGED):  # code that crashes may have written anywhere before
@@ -128,15 +134,19 @@ def _doing(folder: Path, how: str) -> str:
     entries = np.fromfile(folder / FILE, np.int64)
     legend = json.loads((folder / LEGEND).read_text(encoding="utf-8"))
     operation = int(entries[OPERATION])
-    if operation < _NOTHING:
+    if operation == _NOTHING:
+        return f"the run {how}"
+    if operation > _NOTHING:
+        component = legend["operations"][operation][0]
+        said = _call(legend, operation, int(entries[EXCHANGE]), how)
+    else:
         number = _NOTHING - 1 - operation
         component = legend["components"][number % len(legend["components"])]
         ready = number < len(legend["components"])
         when = "while it was made ready" if ready else "when it was ended, after the run"
-        return f"{component}: its code {how} {when}"
-    if operation == _NOTHING:
-        return f"the run {how}"
-    return _call(legend, operation, int(entries[EXCHANGE]), how)
+        said = f"{component}: its code {how} {when}"
+    remedy = check_of(str(legend["fmus"][component])) if how.startswith(_BY_ITSELF) else ""
+    return f"{said}; {remedy}" if remedy else said
 
 
 def _how(reason: str) -> str:

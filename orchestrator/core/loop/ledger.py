@@ -10,7 +10,7 @@ exchange, the interface shows nothing: the error then stands in the balance of t
 force has changed on the way. So the balances of the components are watched too.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -37,6 +37,9 @@ _OF_SCENARIO = Column(
     "J",
     "work that the forces and motions which a scenario imposes have done on the components",
 )
+Advice = Callable[[float, str], str]
+"""Says what may be done about values that run away at a time (s); the text is that of a run in
+which nothing was set on the way."""
 RUNAWAY = 10.0
 """Share of E0 beyond which an error of energy ends the run: nothing after it means anything."""
 
@@ -71,13 +74,13 @@ class Watched:
         if self.ran_away_at is None and sizes[i] > most:
             self.ran_away_at = float(times[int(np.argmax(sizes > most))])
 
-    def warning(self, share: float, reference: float) -> str:
+    def warning(self, share: float, reference: float, advice: Advice) -> str:
         """Return the sentence that warns of it; the share and E0 (J) are those of the alarm."""
         percent = 100.0 * self.largest / reference
         return (
             f"{self.owner}: {self.what} reaches {self.largest:.6g} J at t = {self.at:.9g} s, "
             f"{percent:+.3g} % of E0 = {reference:.6g} J, and {100.0 * share:g} % are tolerated: "
-            f"{self.remedy}"
+            f"{advice(self.at, self.remedy)}"
         )
 
 
@@ -90,6 +93,8 @@ class Accounts:
         Initialised.
     buses : Buses
         With the values after the initialisation.
+    advice : Advice
+        Says what may be done about an error of energy.
 
     Raises
     ------
@@ -97,8 +102,14 @@ class Accounts:
         A slave does not give the energy that the accounts begin with.
     """
 
-    def __init__(self, slaves: Mapping[str, Slave], buses: Buses) -> None:
+    def __init__(
+        self,
+        slaves: Mapping[str, Slave],
+        buses: Buses,
+        advice: Advice = lambda at, otherwise: otherwise,
+    ) -> None:
         self.plan = buses.plan
+        self._advice = advice
         self._slaves = slaves
         self._snapshots = buses.snapshots
         ends = np.cumsum([0, *(bond.force.size for bond in self.plan.channels)])
@@ -221,11 +232,13 @@ class Accounts:
         if not lost:
             return
         first = min(lost, key=lambda watched: watched.ran_away_at or 0.0)
+        at = first.ran_away_at or 0.0
         raise RunFailed(
             first.owner,
-            first.ran_away_at or 0.0,
+            at,
             f"unstable: {first.what} is more than {RUNAWAY:g} times E0 = "
-            f"{abs(self.reference):.6g} J, and nothing after it means anything; {first.remedy}",
+            f"{abs(self.reference):.6g} J, and nothing after it means anything; "
+            f"{self._advice(at, first.remedy)}",
         )
 
     @property
@@ -234,7 +247,7 @@ class Accounts:
         share = self.plan.system.energy_alarm.share
         reference = abs(self.reference)
         return [
-            watched.warning(share, reference)
+            watched.warning(share, reference, self._advice)
             for watched in self._bonds + self._balances
             if reference and abs(watched.largest) > share * reference
         ]

@@ -14,6 +14,7 @@ from ..system.schedule import Action
 from .buses import Buses, unfit_text
 from .driver import Driver
 from .exchange import Fault
+from .ledger import Advice
 from .recording import Recorder, last_words
 from .tables import ENDED, NOT_FINITE, NOT_FITTING, STUCK, IntegerTable
 
@@ -92,6 +93,8 @@ class Master:
         Carries out the exchanges.
     keepers : sequence of Keeper
         Called between exchanges in this order, when rows and states have been recorded.
+    advice : Advice
+        Says what may be done about values that are no finite numbers.
 
     Attributes
     ----------
@@ -114,12 +117,14 @@ class Master:
         recorder: Recorder,
         driver: Driver,
         keepers: Sequence[Keeper] = (),
+        advice: Advice = lambda at, otherwise: otherwise,
     ) -> None:
         self._plan = buses.plan
         self._slaves = slaves
         self._buses = buses
         self._recorder = recorder
         self._keepers = keepers
+        self._advice = advice
         self.driver = driver
         self._loop = driver.loop
         self._has_begun = False
@@ -378,17 +383,20 @@ class Master:
     def _lost(self, fault: Fault) -> str:
         """Name the value that is no finite number, and say what may be done about it."""
         name = fault.operation.component
+        at = self._plan.timing.seconds(fault.exchange + 1)
         if fault.operation.action is not Action.RECORD:
             end = self._buses.not_finite(name)
             assert end is not None
+            steps = "reduce the exchange step or the steps of the components connected with it"
             return (
-                f"{end.name} is no finite number: the computation diverges; reduce the exchange "
-                "step or the steps of the components connected with it"
+                f"{end.name} is no finite number: the computation diverges; "
+                f"{self._advice(at, steps)}"
             )
         snapshots = self._buses.snapshots
         row = snapshots.rows[len(snapshots.waiting)]
         place = snapshots.lost(row, name)
         return (
-            f"{snapshots.ends[place].name} = {row[place]} is no finite number; reduce the steps, "
-            "or leave the variable out of the record if it may be so"
+            f"{snapshots.ends[place].name} = {row[place]} is no finite number; "
+            f"{self._advice(at, 'reduce the steps')}, or leave the variable out of the record if "
+            "it may be so"
         )

@@ -119,9 +119,13 @@ class _Checkpoints(_Shape):
     warnings: list[_Name]
 
 
-class _Branch(_Shape):
+class _Change(_Shape):
     at: float
     values: dict[str, int | float | str | bool]
+
+
+class _Branch(_Change):
+    inherited: list[_Change] = []
 
 
 class _Run(_Shape):
