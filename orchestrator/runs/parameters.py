@@ -9,6 +9,7 @@ from rockshed.components.common.units import UNITS
 from ..core.errors import InputRefused, Problem
 from ..core.fmu.description import Description, Port
 from ..core.fmu.fmu_slave import FmuFile, UnusableError, read_description
+from ..core.fmu.slave import STRING
 from ..core.loop.changes import settable_end
 from ..core.system.fields import Value
 from ..core.system.names import nearest, split_name
@@ -19,6 +20,7 @@ from ..input_files.fields import ANY, fields, unit_of
 from ..sites.shed.preparation import all_fields, is_field
 from ..sites.shed.site import ShedProject
 from .job import Job
+from .values_in_si import value_of_port
 
 PROJECT_SEED = "numerics.seed"
 """Field of a project that numbers the packing of its sand."""
@@ -122,7 +124,19 @@ class SystemValues:
         ValueError
             Its unit is of another kind, or does not exist.
         """
-        return _read(value, self.unit(name))
+        if not isinstance(value, str):
+            return value
+        text = value.strip()
+        if not text[:1].isdigit() and text[:1] not in ("+", "-", "."):
+            return text
+        unit = self.unit(name)
+        if unit in UNITS and unit != "1":
+            return in_si(text, unit)
+        number = finite_number(text)
+        if number is None:
+            named = "a number" if unit in (None, "1") else f"a number in {unit}"
+            raise ValueError(f"must be {named} (given: {text})")
+        return int(number) if text.lstrip("+-").isdigit() else number
 
     @property
     def seed(self) -> str | None:
@@ -178,7 +192,7 @@ class BranchValues:
         return settable_end(self.plan, name, [])
 
     def unit(self, name: str) -> str | None:
-        """Return the SI unit of a value, ``1`` where it has none; None if it cannot be given.
+        """Return the unit of a variable, ``1`` where it has none; None if it cannot be given.
 
         Parameters
         ----------
@@ -189,7 +203,7 @@ class BranchValues:
         return None if end is None else end.port.unit_name
 
     def read(self, name: str, value: Value) -> Value:
-        """Return a value in SI; a word stays as it is.
+        """Return a value in the unit of its variable; a word stays as it is.
 
         Parameters
         ----------
@@ -203,7 +217,14 @@ class BranchValues:
         ValueError
             Its unit is of another kind, or does not exist.
         """
-        return _read(value, self.unit(name))
+        end = self._end(name)
+        if end is None or end.port.kind == STRING:
+            return value
+        found = value_of_port(end.port, value)
+        number = finite_number(found) if isinstance(found, str) else None
+        if number is None:
+            return found
+        return int(number) if str(found).strip().lstrip("+-").isdigit() else number
 
     def fault(self, name: str, value: Value) -> str:
         """Return why a variable does not take a value; empty where it does.
@@ -222,19 +243,3 @@ class BranchValues:
         except ValueError as error:
             return str(error)
         return ""
-
-
-def _read(value: Value, unit: str | None) -> Value:
-    """Return a value in SI, as ``read`` of the names of values has it."""
-    if not isinstance(value, str):
-        return value
-    text = value.strip()
-    if not text[:1].isdigit() and text[:1] not in ("+", "-", "."):
-        return text
-    if unit in UNITS and unit != "1":
-        return in_si(text, unit)
-    number = finite_number(text)
-    if number is None:
-        named = "a number" if unit in (None, "1") else f"a number in {unit}"
-        raise ValueError(f"must be {named} (given: {text})")
-    return int(number) if text.lstrip("+-").isdigit() else number
