@@ -32,7 +32,6 @@ from .request import Request, plain
 from .run import Run, read_run
 from .simulation import checked, kept, measured, warnings_of
 from .system import System
-from .values_in_si import values_in_si
 
 
 def resume(
@@ -194,9 +193,7 @@ def branch(
         if change.at == begin:
             _from_start(parent, change, place, note, conduct)
         else:
-            sources = sources_of_run(parent)
-            change = replace(change, values=_in_si(parent, sources, change.values))
-            continuing.branch(parent, change, place, sources, **conduct)
+            continuing.branch(parent, change, place, sources_of_run(parent), **conduct)
     except RunFailed as failure:
         failure.run = kept(measured(place), temporary)
         raise
@@ -205,13 +202,6 @@ def branch(
             temporary.cleanup()
         raise
     return kept(measured(place), temporary)
-
-
-def _in_si(
-    parent: StoredRun, sources: Mapping[str, Source], values: Mapping[str, Value]
-) -> dict[str, Value]:
-    """Return values in the units of their variables; those that do not fit, the run refuses."""
-    return {**values, **values_in_si(values, system_of(parent), sources, [])}
 
 
 def _from_start(
