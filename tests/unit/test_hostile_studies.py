@@ -17,8 +17,7 @@ from rockshed.analyses.study.run import _factors, _shares
 from rockshed.campaigns.campaign import campaign_of
 from rockshed.commands.assignments import values_of
 from rockshed.commands.calibrate_rockfall import _ranges
-from rockshed.commands.study import _percentiles
-from rockshed.commands.vary import varied_of
+from rockshed.commands.vary import percentiles_of, varied_of
 from rockshed.core.errors import InputRefused
 from rockshed.runs.job import prepare as prepare_job
 from rockshed.runs.parameters import SystemValues
@@ -307,7 +306,7 @@ def assigned(path: Path) -> None:
 
 def percentiles(path: Path) -> None:
     problems = []
-    asked = _percentiles(path.read_text("utf-8", "surrogateescape"), problems)
+    asked = percentiles_of(path.read_text("utf-8", "surrogateescape"), problems)
     refuse(problems)
     point = SimpleNamespace(role="")
     _shares(asked, SimpleNamespace(design="lhs", entries=[(1, point, None, None)] * 500))
