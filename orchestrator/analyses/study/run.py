@@ -289,11 +289,10 @@ def _plan(asked: StudyArguments, note: Note) -> _Plan:
     known = subject.known
     request = subject.request
     factors, problems = _factors(asked.vary, known)
-    problems = [*subject.problems, *problems]
     chosen = asked.design or (RANDOM if any(f.is_distribution for f in factors) else GRID)
     problems += [*_argument_problems(asked), *_seed_problems(seeds, asked.vary, known)]
     problems += [] if problems else design_problems(chosen, factors, asked.samples)
-    problems += file_problems(job, asked.vary)
+    problems += subject.problems
     if problems:
         raise InputRefused(problems)
     found = points(chosen, factors, asked.samples or 0, asked.draw)
@@ -350,7 +349,8 @@ def _subject(asked: StudyArguments, note: Note) -> _Subject:
     if asked.branch is not None:
         return _run_on_its_way(asked.request, asked.branch)
     job = prepare(asked.request, note)
-    return _Subject(job.name, asked.request, SystemValues(job), _kind_of(job.facts))
+    problems = file_problems(job, asked.vary)
+    return _Subject(job.name, asked.request, SystemValues(job), _kind_of(job.facts), problems)
 
 
 def _kind_of(facts: Mapping[str, Any]) -> dict[str, Any]:
