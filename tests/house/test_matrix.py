@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.house.sources import ROOT, copied_sources
+
 SMOKE = """
 import sys, tempfile
 from pathlib import Path
@@ -63,7 +64,8 @@ def environment(python, folder, constraints=()):
     subprocess.run([python, "-m", "venv", folder / "venv"], check=True, timeout=LIMIT)
     (folder / "constraints.txt").write_text("\n".join(constraints))
     pip = [folder / "venv" / "bin" / "pip", "install", "-q", "--prefer-binary"]
-    words = ["-c", folder / "constraints.txt", str(ROOT)]
+    (folder / "sources").mkdir()
+    words = ["-c", folder / "constraints.txt", str(copied_sources(folder / "sources"))]
     done = subprocess.run([*pip, *words], capture_output=True, text=True, timeout=LIMIT)
     if "connection broken" in done.stderr.lower() or "no matching distribution" in done.stderr:
         pytest.skip(f"packages cannot be had: {done.stderr.strip().splitlines()[-1]}")

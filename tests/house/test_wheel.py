@@ -6,26 +6,19 @@ import sys
 import sysconfig
 import venv
 from pathlib import Path
-from shutil import copytree, ignore_patterns
 from zipfile import ZipFile
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-FILES = ("pyproject.toml", "setup.py", "README.md", "LICENSE")
-FOLDERS = ("orchestrator", "components", "fmus")
+from tests.house.sources import FOLDERS, ROOT, copied_sources
+
 SCRIPT = ROOT / "docs" / "examples" / "sweep.py"
-LEFT_OUT = ignore_patterns("dist", "__pycache__", "*.egg-info")
 
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
     """Return the wheel, built from a copy of the sources."""
-    sources = tmp_path_factory.mktemp("sources")
-    for name in FILES:
-        (sources / name).write_bytes((ROOT / name).read_bytes())
-    for name in FOLDERS:
-        copytree(ROOT / name, sources / name, ignore=LEFT_OUT)
+    sources = copied_sources(tmp_path_factory.mktemp("sources"))
     place = tmp_path_factory.mktemp("wheel")
     pip("wheel", "--no-deps", "--no-build-isolation", "-w", str(place), str(sources))
     (built,) = place.glob("rockshed-*.whl")
