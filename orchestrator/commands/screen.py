@@ -364,7 +364,7 @@ class Screen:
 
             def tell(done: int, total: int) -> None:
                 nonlocal tenths
-                if 10 * done // total > tenths:
+                if total and 10 * done // total > tenths:
                     tenths = 10 * done // total
                     self.note(f"{text}: {done} of {total}")
 

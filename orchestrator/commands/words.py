@@ -18,6 +18,7 @@ OPTIONS = {
 """Options by the argument of the library, where the two have different names."""
 SAME = frozenset(
     {
+        "at",
         "check",
         "checkpoint_every",
         "design",

@@ -14,7 +14,7 @@ from rockshed.commands.app import app
 from rockshed.components.common.units import cm, kgf
 from rockshed.core.errors import InputRefused, RunFailed
 from rockshed.metrics.load_curve import LoadCurve
-from rockshed.runs import batch, first_compilation
+from rockshed.runs import batch, first_compilation, kept
 from rockshed.runs.batch import COMPLETE, FAILED, INTERRUPTED, Outcome
 from rockshed.runs.kept import FINISHED
 
@@ -328,7 +328,8 @@ def test_a_calibration_that_was_interrupted_goes_on_where_it_was(monkeypatch, tm
             "sand.surface_level": np.full_like(curve.depth, 0.1),
             "sand.stable_step": np.full_like(curve.depth, 1e-4),
         }
-        return Outcome(order.key, COMPLETE, series=series, options={"packing": "square"})
+        fmus = kept._present(order.system)
+        return Outcome(order.key, COMPLETE, series=series, options={"packing": "square"}, fmus=fmus)
 
     monkeypatch.setattr(batch, "run_one", run_one)
     monkeypatch.setattr(batch, "_carry_out", lambda orders, *_: map(run_one, orders))

@@ -92,10 +92,11 @@ def test_a_project_is_offered_with_other_thicknesses(tmp_path):
 
 
 def test_without_the_linker_a_page_is_refused_with_the_package_to_install(tmp_path, monkeypatch):
-    import rockshed.fmus.wasm.module as module
+    from rockshed.fmus import kept_code
+    from rockshed.fmus.wasm import module
 
     monkeypatch.setattr(module, "find_spec", lambda name: None)
-    monkeypatch.setattr(module, "_kept_files", lambda *_: {})
+    monkeypatch.setattr(kept_code, "kept", lambda file: None)
     assert "pip install rockshed[page]" in refusal("lab-impact", tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
 

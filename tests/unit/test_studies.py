@@ -189,7 +189,7 @@ def test_tasks_that_are_the_same_are_one_run(monkeypatch):
         [task(1), task(2), task(1)], 1, print, lambda done, total: told.append((done, total))
     )
     assert len(found) == 2
-    assert told == [(1, 2), (2, 2)]
+    assert told == [(0, 2), (1, 2), (2, 2)]
 
 
 def test_runs_that_differ_in_a_size_alone_are_two_runs():

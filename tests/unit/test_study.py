@@ -414,7 +414,13 @@ def at_once(workers):
 
     def each(work, orders):
         for number, order in enumerate(orders):
-            outcome = Outcome(order.key, "complete", metrics={"force": 1.0}, units={"force": "N"})
+            outcome = Outcome(
+                order.key,
+                "complete",
+                metrics={"force": 1.0},
+                units={"force": "N"},
+                fmus=kept._present(order.system),
+            )
             yield number, [] if work is check_one else outcome
 
     yield SimpleNamespace(facts={}, each=each)
