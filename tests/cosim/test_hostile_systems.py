@@ -280,7 +280,7 @@ KINDS = {
     ),
 }
 """What is made, how it is read, what damages it, and what is damaged: file and member."""
-FOUND = {"system file": (511, 7653), "description of an SSP": (428,)}
+FOUND = {"system file": (511, 522, 7653), "description of an SSP": (428,)}
 """Damages that ended in something else than a refusal once."""
 
 

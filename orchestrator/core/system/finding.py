@@ -35,7 +35,7 @@ class Finder:
 
     def refuse(self, where: str, what: str, remedy: str = "") -> None:
         """Add a problem to those that are told when the whole system has been looked at."""
-        self.problems.append(Problem(where, what, remedy))
+        self.problems.append(Problem(where or '""', what, remedy))  # a name of no letter
 
     def split(self, name: str) -> tuple[str, str]:
         """Return component and variable of a name."""
