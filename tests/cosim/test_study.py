@@ -90,7 +90,12 @@ def test_a_study_whose_worker_is_killed_loses_nothing(tmp_path):
     assert table(tmp_path / "study") == table(tmp_path / "whole")
 
 
-def test_a_study_that_is_killed_goes_on_and_has_the_table_of_one_in_one_go(tmp_path, alone):
+def test_a_study_that_is_killed_goes_on_and_has_the_table_of_one_in_one_go(
+    tmp_path, alone, monkeypatch
+):
+    # in the folder of all tests another one may build native FMUs meanwhile, which then are taken:
+    # what was kept of Python's ones is not theirs
+    monkeypatch.setenv("ROCKSHED_FMU_DIR", str(tmp_path / "fmus"))
     process = started(tmp_path, 0.002)
     assert after_a_run(process)
     process.kill()
