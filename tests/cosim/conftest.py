@@ -9,6 +9,18 @@ import pytest
 HERE = Path(__file__).parent
 
 
+@pytest.fixture(scope="module")
+def own_fmus(tmp_path_factory):
+    """A folder of FMUs that no other process of the tests changes.
+
+    Native FMUs that another one builds meanwhile would be taken from then on, and what was kept of
+    Python's ones is not theirs.
+    """
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("ROCKSHED_FMU_DIR", str(tmp_path_factory.mktemp("fmus")))
+        yield
+
+
 @pytest.fixture(scope="session")
 def foreign(tmp_path_factory):
     """A stranger's FMU: plain pythonfmu, built in a process of its own."""

@@ -21,6 +21,8 @@ from rockshed.runs.job import Request
 from rockshed.runs.kept import KeptRuns
 from rockshed.temporary import TemporaryFolder
 
+pytestmark = pytest.mark.usefixtures("own_fmus")
+
 SHORT = Task(Request("lab-impact", options={"stop_time": 0.001}))
 
 _BATCH = """
@@ -40,7 +42,7 @@ if __name__ == "__main__":
 
 
 @pytest.fixture(scope="module")
-def kept(tmp_path_factory):
+def kept(own_fmus, tmp_path_factory):
     """A folder with one run that has ended, and its outcome."""
     runs = KeptRuns(tmp_path_factory.mktemp("kept") / "runs")
     found = run_all([SHORT], 1, kept=runs)[SHORT.key]

@@ -13,12 +13,14 @@ from rockshed.commands.app import app
 from rockshed.core.errors import InputRefused
 from rockshed.core.results.bits import first_difference
 
+pytestmark = pytest.mark.usefixtures("own_fmus")
+
 SUPPORT = "beam.support.position.y[2]"
 """An input that nothing feeds."""
 
 
 @pytest.fixture(scope="module")
-def parent(tmp_path_factory):
+def parent(own_fmus, tmp_path_factory):
     """A run of a case with FMUs, and with states to begin from."""
     place = tmp_path_factory.mktemp("parent") / "run"
     system = rockshed.case("lab-impact", values={"rock.velocity0.y": -7.0}, stop_time=0.001)

@@ -25,6 +25,8 @@ from rockshed.runs.kept import ASKED, FINISHED
 from rockshed.runs.request import Request
 from rockshed.sites.rockfall.preparation import prepare
 
+pytestmark = pytest.mark.usefixtures("own_fmus")
+
 SLOPE = Path(rockshed.__file__).parent / "examples" / "slope.toml"
 MOMENTS = int(os.environ.get("ROCKSHED_ENDING_MOMENTS", "2"))
 """Moments at which a study and a campaign are killed by the slow test; the full test has 10."""
@@ -80,7 +82,7 @@ def counts(process, kind):
 
 
 @pytest.fixture(scope="module", params=SCRIPTS)
-def in_one_go(request, tmp_path_factory):
+def in_one_go(own_fmus, request, tmp_path_factory):
     """Kind and folder of an analysis in one go, and the time (s) from its first count to its end."""
     kind, place = request.param, tmp_path_factory.mktemp("whole") / "work"
     process = started(kind, place, "whole")

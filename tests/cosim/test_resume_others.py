@@ -17,6 +17,8 @@ from rockshed.commands.app import app
 from rockshed.papers import reproduction
 from rockshed.runs.kept import FINISHED
 
+pytestmark = pytest.mark.usefixtures("own_fmus")
+
 SHED = Path(rockshed.__file__).parent / "examples" / "trial-shed.toml"
 HEAD = """
 import sys

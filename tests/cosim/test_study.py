@@ -19,6 +19,8 @@ from rockshed.runs.batch import slim
 from rockshed.runs.job import prepare
 from rockshed.runs.request import Request
 
+pytestmark = pytest.mark.usefixtures("own_fmus")
+
 VARY = {"rock.velocity0.y": [-4.0, -6.0, -8.0], "sand.modulus": [2e6, 4e6]}
 STOP = {"stop_time": 0.002}
 
@@ -36,7 +38,7 @@ if __name__ == "__main__":
 
 
 @pytest.fixture(scope="module")
-def alone(tmp_path_factory):
+def alone(own_fmus, tmp_path_factory):
     """The study in one go on one process."""
     folder = tmp_path_factory.mktemp("alone") / "study"
     return rockshed.study("lab-impact", VARY, options=STOP, workers=1, folder=folder)
@@ -90,12 +92,7 @@ def test_a_study_whose_worker_is_killed_loses_nothing(tmp_path):
     assert table(tmp_path / "study") == table(tmp_path / "whole")
 
 
-def test_a_study_that_is_killed_goes_on_and_has_the_table_of_one_in_one_go(
-    tmp_path, alone, monkeypatch
-):
-    # in the folder of all tests another one may build native FMUs meanwhile, which then are taken:
-    # what was kept of Python's ones is not theirs
-    monkeypatch.setenv("ROCKSHED_FMU_DIR", str(tmp_path / "fmus"))
+def test_a_study_that_is_killed_goes_on_and_has_the_table_of_one_in_one_go(tmp_path, alone):
     process = started(tmp_path, 0.002)
     assert after_a_run(process)
     process.kill()
